@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file Geometry.h
+/// Plain structs of plane geometry: vectors, and a triangle seen in its own frame.
+
+#ifndef Geometry_h
+#define Geometry_h
+
+#include <array>
+#include <cmath>
+
+namespace homeomorphism
+{
+
+/// The corner after @a corner in the cyclic order 0, 1, 2.
+constexpr int NextCorner(int corner)
+{
+  return corner == 2 ? 0 : corner + 1;
+}
+
+/// The corner before @a corner in the cyclic order 0, 1, 2.
+constexpr int PreviousCorner(int corner)
+{
+  return corner == 0 ? 2 : corner - 1;
+}
+
+/// A point or a vector of a plane.
+struct Vector2
+{
+  double x = 0.0;
+  double y = 0.0;
+};
+
+inline Vector2 operator+(const Vector2& a, const Vector2& b)
+{
+  return { a.x + b.x, a.y + b.y };
+}
+
+inline Vector2 operator-(const Vector2& a, const Vector2& b)
+{
+  return { a.x - b.x, a.y - b.y };
+}
+
+inline Vector2 operator*(double s, const Vector2& a)
+{
+  return { s * a.x, s * a.y };
+}
+
+inline double Dot(const Vector2& a, const Vector2& b)
+{
+  return a.x * b.x + a.y * b.y;
+}
+
+/// The z component of the cross product: positive if b is to the left of a.
+inline double Cross(const Vector2& a, const Vector2& b)
+{
+  return a.x * b.y - a.y * b.x;
+}
+
+/// a d - b c with a relative error of at most 1.5 ulp, however close the two products are (Kahan;
+/// Jeannerod, Louvet and Muller 2013). Slow where the processor has no fused multiply-add, so for
+/// construction rather than for every point.
+inline double DifferenceOfProducts(double a, double d, double b, double c)
+{
+  const double bc = b * c;
+  const double error = std::fma(-b, c, bc);
+  return std::fma(a, d, -bc) + error;
+}
+
+/// Barycentric coordinates of a point of a triangle (they sum to 1), or the components of a vector
+/// along the corners (they sum to 0).
+using Barycentric = std::array<double, 3>;
+
+/// A non-degenerate triangle in its own frame: the longest edge lies on the x axis, from the corner
+/// after the apex, at the origin, to the corner before the apex, at (Base, 0); the apex is at
+/// (ApexX, Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 therefore follow each
+/// other anticlockwise.
+///
+/// In this frame a needle is as harmless as an equilateral triangle: converting a point to
+/// barycentric coordinates and back moves it by a few ulp of Base, never by ulp times aspect ratio.
+struct TriangleShape
+{
+  double Base = 1.0;
+  double ApexX = 0.5;
+  double Height = 1.0;
+  int Apex = 2;
+
+  /// The position of a corner, 0 to 2.
+  Vector2 Corner(int corner) const
+  {
+    if (corner == this->Apex)
+    {
+      return { this->ApexX, this->Height };
+    }
+    return { corner == NextCorner(this->Apex) ? 0.0 : this->Base, 0.0 };
+  }
+
+  /// Barycentric coordinates of a point of the closed triangle. Coordinates that rounding has made
+  /// negative are 0.
+  Barycentric ToBarycentric(const Vector2& point) const
+  {
+    const double apex = point.y > 0.0 ? point.y / this->Height : 0.0;
+    const double second = (point.x - this->ApexX * apex) / this->Base;
+    const double first = 1.0 - apex - second;
+    Barycentric l;
+    l[this->Apex] = apex;
+    l[NextCorner(this->Apex)] = first > 0.0 ? first : 0.0;
+    l[PreviousCorner(this->Apex)] = second > 0.0 ? second : 0.0;
+    return l;
+  }
+
+  /// The point with these barycentric coordinates. Linear, so it also takes a vector's components to
+  /// the vector.
+  Vector2 FromBarycentric(const Barycentric& l) const
+  {
+    const double apex = l[this->Apex];
+    const double second = l[PreviousCorner(this->Apex)];
+    return { this->Base * second + this->ApexX * apex, this->Height * apex };
+  }
+
+  /// The components, summing to 0, of a vector of the plane: the derivative of ToBarycentric.
+  Barycentric VectorToBarycentric(const Vector2& vector) const
+  {
+    const double apex = vector.y / this->Height;
+    const double second = (vector.x - this->ApexX * apex) / this->Base;
+    Barycentric l;
+    l[this->Apex] = apex;
+    l[PreviousCorner(this->Apex)] = second;
+    l[NextCorner(this->Apex)] = -apex - second;
+    return l;
+  }
+};
+
+/// What one edge of a triangle sees of the triangle's corner on the other side: all that has to be
+/// known of a triangle in order to unfold it about that edge.
+struct EdgeView
+{
+  /// Length of the edge.
+  double Length = 0.0;
+  /// Foot of the opposite corner on the edge, as a proportion of the edge's length counted from the
+  /// next corner in cyclic order towards the one after; outside [0, 1] beside an obtuse angle.
+  double Foot = 0.0;
+  /// Distance of the opposite corner from the edge's line.
+  double Height = 0.0;
+};
+
+/// The view from an edge of the plane, from @a start to @a end, of the opposite corner. Differences of
+/// nearby coordinates being exact, this is accurate to a few ulp of each number, even for the short
+/// edge of a needle, where the triangle's own frame knows only the corners' places.
+inline EdgeView ViewFromEdge(const Vector2& start, const Vector2& end, const Vector2& opposite)
+{
+  const Vector2 edge = end - start;
+  const Vector2 other = opposite - start;
+  const double length = std::hypot(edge.x, edge.y);
+  return { length,
+    DifferenceOfProducts(edge.x / length, other.x / length, -edge.y / length, other.y / length),
+    std::abs(DifferenceOfProducts(edge.x / length, other.y, edge.y / length, other.x)) };
+}
+
+/// The views from the three edges: element k from the edge opposite corner k.
+using EdgeViews = std::array<EdgeView, 3>;
+
+inline EdgeViews ViewsFromEdges(const Vector2& a, const Vector2& b, const Vector2& c)
+{
+  return { ViewFromEdge(b, c, a), ViewFromEdge(c, a, b), ViewFromEdge(a, b, c) };
+}
+
+/// The same view with the edge run through in the opposite direction, as a triangle on the other
+/// side of the edge sees it.
+inline EdgeView Reversed(const EdgeView& view)
+{
+  return { view.Length, 1.0 - view.Foot, view.Height };
+}
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file LinearChart.h
+/// The Linear coordinate system: contours are straight from the centroid to the edge, and the
+/// homeomorphism is the piecewise linear one.
+
+#ifndef LinearChart_h
+#define LinearChart_h
+
+#include "CoordinateSystem.h"
+#include "Geometry.h"
+
+namespace homeomorphism
+{
+
+/// The chart of the Linear system: barycentric coordinates.
+class LinearChart
+{
+public:
+  using Reference = Barycentric;
+  using Direction = Barycentric;
+
+  explicit LinearChart(const TriangleShape& shape)
+    : Shape(shape)
+  {
+  }
+
+  Reference ToReference(const Vector2& point) const { return this->Shape.ToBarycentric(point); }
+  Vector2 ToPoint(const Reference& l) const { return this->Shape.FromBarycentric(l); }
+
+  Direction Pull(const Reference&, const Vector2& vector) const
+  {
+    return this->Shape.VectorToBarycentric(vector);
+  }
+  Vector2 Push(const Reference&, const Direction& direction) const
+  {
+    return this->Shape.FromBarycentric(direction);
+  }
+
+  /// e is the smallest barycentric coordinate (the first of equals), c = 1 - 3 l_e, and p is where
+  /// the ray from the centroid through the point meets the edge.
+  TriangularCoordinates ToCoordinates(const Reference& l) const
+  {
+    int edge = 0;
+    for (int k = 1; k < 3; ++k)
+    {
+      if (l[k] < l[edge])
+      {
+        edge = k;
+      }
+    }
+    const double towardsNext = l[NextCorner(edge)] - l[edge];
+    const double towardsPrevious = l[PreviousCorner(edge)] - l[edge];
+    const double c = towardsNext + towardsPrevious;
+    return { edge + 1, c > 0.0 ? towardsPrevious / c : 0.5, c < 1.0 ? c : 1.0 };
+  }
+
+  Reference FromCoordinates(const TriangularCoordinates& coordinates) const
+  {
+    const int edge = coordinates.Edge - 1;
+    const double p = coordinates.EdgeParameter;
+    const double c = coordinates.ContourParameter;
+    const double least = (1.0 - c) / 3.0;
+    Barycentric l;
+    l[edge] = least;
+    l[NextCorner(edge)] = least + c * (1.0 - p);
+    l[PreviousCorner(edge)] = least + c * p;
+    return l;
+  }
+
+private:
+  TriangleShape Shape;
+};
+
+} // namespace homeomorphism
+
+#endif

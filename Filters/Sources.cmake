@@ -1,0 +1,37 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# The files of the library, also used by the tests: the kernel's are compiled into KernelTests.
+# Paths are relative to this folder.
+
+# Pure mathematics: nothing of VTK may be included here.
+set(kernel_sources
+  Kernel/ContourChart.cxx
+  Kernel/ExactSign.cxx
+  Kernel/SmoothChart.cxx)
+set(kernel_headers
+  Kernel/ContourChart.h
+  Kernel/CoordinateSystem.h
+  Kernel/ExactSign.h
+  Kernel/Geometry.h
+  Kernel/LinearChart.h
+  Kernel/RootFinding.h
+  Kernel/SmoothChart.h)
+
+# From VTK's meshes to the kernel and back.
+set(mesh_sources
+)
+set(mesh_headers
+)
+
+# Which products and sums are fused into one rounding must not be the compiler's choice: results
+# would change from one machine to another.
+set(floating_point_options
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+
+# Only in a build of our own: inside VTK, VTK decides.
+set(warning_options)
+if (CMAKE_PROJECT_NAME STREQUAL "DifferentiableHomeomorphism")
+  set(warning_options
+    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>)
+endif ()
