@@ -20,9 +20,35 @@ set(kernel_headers
 
 # From VTK's meshes to the kernel and back.
 set(mesh_sources
-)
+  Mesh/ChartedTriangulation.cxx
+  Mesh/Embedding.cxx
+  Mesh/Homeomorphism.cxx
+  Mesh/HomeomorphismCache.cxx
+  Mesh/MeshProblem.cxx
+  Mesh/MeshValidation.cxx
+  Mesh/PointLocation.cxx
+  Mesh/Triangulation.cxx
+  Mesh/TriangulationPair.cxx)
 set(mesh_headers
-)
+  Mesh/BoxTree.h
+  Mesh/ChartedTriangulation.h
+  Mesh/Embedding.h
+  Mesh/Homeomorphism.h
+  Mesh/HomeomorphismCache.h
+  Mesh/MeshProblem.h
+  Mesh/MeshValidation.h
+  Mesh/PointLocation.h
+  Mesh/Triangulation.h
+  Mesh/TriangulationPair.h)
+
+# What the VTK classes share.
+set(support_sources
+  AttributeTransport.cxx
+  CoordinateLines.cxx)
+set(support_headers
+  AttributeTransport.h
+  CoordinateLines.h
+  FilterSupport.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results
 # would change from one machine to another.

@@ -1,13 +1,617 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
+
 #include "vtkDifferentiableHomeomorphism.h"
 
+#include "AttributeTransport.h"
+#include "FilterSupport.h"
+
+#include "vtkCell.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkSMPThreadLocalObject.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkDifferentiableHomeomorphism);
 
-//------------------------------------------------------------------------------
+class vtkDifferentiableHomeomorphism::Internals
+{
+public:
+  HomeomorphismCache Cache;
+  std::map<std::string, TransportRule> Transports;
+};
+
+namespace
+{
+
+/// Extent of a data set whose points form a grid without coordinates of their own; null otherwise.
+const int* GridExtent(vtkDataSet* data)
+{
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    return image->GetExtent();
+  }
+  auto* grid = vtkRectilinearGrid::SafeDownCast(data);
+  return grid ? grid->GetExtent() : nullptr;
+}
+
+/// Whether objects of a class become structured grids.
+bool BecomesStructuredGrid(vtkDataObject* data)
+{
+  return vtkImageData::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data);
+}
+
+vtkDataArray* CopyOfGhosts(vtkDataSetAttributes* attributes, vtkIdType tuples)
+{
+  const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  if (auto* current = vtkArrayDownCast<vtkUnsignedCharArray>(
+        attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())))
+  {
+    ghosts->DeepCopy(current);
+  }
+  else
+  {
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->SetNumberOfTuples(tuples);
+    ghosts->FillValue(0);
+  }
+  attributes->AddArray(ghosts);
+  return ghosts;
+}
+
+} // namespace
+
+/// Maps one data set.
+class vtkDifferentiableHomeomorphism::Mapping
+{
+public:
+  Mapping(vtkDifferentiableHomeomorphism* self, const Homeomorphism& map, vtkDataSet* input,
+    vtkPointSet* output)
+    : Self(self)
+    , Map(map)
+    , From(self->Inverse ? Side::Target : Side::Source)
+    , Input(input)
+    , Output(output)
+    , NumberOfPoints(input->GetNumberOfPoints())
+    , Mask(vtkSmartPointer<vtkUnsignedCharArray>::New())
+  {
+  }
+
+  void Run()
+  {
+    this->PassEverything();
+    const bool carriesPoints = this->CarriesAny(this->Input->GetPointData());
+    this->MapPoints(carriesPoints);
+    if (carriesPoints)
+    {
+      this->CarryArrays(
+        this->Input->GetPointData(), this->Output->GetPointData(), this->Jacobians);
+    }
+    if (this->CarriesAny(this->Input->GetCellData()))
+    {
+      this->CarryArrays(this->Input->GetCellData(), this->Output->GetCellData(),
+        this->ComputeCellJacobians());
+    }
+    this->AddPointArrays();
+    this->MarkOutside();
+  }
+
+private:
+  void PassEverything()
+  {
+    if (const int* extent = GridExtent(this->Input))
+    {
+      vtkStructuredGrid::SafeDownCast(this->Output)->SetExtent(const_cast<int*>(extent));
+      this->Output->GetPointData()->PassData(this->Input->GetPointData());
+      this->Output->GetCellData()->PassData(this->Input->GetCellData());
+      this->Output->GetFieldData()->PassData(this->Input->GetFieldData());
+    }
+    else
+    {
+      this->Output->ShallowCopy(this->Input);
+    }
+  }
+
+  vtkPoints* GetInputPoints() const
+  {
+    auto* pointSet = vtkPointSet::SafeDownCast(this->Input);
+    return pointSet ? pointSet->GetPoints() : nullptr;
+  }
+
+  double GetReach() const
+  {
+    vtkPoints* points = this->GetInputPoints();
+    return this->Map.GetReach(this->From, this->Self->Tolerance,
+      PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
+  }
+
+  static vtkSmartPointer<vtkDoubleArray> NewDoubles(
+    const char* name, int components, vtkIdType tuples)
+  {
+    auto array = vtkSmartPointer<vtkDoubleArray>::New();
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(tuples);
+    array->FillValue(vtkMath::Nan());
+    return array;
+  }
+
+  void MapPoints(bool needsJacobians)
+  {
+    vtkPoints* inPoints = this->GetInputPoints();
+    const vtkNew<vtkPoints> outPoints;
+    switch (this->Self->OutputPointsPrecision)
+    {
+      case vtkAlgorithm::SINGLE_PRECISION:
+        outPoints->SetDataTypeToFloat();
+        break;
+      case vtkAlgorithm::DOUBLE_PRECISION:
+        outPoints->SetDataTypeToDouble();
+        break;
+      default:
+        outPoints->SetDataType(
+          inPoints && inPoints->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
+    }
+    outPoints->SetNumberOfPoints(this->NumberOfPoints);
+    this->Mask->SetName("ValidPointMask");
+    this->Mask->SetNumberOfTuples(this->NumberOfPoints);
+    this->Mask->FillValue(0);
+    if (this->Self->ComputeTriangleId)
+    {
+      this->Triangles = vtkSmartPointer<vtkIdTypeArray>::New();
+      this->Triangles->SetName("TriangleId");
+      this->Triangles->SetNumberOfTuples(this->NumberOfPoints);
+      this->Triangles->FillValue(-1);
+    }
+    if (needsJacobians || this->Self->ComputeJacobian)
+    {
+      this->Jacobians = NewDoubles("Jacobian", 9, this->NumberOfPoints);
+    }
+    if (this->Self->ComputeJacobianDeterminant)
+    {
+      this->Determinants = NewDoubles("JacobianDeterminant", 1, this->NumberOfPoints);
+    }
+
+    const double reach = this->GetReach();
+    const vtkIdType done = RunInBlocks(
+      this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
+        TriangleIndex hint = -1;
+        for (vtkIdType i = begin; i < end; ++i)
+        {
+          double point[3];
+          this->Input->GetPoint(i, point);
+          const Location place = this->Map.Locate(this->From, point, reach, hint);
+          hint = place.Triangle;
+          if (place.Triangle >= 0)
+          {
+            this->Map.MapPoint(this->From, place, point);
+            this->Mask->SetValue(i, 1);
+            this->SetDerived(i, place);
+          }
+          outPoints->SetPoint(i, point);
+        }
+      });
+    // Aborted: what was not reached stays where it is, marked as outside.
+    for (vtkIdType i = done; i < this->NumberOfPoints; ++i)
+    {
+      outPoints->SetPoint(i, this->Input->GetPoint(i));
+    }
+    this->Output->SetPoints(outPoints);
+  }
+
+  void SetDerived(vtkIdType i, const Location& place)
+  {
+    if (this->Triangles)
+    {
+      this->Triangles->SetValue(
+        i, this->Map.GetPair().GetTriangulation().GetCellId(place.Triangle));
+    }
+    if (this->Jacobians || this->Determinants)
+    {
+      const Jacobian jacobian = this->Map.GetJacobian(this->From, place);
+      if (this->Jacobians)
+      {
+        std::copy(
+          jacobian.Matrix.begin(), jacobian.Matrix.end(), this->Jacobians->GetPointer(9 * i));
+      }
+      if (this->Determinants)
+      {
+        this->Determinants->SetValue(i, jacobian.Determinant);
+      }
+    }
+  }
+
+  /// The Jacobian at the mean of each cell's points.
+  vtkSmartPointer<vtkDoubleArray> ComputeCellJacobians()
+  {
+    const vtkIdType cells = this->Input->GetNumberOfCells();
+    const auto jacobians = NewDoubles("Jacobian", 9, cells);
+    if (cells > 0)
+    {
+      // Builds what GetCellPoints needs, before threads ask for it.
+      vtkNew<vtkIdList> first;
+      this->Input->GetCellPoints(0, first);
+    }
+    vtkSMPThreadLocalObject<vtkIdList> lists;
+    const double pointReach = this->GetReach();
+    const Embedding& embedding = this->Map.GetPair().GetEmbedding(this->From);
+    RunInBlocks(this->Self, cells, 0.9, 1.0, [&](vtkIdType begin, vtkIdType end) {
+      vtkIdList* ids = lists.Local();
+      TriangleIndex hint = -1;
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        this->Input->GetCellPoints(i, ids);
+        const vtkIdType count = ids->GetNumberOfIds();
+        double mean[3] = { 0.0, 0.0, 0.0 };
+        for (vtkIdType k = 0; k < count; ++k)
+        {
+          double point[3];
+          this->Input->GetPoint(ids->GetId(k), point);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            mean[axis] += point[axis] / static_cast<double>(count);
+          }
+        }
+        double reach = pointReach;
+        for (vtkIdType k = 0; k < count && !embedding.IsColumnar(); ++k)
+        {
+          // The mean of points on a surface lies off it, but no farther than they do from each other.
+          double point[3];
+          this->Input->GetPoint(ids->GetId(k), point);
+          reach = std::max(reach,
+            embedding.GetScale() * std::sqrt(vtkMath::Distance2BetweenPoints(mean, point)));
+        }
+        const Location place =
+          count > 0 ? this->Map.Locate(this->From, mean, reach, hint) : Location{};
+        hint = place.Triangle;
+        if (place.Triangle >= 0)
+        {
+          const Jacobian jacobian = this->Map.GetJacobian(this->From, place);
+          std::copy(
+            jacobian.Matrix.begin(), jacobian.Matrix.end(), jacobians->GetPointer(9 * i));
+        }
+      }
+    });
+    return jacobians;
+  }
+
+  TransportRule GetRule(vtkDataSetAttributes* attributes, vtkDataArray* array) const
+  {
+    const auto& named = this->Self->Internal->Transports;
+    const auto found = array->GetName() ? named.find(array->GetName()) : named.end();
+    if (found != named.end())
+    {
+      return found->second;
+    }
+    if (!this->Self->CarryVectors)
+    {
+      return TransportRule::None;
+    }
+    if (array == attributes->GetNormals())
+    {
+      return TransportRule::Normal;
+    }
+    if (array == attributes->GetVectors() || array == attributes->GetTensors())
+    {
+      return TransportRule::Tangent;
+    }
+    const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+    return this->Self->CarryAllVectors && real && array != attributes->GetTCoords() &&
+        array != attributes->GetScalars()
+      ? TransportRule::Tangent
+      : TransportRule::None;
+  }
+
+  bool CarriesAny(vtkDataSetAttributes* attributes) const
+  {
+    for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* array = attributes->GetArray(i);
+      if (array && this->GetRule(attributes, array) != TransportRule::None)
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void CarryArrays(
+    vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkDoubleArray* jacobians)
+  {
+    for (int i = 0; i < input->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* array = input->GetArray(i);
+      const vtkSmartPointer<vtkDataArray> carried =
+        array ? CarryArray(array, jacobians, this->GetRule(input, array)) : nullptr;
+      if (!carried)
+      {
+        continue;
+      }
+      // Replaces the array passed, and loses its role.
+      const int role = input->IsArrayAnAttribute(i);
+      if (carried->GetName())
+      {
+        output->AddArray(carried);
+      }
+      if (role >= 0)
+      {
+        output->SetAttribute(carried, role);
+      }
+    }
+  }
+
+  void AddPointArrays()
+  {
+    vtkPointData* pointData = this->Output->GetPointData();
+    pointData->AddArray(this->Mask);
+    if (this->Triangles)
+    {
+      pointData->AddArray(this->Triangles);
+    }
+    if (this->Self->ComputeJacobian)
+    {
+      pointData->AddArray(this->Jacobians);
+    }
+    if (this->Determinants)
+    {
+      pointData->AddArray(this->Determinants);
+    }
+  }
+
+  void MarkOutside()
+  {
+    vtkIdType inside = 0;
+    for (vtkIdType i = 0; i < this->NumberOfPoints; ++i)
+    {
+      inside += this->Mask->GetValue(i);
+    }
+    this->Self->NumberOfOutsidePoints += this->NumberOfPoints - inside;
+    if (!this->Self->BlankOutside || inside == this->NumberOfPoints)
+    {
+      return;
+    }
+    auto* pointGhosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+      CopyOfGhosts(this->Output->GetPointData(), this->NumberOfPoints));
+    const vtkIdType cells = this->Output->GetNumberOfCells();
+    auto* cellGhosts =
+      vtkArrayDownCast<vtkUnsignedCharArray>(CopyOfGhosts(this->Output->GetCellData(), cells));
+    for (vtkIdType i = 0; i < this->NumberOfPoints; ++i)
+    {
+      if (!this->Mask->GetValue(i))
+      {
+        pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
+      }
+    }
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < cells; ++cell)
+    {
+      this->Input->GetCellPoints(cell, ids);
+      if (std::any_of(ids->begin(), ids->end(),
+            [this](vtkIdType point) { return !this->Mask->GetValue(point); }))
+      {
+        cellGhosts->SetValue(
+          cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
+      }
+    }
+  }
+
+  vtkDifferentiableHomeomorphism* Self;
+  const Homeomorphism& Map;
+  Side From;
+  vtkDataSet* Input;
+  vtkPointSet* Output;
+  vtkIdType NumberOfPoints;
+  vtkSmartPointer<vtkUnsignedCharArray> Mask;
+  vtkSmartPointer<vtkIdTypeArray> Triangles;
+  vtkSmartPointer<vtkDoubleArray> Jacobians;
+  vtkSmartPointer<vtkDoubleArray> Determinants;
+};
+
+vtkDifferentiableHomeomorphism::vtkDifferentiableHomeomorphism()
+  : Internal(new Internals)
+{
+  this->SetNumberOfInputPorts(3);
+}
+
+vtkDifferentiableHomeomorphism::~vtkDifferentiableHomeomorphism() = default;
+
+void vtkDifferentiableHomeomorphism::SetSourceData(vtkPolyData* source)
+{
+  this->SetInputData(0, source);
+}
+
+void vtkDifferentiableHomeomorphism::SetTargetData(vtkPolyData* target)
+{
+  this->SetInputData(1, target);
+}
+
+void vtkDifferentiableHomeomorphism::SetArrayTransport(const char* name, int transport)
+{
+  if (!name || transport < NO_TRANSPORT || transport > NORMAL_TRANSPORT)
+  {
+    vtkErrorMacro(<< "SetArrayTransport takes an array's name and a transport from " << NO_TRANSPORT
+                  << " to " << NORMAL_TRANSPORT << ", not " << (name ? name : "(none)") << " and "
+                  << transport << ".");
+    return;
+  }
+  this->Internal->Transports[name] = static_cast<TransportRule>(transport);
+  this->Modified();
+}
+
+int vtkDifferentiableHomeomorphism::GetArrayTransport(const char* name)
+{
+  const auto found =
+    name ? this->Internal->Transports.find(name) : this->Internal->Transports.end();
+  return found == this->Internal->Transports.end() ? -1 : static_cast<int>(found->second);
+}
+
+void vtkDifferentiableHomeomorphism::ClearArrayTransports()
+{
+  if (!this->Internal->Transports.empty())
+  {
+    this->Internal->Transports.clear();
+    this->Modified();
+  }
+}
+
+vtkIdType vtkDifferentiableHomeomorphism::GetNumberOfMeshBuilds()
+{
+  return this->Internal->Cache.GetNumberOfBuilds();
+}
+
+int vtkDifferentiableHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port < 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    return 1;
+  }
+  AcceptDataSetsAndTrees(info);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkDifferentiableHomeomorphism::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+int vtkDifferentiableHomeomorphism::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
+  const char* type = "vtkPolyData";
+  if (data)
+  {
+    type = BecomesStructuredGrid(data) ? "vtkStructuredGrid" : data->GetClassName();
+  }
+  MakeOutputOfType(outputs->GetInformationObject(0), type);
+  return 1;
+}
+
+int vtkDifferentiableHomeomorphism::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  DescribeDataInOutput(
+    inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
+  return 1;
+}
+
+int vtkDifferentiableHomeomorphism::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  RequestWholeMesh(inputs[0]->GetInformationObject(0));
+  RequestWholeMesh(inputs[1]->GetInformationObject(0));
+  return 1;
+}
+
+int vtkDifferentiableHomeomorphism::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
+  vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
+  vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
+  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
+  this->NumberOfOutsidePoints = 0;
+
+  HomeomorphismOptions options;
+  options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
+  options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
+  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
+  options.DiscordantByLinear = this->DiscordantTriangles == CARRY_BY_LINEAR;
+  const std::shared_ptr<const Homeomorphism> map =
+    this->Internal->Cache.Get(source, target, options);
+  ReportProblems(this, this->Internal->Cache.GetProblems());
+  if (!map)
+  {
+    return 0;
+  }
+
+  if (!data)
+  {
+    data = this->Inverse ? target : source;
+  }
+  if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    ConvertLeaves(tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
+      vtkSmartPointer<vtkPointSet> result;
+      if (BecomesStructuredGrid(leaf))
+      {
+        result = vtkSmartPointer<vtkStructuredGrid>::New();
+      }
+      else
+      {
+        result.TakeReference(vtkPointSet::SafeDownCast(leaf->NewInstance()));
+      }
+      if (!result)
+      {
+        vtkWarningMacro(<< "A block of type " << leaf->GetClassName()
+                        << " has no points that can be moved; it is left out.");
+        return vtkSmartPointer<vtkDataSet>();
+      }
+      Mapping(this, *map, leaf, result).Run();
+      return vtkSmartPointer<vtkDataSet>(result);
+    });
+  }
+  else if (auto* result = vtkPointSet::SafeDownCast(output))
+  {
+    Mapping(this, *map, vtkDataSet::SafeDownCast(data), result).Run();
+  }
+  else
+  {
+    vtkErrorMacro(<< "Data of type " << data->GetClassName()
+                  << " has no points that can be moved: give a point set, an image, a rectilinear "
+                     "grid, or a tree of those.");
+    return 0;
+  }
+  this->UpdateProgress(1.0);
+  return 1;
+}
+
 void vtkDifferentiableHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
+  os << indent << "Inverse: " << this->Inverse << "\n";
+  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
+  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
+  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "ComputeTriangleId: " << this->ComputeTriangleId << "\n";
+  os << indent << "ComputeJacobian: " << this->ComputeJacobian << "\n";
+  os << indent << "ComputeJacobianDeterminant: " << this->ComputeJacobianDeterminant << "\n";
+  os << indent << "CarryVectors: " << this->CarryVectors << "\n";
+  os << indent << "CarryAllVectors: " << this->CarryAllVectors << "\n";
+  for (const auto& transport : this->Internal->Transports)
+  {
+    os << indent << "ArrayTransport of " << transport.first << ": "
+       << static_cast<int>(transport.second) << "\n";
+  }
+  os << indent << "BlankOutside: " << this->BlankOutside << "\n";
+  os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
 }

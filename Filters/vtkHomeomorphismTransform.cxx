@@ -1,50 +1,336 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
+
 #include "vtkHomeomorphismTransform.h"
 
+#include "AttributeTransport.h"
+#include "FilterSupport.h"
+
+#include "vtkDataArray.h"
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
+#include <cmath>
+
+using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkHomeomorphismTransform);
+vtkCxxSetObjectMacro(vtkHomeomorphismTransform, Source, vtkPolyData);
+vtkCxxSetObjectMacro(vtkHomeomorphismTransform, Target, vtkPolyData);
 
-//------------------------------------------------------------------------------
-void vtkHomeomorphismTransform::PrintSelf(ostream& os, vtkIndent indent)
+class vtkHomeomorphismTransform::Internals
 {
-  this->Superclass::PrintSelf(os, indent);
+public:
+  /// Maps a point; returns where it was found.
+  template <typename Real>
+  Location MapPoint(Side from, const Real in[3], Real out[3], TriangleIndex hint) const
+  {
+    const double point[3] = { in[0], in[1], in[2] };
+    double image[3] = { this->OutsideCoordinate, this->OutsideCoordinate,
+      this->OutsideCoordinate };
+    Location place;
+    if (this->Map)
+    {
+      place = this->Map->Locate(from, point, this->GetReach<Real>(from), hint);
+      if (place.Triangle >= 0)
+      {
+        this->Map->MapPoint(from, place, image);
+      }
+    }
+    std::transform(image, image + 3, out, [](double x) { return static_cast<Real>(x); });
+    return place;
+  }
+
+  /// The derivative of the map from @a from at a place; NaN outside.
+  void GetDerivative(Side from, const Location& place, double derivative[3][3]) const
+  {
+    if (place.Triangle < 0)
+    {
+      std::fill_n(&derivative[0][0], 9, vtkMath::Nan());
+      return;
+    }
+    const Jacobian jacobian = this->Map->GetJacobian(from, place);
+    std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), &derivative[0][0]);
+  }
+
+  /// A point's image and the derivative there of the forward map, also if it goes backward.
+  template <typename Real>
+  void MapWithForwardDerivative(
+    Side from, const Real in[3], Real out[3], Real derivative[3][3]) const
+  {
+    double matrix[3][3];
+    this->GetDerivative(from, this->MapPoint(from, in, out, -1), matrix);
+    if (from == Side::Target)
+    {
+      vtkMath::Invert3x3(matrix, matrix);
+    }
+    std::transform(&matrix[0][0], &matrix[0][0] + 9, &derivative[0][0],
+      [](double x) { return static_cast<Real>(x); });
+  }
+
+  template <typename Real>
+  double GetReach(Side from) const
+  {
+    return this->Map->GetReach(
+      from, this->Tolerance, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
+  }
+
+  HomeomorphismCache Cache;
+  std::shared_ptr<const Homeomorphism> Map;
+  double Tolerance = 0.0;
+  double OutsideCoordinate = 1e30;
+};
+
+vtkHomeomorphismTransform::vtkHomeomorphismTransform()
+  : Internal(new Internals)
+{
 }
 
-//------------------------------------------------------------------------------
+vtkHomeomorphismTransform::~vtkHomeomorphismTransform()
+{
+  this->SetSource(nullptr);
+  this->SetTarget(nullptr);
+}
+
 vtkAbstractTransform* vtkHomeomorphismTransform::MakeTransform()
 {
   return vtkHomeomorphismTransform::New();
 }
 
-//------------------------------------------------------------------------------
+vtkMTimeType vtkHomeomorphismTransform::GetMTime()
+{
+  vtkMTimeType time = this->Superclass::GetMTime();
+  for (vtkPolyData* mesh : { this->Source, this->Target })
+  {
+    time = mesh ? std::max(time, mesh->GetMTime()) : time;
+  }
+  return time;
+}
+
+void vtkHomeomorphismTransform::InternalUpdate()
+{
+  this->Internal->Map.reset();
+  this->Internal->Tolerance = this->Tolerance;
+  this->Internal->OutsideCoordinate = 1e30;
+  if (!this->Source || !this->Target)
+  {
+    vtkErrorMacro(<< "The " << (this->Source ? "target" : "source")
+                  << " mesh is not set (SetSource, SetTarget): every point counts as outside.");
+    return;
+  }
+  HomeomorphismOptions options;
+  options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
+  options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
+  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
+  options.DiscordantByLinear = this->DiscordantTriangles == CARRY_BY_LINEAR;
+  const auto map = this->Internal->Cache.Get(this->Source, this->Target, options);
+  ReportProblems(this, this->Internal->Cache.GetProblems());
+  if (!map)
+  {
+    return;
+  }
+  for (const Side side : { Side::Source, Side::Target })
+  {
+    const Embedding& embedding = map->GetPair().GetEmbedding(side);
+    if (!embedding.IsPlanar())
+    {
+      vtkErrorMacro(<< "The points of the " << (side == Side::Source ? "source" : "target")
+                    << " mesh do not lie in a plane, so the map is not one of space: every point "
+                       "counts as outside. Use vtkDifferentiableHomeomorphism for surfaces.");
+      return;
+    }
+    this->Internal->OutsideCoordinate = std::max(this->Internal->OutsideCoordinate,
+      1e3 * embedding.GetLargestCoordinate() / embedding.GetScale());
+  }
+  this->Internal->Map = map;
+}
+
+void vtkHomeomorphismTransform::InternalDeepCopy(vtkAbstractTransform* transform)
+{
+  auto* other = static_cast<vtkHomeomorphismTransform*>(transform);
+  this->SetInverseTolerance(other->InverseTolerance);
+  this->SetInverseIterations(other->InverseIterations);
+  this->SetSource(other->Source);
+  this->SetTarget(other->Target);
+  this->SetCoordinateSystem(other->CoordinateSystem);
+  this->SetCenterPoint(other->CenterPoint);
+  this->SetDiscordantTriangles(other->DiscordantTriangles);
+  this->SetMaskInvalidTriangles(other->MaskInvalidTriangles);
+  this->SetTolerance(other->Tolerance);
+  this->Internal->Cache = other->Internal->Cache;
+  if (this->InverseFlag != other->InverseFlag)
+  {
+    this->InverseFlag = other->InverseFlag;
+    this->Modified();
+  }
+}
+
+bool vtkHomeomorphismTransform::IsInside(const double point[3])
+{
+  this->Update();
+  double image[3];
+  return this->Internal
+           ->MapPoint(this->InverseFlag ? Side::Target : Side::Source, point, image, -1)
+           .Triangle >= 0;
+}
+
+double vtkHomeomorphismTransform::GetOutsideCoordinate()
+{
+  this->Update();
+  return this->Internal->OutsideCoordinate;
+}
+
+void vtkHomeomorphismTransform::TransformPoints(vtkPoints* inPts, vtkPoints* outPts)
+{
+  this->TransformPointsNormalsVectors(
+    inPts, outPts, nullptr, nullptr, nullptr, nullptr, 0, nullptr, nullptr);
+}
+
+void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
+  vtkPoints* outPts, vtkDataArray* inNms, vtkDataArray* outNms, vtkDataArray* inVrs,
+  vtkDataArray* outVrs, int nOptionalVectors, vtkDataArray** inVrsArr, vtkDataArray** outVrsArr)
+{
+  this->Update();
+  // VTK appends the results to what the outputs hold already.
+  const vtkIdType count = inPts->GetNumberOfPoints();
+  const vtkIdType firstPoint = outPts->GetNumberOfPoints();
+  outPts->Resize(firstPoint + count);
+  outPts->SetNumberOfPoints(firstPoint + count);
+
+  struct Carried
+  {
+    vtkDataArray* In;
+    vtkDataArray* Out;
+    bool Normals;
+    vtkIdType First;
+  };
+  std::vector<Carried> carried;
+  const auto add = [&carried, count](vtkDataArray* in, vtkDataArray* out, bool normals) {
+    if (in && out)
+    {
+      carried.push_back({ in, out, normals, out->GetNumberOfTuples() });
+      out->SetNumberOfComponents(3);
+      out->Resize(carried.back().First + count);
+      out->SetNumberOfTuples(carried.back().First + count);
+    }
+  };
+  add(inNms, outNms, true);
+  add(inVrs, outVrs, false);
+  for (int i = 0; i < nOptionalVectors; ++i)
+  {
+    add(inVrsArr[i], outVrsArr[i], false);
+  }
+
+  const Internals& internals = *this->Internal;
+  const Side from = this->InverseFlag ? Side::Target : Side::Source;
+  const bool isFloat = inPts->GetDataType() == VTK_FLOAT;
+  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+    TriangleIndex hint = -1;
+    for (vtkIdType i = begin; i < end; ++i)
+    {
+      double point[3];
+      double image[3];
+      inPts->GetPoint(i, point);
+      Location place;
+      if (isFloat)
+      {
+        // Coordinates stored as float are rounded as such, and count as inside accordingly.
+        const float floatPoint[3] = { static_cast<float>(point[0]), static_cast<float>(point[1]),
+          static_cast<float>(point[2]) };
+        float ignored[3];
+        place = internals.MapPoint(from, floatPoint, ignored, hint);
+        std::fill_n(image, 3, internals.OutsideCoordinate);
+        if (place.Triangle >= 0)
+        {
+          internals.Map->MapPoint(from, place, image);
+        }
+      }
+      else
+      {
+        place = internals.MapPoint(from, point, image, hint);
+      }
+      hint = place.Triangle;
+      outPts->SetPoint(firstPoint + i, image);
+      if (carried.empty())
+      {
+        continue;
+      }
+      double derivative[3][3];
+      internals.GetDerivative(from, place, derivative);
+      const TensorTransport transport(&derivative[0][0]);
+      for (const Carried& array : carried)
+      {
+        double vector[3];
+        array.In->GetTuple(i, vector);
+        if (array.Normals)
+        {
+          transport.CarryNormal(vector);
+        }
+        else
+        {
+          transport.CarryTangent(vector);
+        }
+        array.Out->SetTuple(array.First + i, vector);
+      }
+    }
+  });
+}
+
 void vtkHomeomorphismTransform::ForwardTransformPoint(const float in[3], float out[3])
 {
-  std::copy_n(in, 3, out);
+  this->Internal->MapPoint(Side::Source, in, out, -1);
 }
 
-//------------------------------------------------------------------------------
 void vtkHomeomorphismTransform::ForwardTransformPoint(const double in[3], double out[3])
 {
-  std::copy_n(in, 3, out);
+  this->Internal->MapPoint(Side::Source, in, out, -1);
 }
 
-//------------------------------------------------------------------------------
 void vtkHomeomorphismTransform::ForwardTransformDerivative(
   const float in[3], float out[3], float derivative[3][3])
 {
-  this->ForwardTransformPoint(in, out);
-  vtkMath::Identity3x3(derivative);
+  this->Internal->MapWithForwardDerivative(Side::Source, in, out, derivative);
 }
 
-//------------------------------------------------------------------------------
 void vtkHomeomorphismTransform::ForwardTransformDerivative(
   const double in[3], double out[3], double derivative[3][3])
 {
-  this->ForwardTransformPoint(in, out);
-  vtkMath::Identity3x3(derivative);
+  this->Internal->MapWithForwardDerivative(Side::Source, in, out, derivative);
+}
+
+void vtkHomeomorphismTransform::InverseTransformPoint(const float in[3], float out[3])
+{
+  this->Internal->MapPoint(Side::Target, in, out, -1);
+}
+
+void vtkHomeomorphismTransform::InverseTransformPoint(const double in[3], double out[3])
+{
+  this->Internal->MapPoint(Side::Target, in, out, -1);
+}
+
+void vtkHomeomorphismTransform::InverseTransformDerivative(
+  const float in[3], float out[3], float derivative[3][3])
+{
+  this->Internal->MapWithForwardDerivative(Side::Target, in, out, derivative);
+}
+
+void vtkHomeomorphismTransform::InverseTransformDerivative(
+  const double in[3], double out[3], double derivative[3][3])
+{
+  this->Internal->MapWithForwardDerivative(Side::Target, in, out, derivative);
+}
+
+void vtkHomeomorphismTransform::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Source: " << this->Source << "\n";
+  os << indent << "Target: " << this->Target << "\n";
+  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
+  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
+  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
+  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
 }

@@ -1,13 +1,341 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
+
 #include "vtkTriangularCoordinates.h"
 
+#include "CoordinateLines.h"
+#include "FilterSupport.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkTriangularCoordinates);
 
-//------------------------------------------------------------------------------
+class vtkTriangularCoordinates::Internals
+{
+public:
+  HomeomorphismCache Cache;
+};
+
+namespace
+{
+
+template <typename ArrayType>
+vtkSmartPointer<ArrayType> NewArray(
+  const char* name, vtkIdType tuples, int components = 1)
+{
+  auto array = vtkSmartPointer<ArrayType>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  return array;
+}
+
+/// Point arrays of the coordinates of a data set's points.
+class PointCoordinates
+{
+public:
+  explicit PointCoordinates(vtkIdType points)
+    : Triangle(NewArray<vtkIdTypeArray>("TriangleId", points))
+    , Edge(NewArray<vtkIntArray>("EdgeLabel", points))
+    , EdgeParameter(NewArray<vtkDoubleArray>("EdgeParameter", points))
+    , ContourParameter(NewArray<vtkDoubleArray>("ContourParameter", points))
+    , Mask(NewArray<vtkUnsignedCharArray>("ValidPointMask", points))
+  {
+    this->Triangle->FillValue(-1);
+    this->Edge->FillValue(0);
+    this->EdgeParameter->FillValue(vtkMath::Nan());
+    this->ContourParameter->FillValue(vtkMath::Nan());
+    this->Mask->FillValue(0);
+  }
+
+  void Set(vtkIdType point, vtkIdType triangle, const TriangularCoordinates& coordinates)
+  {
+    this->Triangle->SetValue(point, triangle);
+    this->Edge->SetValue(point, coordinates.Edge);
+    this->EdgeParameter->SetValue(point, coordinates.EdgeParameter);
+    this->ContourParameter->SetValue(point, coordinates.ContourParameter);
+    this->Mask->SetValue(point, 1);
+  }
+
+  vtkIdType CountOutside() const
+  {
+    vtkIdType inside = 0;
+    for (vtkIdType i = 0; i < this->Mask->GetNumberOfValues(); ++i)
+    {
+      inside += this->Mask->GetValue(i);
+    }
+    return this->Mask->GetNumberOfValues() - inside;
+  }
+
+  void AddTo(vtkPointData* pointData) const
+  {
+    pointData->AddArray(this->Triangle);
+    pointData->AddArray(this->Edge);
+    pointData->AddArray(this->EdgeParameter);
+    pointData->AddArray(this->ContourParameter);
+    pointData->AddArray(this->Mask);
+  }
+
+private:
+  vtkSmartPointer<vtkIdTypeArray> Triangle;
+  vtkSmartPointer<vtkIntArray> Edge;
+  vtkSmartPointer<vtkDoubleArray> EdgeParameter;
+  vtkSmartPointer<vtkDoubleArray> ContourParameter;
+  vtkSmartPointer<vtkUnsignedCharArray> Mask;
+};
+
+/// The angle at the corner opposite the shortest edge, in degrees.
+double SmallestAngle(const EdgeViews& views)
+{
+  int shortest = 0;
+  for (int k = 1; k < 3; ++k)
+  {
+    shortest = views[k].Length < views[shortest].Length ? k : shortest;
+  }
+  // Seen from another edge: its opposite corner's height over the foot's distance.
+  const EdgeView& beside = views[PreviousCorner(shortest)];
+  // That edge runs from the corner after it, which is the one opposite the shortest edge.
+  return vtkMath::DegreesFromRadians(
+    std::atan2(beside.Height, beside.Foot * beside.Length));
+}
+
+/// The least distance of a foot of the centroid from an end of its edge, over the edge's length.
+double ConcordanceMargin(const EdgeViews& views)
+{
+  double margin = 1.0;
+  for (const EdgeView& view : views)
+  {
+    const double foot = (1.0 + view.Foot) / 3.0;
+    margin = std::min({ margin, foot, 1.0 - foot });
+  }
+  return margin;
+}
+
+/// Cell arrays that tell about each triangle. Returns the number of discordant ones.
+vtkIdType DescribeTriangles(const Homeomorphism& map, vtkPolyData* triangulation)
+{
+  const vtkIdType cells = triangulation->GetNumberOfCells();
+  const auto concordant = NewArray<vtkUnsignedCharArray>("Concordant", cells);
+  const auto margin = NewArray<vtkDoubleArray>("ConcordanceMargin", cells);
+  const auto used = NewArray<vtkIntArray>("UsedCoordinateSystem", cells);
+  const auto angle = NewArray<vtkDoubleArray>("SmallestAngle", cells);
+  const auto width = NewArray<vtkDoubleArray>("StripWidth", cells, 3);
+  const auto bound = NewArray<vtkDoubleArray>("DeterminantBound", cells);
+  concordant->FillValue(0);
+  margin->FillValue(vtkMath::Nan());
+  used->FillValue(-1);
+  angle->FillValue(vtkMath::Nan());
+  width->FillValue(vtkMath::Nan());
+  bound->FillValue(vtkMath::Nan());
+
+  const Triangulation& topology = map.GetPair().GetTriangulation();
+  const Embedding& embedding = map.GetPair().GetEmbedding(Side::Source);
+  vtkSMPTools::For(0, topology.GetNumberOfTriangles(), [&](vtkIdType begin, vtkIdType end) {
+    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+    {
+      if (topology.IsMasked(t))
+      {
+        continue;
+      }
+      const vtkIdType cell = topology.GetCellId(t);
+      const EdgeViews views = embedding.GetViews(topology.GetCorners(t));
+      concordant->SetValue(cell, embedding.IsConcordant(topology.GetCorners(t)) ? 1 : 0);
+      margin->SetValue(cell, ConcordanceMargin(views));
+      used->SetValue(cell, static_cast<int>(map.GetCharts(Side::Source).GetSystemOf(t)));
+      angle->SetValue(cell, SmallestAngle(views));
+      const SmoothChart smooth(
+        embedding.GetShape(t), views, UnfoldNeighbors(topology, embedding, t));
+      bound->SetValue(cell, smooth.DeterminantBound());
+      for (int k = 0; k < 3; ++k)
+      {
+        width->SetTypedComponent(cell, k, smooth.StripWidth(k));
+      }
+    }
+  });
+  vtkIdType discordant = 0;
+  for (TriangleIndex t = 0; t < topology.GetNumberOfTriangles(); ++t)
+  {
+    discordant += !topology.IsMasked(t) && concordant->GetValue(topology.GetCellId(t)) == 0;
+  }
+  for (vtkDataArray* array :
+    std::initializer_list<vtkDataArray*>{ concordant, margin, used, angle, width, bound })
+  {
+    triangulation->GetCellData()->AddArray(array);
+  }
+  return discordant;
+}
+
+} // namespace
+
+vtkTriangularCoordinates::vtkTriangularCoordinates()
+  : Internal(new Internals)
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(3);
+}
+
+vtkTriangularCoordinates::~vtkTriangularCoordinates() = default;
+
+int vtkTriangularCoordinates::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    return 1;
+  }
+  AcceptDataSetsAndTrees(info);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkTriangularCoordinates::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkPolyData");
+  return 1;
+}
+
+int vtkTriangularCoordinates::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* data = vtkDataObject::GetData(inputs[1]);
+  MakeOutputOfType(
+    outputs->GetInformationObject(0), data ? data->GetClassName() : "vtkPolyData");
+  MakeOutputOfType(outputs->GetInformationObject(1), "vtkPolyData");
+  MakeOutputOfType(outputs->GetInformationObject(2), "vtkPolyData");
+  return 1;
+}
+
+int vtkTriangularCoordinates::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  DescribeDataInOutput(
+    inputs[1]->GetInformationObject(0), outputs->GetInformationObject(0));
+  return 1;
+}
+
+int vtkTriangularCoordinates::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  RequestWholeMesh(inputs[0]->GetInformationObject(0));
+  return 1;
+}
+
+int vtkTriangularCoordinates::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* triangulation = vtkPolyData::GetData(inputs[0]);
+  vtkDataObject* data = vtkDataObject::GetData(inputs[1]);
+  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
+  vtkPolyData* lines = vtkPolyData::GetData(outputs, 1);
+  vtkPolyData* described = vtkPolyData::GetData(outputs, 2);
+  this->NumberOfOutsidePoints = 0;
+  this->NumberOfDiscordantTriangles = 0;
+
+  HomeomorphismOptions options;
+  options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
+  options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
+  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
+  options.DiscordantByLinear = this->DiscordantTriangles == CARRY_BY_LINEAR;
+  const std::shared_ptr<const Homeomorphism> map =
+    this->Internal->Cache.Get(triangulation, nullptr, options);
+  ReportProblems(this, this->Internal->Cache.GetProblems());
+  if (!map)
+  {
+    return 0;
+  }
+
+  described->ShallowCopy(triangulation);
+  this->NumberOfDiscordantTriangles = DescribeTriangles(*map, described);
+  if (this->GenerateLines)
+  {
+    MakeCoordinateLines(
+      *map, { this->NumberOfContours, this->NumberOfRings, this->LineResolution }, lines);
+  }
+
+  const auto addCoordinates = [this, &map](vtkDataSet* input, vtkDataSet* result) {
+    result->ShallowCopy(input);
+    const vtkIdType count = input->GetNumberOfPoints();
+    PointCoordinates coordinates(count);
+    auto* points = vtkPointSet::SafeDownCast(input);
+    const double reach = map->GetReach(Side::Source, this->Tolerance,
+      PrecisionOfType(
+        points && points->GetPoints() ? points->GetPoints()->GetDataType() : VTK_DOUBLE));
+    RunInBlocks(this, count, 0.1, 1.0, [&](vtkIdType begin, vtkIdType end) {
+      TriangleIndex hint = -1;
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        double point[3];
+        input->GetPoint(i, point);
+        const Location place = map->Locate(Side::Source, point, reach, hint);
+        hint = place.Triangle;
+        if (place.Triangle >= 0)
+        {
+          coordinates.Set(i, map->GetPair().GetTriangulation().GetCellId(place.Triangle),
+            map->GetCoordinates(Side::Source, place));
+        }
+      }
+    });
+    coordinates.AddTo(result->GetPointData());
+    this->NumberOfOutsidePoints += coordinates.CountOutside();
+  };
+
+  if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    ConvertLeaves(tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
+      const auto result = vtkSmartPointer<vtkDataSet>::Take(leaf->NewInstance());
+      addCoordinates(leaf, result);
+      return result;
+    });
+  }
+  else
+  {
+    // Without data of its own, the triangulation gets the coordinates on top of its cell arrays.
+    addCoordinates(
+      data ? vtkDataSet::SafeDownCast(data) : described, vtkDataSet::SafeDownCast(output));
+  }
+  this->UpdateProgress(1.0);
+  return 1;
+}
+
+vtkPolyData* vtkTriangularCoordinates::GetLines()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
+}
+
+vtkPolyData* vtkTriangularCoordinates::GetTriangulation()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(2));
+}
+
 void vtkTriangularCoordinates::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
+  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
+  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
+  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "GenerateLines: " << this->GenerateLines << "\n";
+  os << indent << "NumberOfContours: " << this->NumberOfContours << "\n";
+  os << indent << "NumberOfRings: " << this->NumberOfRings << "\n";
+  os << indent << "LineResolution: " << this->LineResolution << "\n";
+  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
+  os << indent << "NumberOfDiscordantTriangles: " << this->NumberOfDiscordantTriangles << "\n";
 }

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file FilterSupport.h
+/// What the module's filters have in common: telling users of defects, running over points in
+/// parallel, and going through composite data sets.
+
+#ifndef FilterSupport_h
+#define FilterSupport_h
+
+#include "Mesh/HomeomorphismCache.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObject.h"
+#include "vtkDataObjectTypes.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkObject.h"
+#include "vtkSMPTools.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace homeomorphism
+{
+
+/// The defects as one text, one to a line.
+inline std::string DescribeProblems(const MeshProblems& problems, bool refused)
+{
+  std::string text;
+  for (const MeshProblem& problem : problems)
+  {
+    if ((problem.Result == MeshProblem::Outcome::Refused) == refused)
+    {
+      text += (text.empty() ? "" : "\n") + problem.Message();
+    }
+  }
+  return text;
+}
+
+/// Errors for what made the meshes be refused, warnings for what was masked or replaced.
+inline void ReportProblems(vtkObject* self, const MeshProblems& problems)
+{
+  const std::string errors = DescribeProblems(problems, true);
+  const std::string warnings = DescribeProblems(problems, false);
+  if (!errors.empty())
+  {
+    vtkErrorWithObjectMacro(self, << errors);
+  }
+  if (!warnings.empty())
+  {
+    vtkWarningWithObjectMacro(self, << warnings);
+  }
+}
+
+/// The relative rounding error of coordinates of a VTK type.
+inline double PrecisionOfType(int dataType)
+{
+  return 0.5 *
+    (dataType == VTK_FLOAT ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                           : std::numeric_limits<double>::epsilon());
+}
+
+/// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
+/// and a request to abort is honoured. Returns the number of items done: less than count only if
+/// aborted.
+template <typename Work>
+vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
+  double progressEnd, Work&& work)
+{
+  constexpr vtkIdType blockSize = 1 << 18;
+  for (vtkIdType begin = 0; begin < count; begin += blockSize)
+  {
+    self->UpdateProgress(progressBegin +
+      (progressEnd - progressBegin) * static_cast<double>(begin) / static_cast<double>(count));
+    if (self->GetAbortExecute())
+    {
+      return begin;
+    }
+    vtkSMPTools::For(begin, std::min(count, begin + blockSize), work);
+  }
+  return count;
+}
+
+/// Whether the algorithm's input may be a data set or a tree of them. The type of trees comes first:
+/// executives that iterate over composite inputs on behalf of simple filters look only at it.
+inline void AcceptDataSetsAndTrees(vtkInformation* info)
+{
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+}
+
+/// Of a filter whose other inputs are meshes: lets the information of the data's port, if there is
+/// data, describe the output (extent and time steps, which by default come from port 0).
+inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outInfo)
+{
+  if (!dataInfo)
+  {
+    return;
+  }
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const auto copy = [dataInfo, outInfo](auto* key) {
+    if (dataInfo->Has(key))
+    {
+      outInfo->CopyEntry(dataInfo, key);
+    }
+  };
+  copy(Pipeline::WHOLE_EXTENT());
+  copy(Pipeline::TIME_STEPS());
+  copy(Pipeline::TIME_RANGE());
+  outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+}
+
+/// Asks for a mesh as a whole, whatever piece of the data is asked for.
+inline void RequestWholeMesh(vtkInformation* meshInfo)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (meshInfo)
+  {
+    meshInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+    meshInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    meshInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
+}
+
+/// Puts a new object of a data set's or tree's own type into an output, unless one is there.
+inline void MakeOutputOfType(vtkInformation* outInfo, const char* type)
+{
+  vtkDataObject* current = vtkDataObject::GetData(outInfo);
+  if (!current || std::string(current->GetClassName()) != type)
+  {
+    const auto output =
+      vtkSmartPointer<vtkDataObject>::Take(vtkDataObjectTypes::NewDataObject(type));
+    outInfo->Set(vtkDataObject::DATA_OBJECT(), output);
+  }
+}
+
+/// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input.
+template <typename Convert>
+void ConvertLeaves(vtkCompositeDataSet* input, vtkCompositeDataSet* output, Convert&& convert)
+{
+  output->CopyStructure(input);
+  const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(input->NewIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    if (auto* leaf = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
+    {
+      const vtkSmartPointer<vtkDataSet> converted = convert(leaf);
+      output->SetDataSet(iterator, converted);
+    }
+  }
+}
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file ChartedTriangulation.h
+/// The charts that a coordinate system gives to the triangles of one mesh.
+
+#ifndef ChartedTriangulation_h
+#define ChartedTriangulation_h
+
+#include "Embedding.h"
+#include "Triangulation.h"
+
+#include "Kernel/ContourChart.h"
+#include "Kernel/CoordinateSystem.h"
+#include "Kernel/LinearChart.h"
+#include "Kernel/SmoothChart.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Neighbours of a triangle, unfolded about its edges into its plane.
+std::array<Neighbor, 3> UnfoldNeighbors(
+  const Triangulation& triangulation, const Embedding& embedding, TriangleIndex triangle);
+
+/// Triangles, masked ones excepted, that are not concordant in an embedding.
+std::vector<TriangleIndex> FindDiscordant(
+  const Triangulation& triangulation, const Embedding& embedding);
+
+/// Charts of all triangles of one embedding. Immutable; any number of threads may use it.
+class ChartedTriangulation
+{
+public:
+  /// Refers to the embedding, which must outlive it. @a carriedByLinear says for which triangles the
+  /// Linear system stands in (empty: for none); it must be the same in both meshes of a pair.
+  ChartedTriangulation(const Triangulation& triangulation, const Embedding& embedding,
+    CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> carriedByLinear);
+
+  const Embedding& GetEmbedding() const { return this->Geometry; }
+  CoordinateSystem GetSystem() const { return this->System; }
+
+  /// The system that a triangle's chart belongs to.
+  CoordinateSystem GetSystemOf(TriangleIndex triangle) const
+  {
+    return this->System == CoordinateSystem::Contour && !this->CarriedByLinear.empty() &&
+        this->CarriedByLinear[triangle]
+      ? CoordinateSystem::Linear
+      : this->System;
+  }
+
+  LinearChart GetLinearChart(TriangleIndex triangle) const
+  {
+    return LinearChart(this->Geometry.GetShape(triangle));
+  }
+  const ContourChart& GetContourChart(TriangleIndex triangle) const
+  {
+    return this->ContourCharts[triangle];
+  }
+  const SmoothChart& GetSmoothChart(TriangleIndex triangle) const
+  {
+    return this->SmoothCharts[triangle];
+  }
+
+  /// Calls visit(chart) with the triangle's chart, whatever its type, and returns what it returns.
+  template <typename Visit>
+  auto VisitChart(TriangleIndex triangle, Visit&& visit) const
+  {
+    switch (this->GetSystemOf(triangle))
+    {
+      case CoordinateSystem::Contour:
+        return visit(this->GetContourChart(triangle));
+      case CoordinateSystem::Smooth:
+        return visit(this->GetSmoothChart(triangle));
+      default:
+        return visit(this->GetLinearChart(triangle));
+    }
+  }
+
+  /// Triangular coordinates of a point of a triangle's frame, and back.
+  TriangularCoordinates ToCoordinates(TriangleIndex triangle, const Vector2& point) const;
+  Vector2 FromCoordinates(
+    TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
+
+private:
+  const Embedding& Geometry;
+  CoordinateSystem System;
+  std::vector<std::uint8_t> CarriedByLinear;
+  std::vector<ContourChart> ContourCharts;
+  std::vector<SmoothChart> SmoothCharts;
+};
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,457 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Embedding.h"
+
+#include "Kernel/ExactSign.h"
+
+#include "vtkPoints.h"
+#include "vtkSMPTools.h"
+#include "vtkType.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace homeomorphism
+{
+namespace
+{
+
+Vector3 Difference(const Vector3& a, const Vector3& b)
+{
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+}
+
+double Dot3(const Vector3& a, const Vector3& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Accurate in each component, so that a needle's normal is as good as any.
+Vector3 Cross3(const Vector3& a, const Vector3& b)
+{
+  return { DifferenceOfProducts(a[1], b[2], a[2], b[1]),
+    DifferenceOfProducts(a[2], b[0], a[0], b[2]), DifferenceOfProducts(a[0], b[1], a[1], b[0]) };
+}
+
+double Length(const Vector3& a)
+{
+  return std::hypot(a[0], a[1], a[2]);
+}
+
+Vector3 Scaled(const Vector3& a, double factor)
+{
+  return { a[0] * factor, a[1] * factor, a[2] * factor };
+}
+
+EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vector3& opposite)
+{
+  const Vector3 edge = Difference(end, start);
+  const Vector3 other = Difference(opposite, start);
+  const double length = Length(edge);
+  const Vector3 tangent = Scaled(edge, 1.0 / length);
+  return { length, Dot3(tangent, other) / length, Length(Cross3(tangent, other)) };
+}
+
+/// The corner opposite the longest edge; the first of equals.
+int FindApex(const EdgeViews& views)
+{
+  int apex = 0;
+  for (int k = 1; k < 3; ++k)
+  {
+    if (views[k].Length > views[apex].Length)
+    {
+      apex = k;
+    }
+  }
+  return apex;
+}
+
+TriangleShape MakeShape(const EdgeViews& views, int apex)
+{
+  const EdgeView& base = views[apex];
+  TriangleShape shape;
+  shape.Apex = apex;
+  shape.Base = base.Length;
+  shape.ApexX = std::min(base.Length, std::max(0.0, base.Foot * base.Length));
+  shape.Height = base.Height;
+  return shape;
+}
+
+} // namespace
+
+Embedding::Embedding(vtkPoints* points, const Triangulation& triangulation)
+{
+  const vtkIdType count = points->GetNumberOfPoints();
+  std::vector<std::uint8_t> used(count, 0);
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    for (const std::int32_t corner : triangulation.GetCorners(t))
+    {
+      used[corner] = triangulation.IsMasked(t) ? used[corner] : 1;
+    }
+  }
+  this->CoordinatePrecision = 0.5 *
+    (points->GetDataType() == VTK_FLOAT
+        ? static_cast<double>(std::numeric_limits<float>::epsilon())
+        : std::numeric_limits<double>::epsilon());
+
+  // A point with a coordinate that is not finite counts neither for the scale nor for the plane; the
+  // triangles that use it are found by IsFinite.
+  std::vector<Vector3> positions(count, Vector3{});
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (!used[i])
+    {
+      continue;
+    }
+    points->GetPoint(i, positions[i].data());
+    const Vector3& p = positions[i];
+    if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+    {
+      used[i] = 0;
+      continue;
+    }
+    largest = std::max({ largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
+  }
+  if (largest > 0.0)
+  {
+    // Clamped so that Scale and its reciprocal are both normal numbers.
+    const int exponent = std::max(-1021, std::min(1021, std::ilogb(largest)));
+    this->Scale = std::ldexp(1.0, -exponent);
+  }
+  Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
+  Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    positions[i] = Scaled(positions[i], this->Scale);
+    for (int axis = 0; axis < 3 && used[i]; ++axis)
+    {
+      least[axis] = std::min(least[axis], positions[i][axis]);
+      greatest[axis] = std::max(greatest[axis], positions[i][axis]);
+    }
+  }
+  this->LargestCoordinate = largest * this->Scale;
+  this->Diagonal = largest > 0.0 ? Length(Difference(greatest, least)) : 0.0;
+
+  this->FindPlane(positions, used);
+  if (!this->Planar)
+  {
+    this->SpacePoints = std::move(positions);
+    return;
+  }
+  this->PlanePoints.resize(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    double original[3];
+    points->GetPoint(i, original);
+    const Vector3 working = this->ToWorking(original);
+    this->PlanePoints[i] = { working[0], working[1] };
+    if (!std::isfinite(working[2]))
+    {
+      // The third coordinate is not kept, but IsFinite must see it.
+      this->PlanePoints[i].x = working[2];
+    }
+  }
+}
+
+void Embedding::FindPlane(
+  const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used)
+{
+  const auto first = std::find(used.begin(), used.end(), 1);
+  if (first == used.end())
+  {
+    // Nothing to see: the xy plane is as good as any.
+    this->Planar = this->AxisParallel = true;
+    return;
+  }
+  const Vector3& origin = points[first - used.begin()];
+
+  // Parallel to two axes? z first, so that a mesh in a line counts as drawn in the xy plane.
+  for (const int normalAxis : { 2, 1, 0 })
+  {
+    bool constant = true;
+    for (std::size_t i = 0; i < points.size() && constant; ++i)
+    {
+      constant = !used[i] || points[i][normalAxis] == origin[normalAxis];
+    }
+    if (constant)
+    {
+      this->Planar = this->AxisParallel = true;
+      this->AxisOrder = { (normalAxis + 1) % 3, (normalAxis + 2) % 3, normalAxis };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->PlaneAxes[axis] = { 0.0, 0.0, 0.0 };
+        this->PlaneAxes[axis][this->AxisOrder[axis]] = 1.0;
+      }
+      this->PlaneDistance = origin[normalAxis];
+      return;
+    }
+  }
+
+  // Otherwise through the first point, the one farthest from it, and the one farthest from their
+  // line.
+  Vector3 along{};
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const Vector3 d = Difference(points[i], origin);
+    if (used[i] && Length(d) > farthest)
+    {
+      farthest = Length(d);
+      along = Scaled(d, 1.0 / farthest);
+    }
+  }
+  Vector3 normal{};
+  double widest = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const Vector3 c = Cross3(along, Difference(points[i], origin));
+    if (used[i] && Length(c) > widest)
+    {
+      widest = Length(c);
+      normal = Scaled(c, 1.0 / widest);
+    }
+  }
+  // Rounding of its own coordinates and of the three points that span the plane.
+  const double rounding = 16.0 * this->CoordinatePrecision * this->LargestCoordinate;
+  if (!(widest > rounding))
+  {
+    return;
+  }
+  const double spread = rounding * (1.0 + farthest / widest);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (used[i] && std::abs(Dot3(normal, Difference(points[i], origin))) > spread)
+    {
+      return;
+    }
+  }
+  this->Planar = true;
+  // The normal that points along the axis it is closest to, so that two meshes in one plane agree on
+  // which side is up.
+  int main = 0;
+  for (const int axis : { 1, 2 })
+  {
+    main = std::abs(normal[axis]) >= std::abs(normal[main]) ? axis : main;
+  }
+  if (normal[main] < 0.0)
+  {
+    normal = Scaled(normal, -1.0);
+  }
+  Vector3 helper{};
+  helper[(main + 1) % 3] = 1.0;
+  Vector3 v = Cross3(normal, helper);
+  v = Scaled(v, 1.0 / Length(v));
+  this->PlaneAxes = { Cross3(v, normal), v, normal };
+  this->PlaneDistance = Dot3(normal, origin);
+}
+
+Vector3 Embedding::ToWorking(const double point[3]) const
+{
+  const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
+  if (!this->Planar)
+  {
+    return p;
+  }
+  if (this->AxisParallel)
+  {
+    return { p[this->AxisOrder[0]], p[this->AxisOrder[1]],
+      p[this->AxisOrder[2]] - this->PlaneDistance };
+  }
+  return { Dot3(this->PlaneAxes[0], p), Dot3(this->PlaneAxes[1], p),
+    Dot3(this->PlaneAxes[2], p) - this->PlaneDistance };
+}
+
+void Embedding::FromWorking(const Vector3& working, double point[3]) const
+{
+  const double unscale = 1.0 / this->Scale;
+  if (!this->Planar)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = working[axis] * unscale;
+    }
+    return;
+  }
+  const double height = working[2] + this->PlaneDistance;
+  if (this->AxisParallel)
+  {
+    point[this->AxisOrder[0]] = working[0] * unscale;
+    point[this->AxisOrder[1]] = working[1] * unscale;
+    point[this->AxisOrder[2]] = height * unscale;
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    point[axis] = (working[0] * this->PlaneAxes[0][axis] + working[1] * this->PlaneAxes[1][axis] +
+                    height * this->PlaneAxes[2][axis]) *
+      unscale;
+  }
+}
+
+int Embedding::GetOrientation(const Triangulation::Corners& corners) const
+{
+  return Orientation(this->PlanePoints[corners[0]], this->PlanePoints[corners[1]],
+    this->PlanePoints[corners[2]]);
+}
+
+bool Embedding::HasNoArea(const Triangulation::Corners& corners) const
+{
+  if (this->Planar && this->AxisParallel)
+  {
+    return this->GetOrientation(corners) == 0;
+  }
+  const EdgeViews views = this->GetViews(corners);
+  const double least =
+    8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
+  // Written so that a view spoilt by an edge of no length counts as no area.
+  return !(views[FindApex(views)].Height > least);
+}
+
+bool Embedding::IsFinite(const Triangulation::Corners& corners) const
+{
+  return std::all_of(corners.begin(), corners.end(), [this](std::int32_t corner) {
+    const Vector3 p = this->GetPoint(corner);
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  });
+}
+
+bool Embedding::IsConcordant(const Triangulation::Corners& corners) const
+{
+  const Vector3 a = this->GetPoint(corners[0]);
+  const Vector3 b = this->GetPoint(corners[1]);
+  const Vector3 c = this->GetPoint(corners[2]);
+  return homeomorphism::IsConcordant(a.data(), b.data(), c.data(), this->Planar ? 2 : 3);
+}
+
+EdgeViews Embedding::GetViews(const Triangulation::Corners& corners) const
+{
+  if (this->Planar)
+  {
+    return ViewsFromEdges(this->PlanePoints[corners[0]], this->PlanePoints[corners[1]],
+      this->PlanePoints[corners[2]]);
+  }
+  const Vector3& a = this->SpacePoints[corners[0]];
+  const Vector3& b = this->SpacePoints[corners[1]];
+  const Vector3& c = this->SpacePoints[corners[2]];
+  return { ViewFromSpaceEdge(b, c, a), ViewFromSpaceEdge(c, a, b), ViewFromSpaceEdge(a, b, c) };
+}
+
+void Embedding::ComputeFrames(const Triangulation& triangulation)
+{
+  const TriangleIndex count = triangulation.GetNumberOfTriangles();
+  this->Shapes.resize(count);
+  if (this->Planar)
+  {
+    this->PlaneFrames.resize(count);
+  }
+  else
+  {
+    this->SpaceFrames.resize(count);
+  }
+  vtkSMPTools::For(0, count, [this, &triangulation](vtkIdType begin, vtkIdType end) {
+    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+    {
+      if (triangulation.IsMasked(t))
+      {
+        continue;
+      }
+      const Triangulation::Corners& corners = triangulation.GetCorners(t);
+      const EdgeViews views = this->GetViews(corners);
+      this->Shapes[t] = MakeShape(views, FindApex(views));
+      if (this->Planar)
+      {
+        this->ComputePlaneFrame(t, corners);
+      }
+      else
+      {
+        this->ComputeSpaceFrame(t, corners);
+      }
+    }
+  });
+}
+
+void Embedding::ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
+{
+  const TriangleShape& shape = this->Shapes[triangle];
+  PlaneFrame& frame = this->PlaneFrames[triangle];
+  frame.Origin = this->PlanePoints[corners[NextCorner(shape.Apex)]];
+  const Vector2 edge = this->PlanePoints[corners[PreviousCorner(shape.Apex)]] - frame.Origin;
+  frame.Tangent = { edge.x / shape.Base, edge.y / shape.Base };
+  frame.Side = this->GetOrientation(corners);
+}
+
+void Embedding::ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
+{
+  const TriangleShape& shape = this->Shapes[triangle];
+  SpaceFrame& frame = this->SpaceFrames[triangle];
+  frame.Origin = this->SpacePoints[corners[NextCorner(shape.Apex)]];
+  frame.Tangent = Scaled(
+    Difference(this->SpacePoints[corners[PreviousCorner(shape.Apex)]], frame.Origin),
+    1.0 / shape.Base);
+  const Vector3 normal =
+    Cross3(frame.Tangent, Difference(this->SpacePoints[corners[shape.Apex]], frame.Origin));
+  frame.Normal = Scaled(normal, 1.0 / Length(normal));
+  frame.Inward = Cross3(frame.Normal, frame.Tangent);
+}
+
+FramePoint Embedding::ToFrame(TriangleIndex triangle, const Vector3& working) const
+{
+  if (this->Planar)
+  {
+    const PlaneFrame& frame = this->PlaneFrames[triangle];
+    const Vector2 d = Vector2{ working[0], working[1] } - frame.Origin;
+    return { { Dot(d, frame.Tangent), frame.Side * Cross(frame.Tangent, d) },
+      this->Columnar ? working[2] : frame.Side * working[2] };
+  }
+  const SpaceFrame& frame = this->SpaceFrames[triangle];
+  const Vector3 d = Difference(working, frame.Origin);
+  return { { Dot3(d, frame.Tangent), Dot3(d, frame.Inward) }, Dot3(d, frame.Normal) };
+}
+
+Vector3 Embedding::FromFrame(TriangleIndex triangle, const FramePoint& point) const
+{
+  const double x = point.InPlane.x;
+  if (this->Planar)
+  {
+    const PlaneFrame& frame = this->PlaneFrames[triangle];
+    const double y = frame.Side * point.InPlane.y;
+    return { frame.Origin.x + (x * frame.Tangent.x - y * frame.Tangent.y),
+      frame.Origin.y + (x * frame.Tangent.y + y * frame.Tangent.x),
+      this->Columnar ? point.Offset : frame.Side * point.Offset };
+  }
+  const SpaceFrame& frame = this->SpaceFrames[triangle];
+  const double y = point.InPlane.y;
+  Vector3 result;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    result[axis] = frame.Origin[axis] +
+      (x * frame.Tangent[axis] + y * frame.Inward[axis] + point.Offset * frame.Normal[axis]);
+  }
+  return result;
+}
+
+std::array<Vector3, 3> Embedding::GetAxes(TriangleIndex triangle) const
+{
+  if (!this->Planar)
+  {
+    const SpaceFrame& frame = this->SpaceFrames[triangle];
+    return { frame.Tangent, frame.Inward, frame.Normal };
+  }
+  const PlaneFrame& frame = this->PlaneFrames[triangle];
+  std::array<Vector3, 3> axes;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double u = this->PlaneAxes[0][axis];
+    const double v = this->PlaneAxes[1][axis];
+    axes[0][axis] = frame.Tangent.x * u + frame.Tangent.y * v;
+    axes[1][axis] = frame.Side * (frame.Tangent.x * v - frame.Tangent.y * u);
+    axes[2][axis] = (this->Columnar ? 1.0 : frame.Side) * this->PlaneAxes[2][axis];
+  }
+  return axes;
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file Embedding.h
+/// The geometric half of a mesh: where the points are, and each triangle's own frame.
+
+#ifndef Embedding_h
+#define Embedding_h
+
+#include "Triangulation.h"
+
+#include "Kernel/Geometry.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class vtkPoints;
+
+namespace homeomorphism
+{
+
+/// A point or vector of 3-space.
+using Vector3 = std::array<double, 3>;
+
+/// A point of a triangle's own frame: in its plane, and the distance from the plane.
+struct FramePoint
+{
+  Vector2 InPlane;
+  double Offset = 0.0;
+};
+
+/// Positions of a triangulation's points, in a plane or as a surface in 3-space.
+///
+/// Everything is computed in *working coordinates*: those of the input times a power of two, Scale,
+/// which brings the largest of them near 1 without rounding, so that meshes the size of an atom or of
+/// a galaxy are the same to the arithmetic. In a plane, any plane, working coordinates are two
+/// coordinates within it and the distance from it; if the plane is parallel to two of the axes they
+/// are the input's own coordinates, unrounded.
+class Embedding
+{
+public:
+  /// Reads the points that @a triangulation's triangles use. The triangles' corners must exist.
+  Embedding(vtkPoints* points, const Triangulation& triangulation);
+
+  /// Computes the triangles' frames. All triangles that are not masked must have an area.
+  void ComputeFrames(const Triangulation& triangulation);
+
+  /// Whether all points lie in one plane (to the rounding of their coordinates).
+  bool IsPlanar() const { return this->Planar; }
+  /// Whether distances from the plane are unlimited and measured along the plane's normal, as in
+  /// both meshes of a planar pair. Otherwise each triangle has its own normal, given by its winding.
+  bool IsColumnar() const { return this->Columnar; }
+  void SetColumnar(bool columnar) { this->Columnar = columnar; }
+
+  /// Working coordinates over input coordinates, a power of two.
+  double GetScale() const { return this->Scale; }
+  /// Largest absolute working coordinate of a point, about 1.
+  double GetLargestCoordinate() const { return this->LargestCoordinate; }
+  /// Length of the diagonal of the box around the points, in working coordinates.
+  double GetDiagonal() const { return this->Diagonal; }
+  /// Relative rounding error of the coordinates as they were stored: half an ulp of float or double.
+  double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
+
+  Vector3 ToWorking(const double point[3]) const;
+  void FromWorking(const Vector3& working, double point[3]) const;
+
+  /// Working coordinates of a point of the mesh; in the plane the third is the distance from it.
+  Vector3 GetPoint(std::int32_t point) const
+  {
+    if (this->Planar)
+    {
+      const Vector2& p = this->PlanePoints[point];
+      return { p.x, p.y, 0.0 };
+    }
+    return this->SpacePoints[point];
+  }
+  /// The same for a planar mesh.
+  const Vector2& GetPlanePoint(std::int32_t point) const { return this->PlanePoints[point]; }
+
+  /// Orientation of a triangle of a planar mesh with respect to the plane's normal, exactly: 1 if its
+  /// corners run anticlockwise, -1 if clockwise, 0 if it has no area.
+  int GetOrientation(const Triangulation::Corners& corners) const;
+  /// Whether the triangle has no area: exactly none in a plane parallel to two axes, none to the
+  /// rounding of its coordinates otherwise.
+  bool HasNoArea(const Triangulation::Corners& corners) const;
+  /// Whether the coordinates of all corners are finite.
+  bool IsFinite(const Triangulation::Corners& corners) const;
+  /// Whether the triangle is concordant (see IsConcordant), exactly.
+  bool IsConcordant(const Triangulation::Corners& corners) const;
+  /// What each edge sees of the triangle.
+  EdgeViews GetViews(const Triangulation::Corners& corners) const;
+
+  const TriangleShape& GetShape(TriangleIndex triangle) const { return this->Shapes[triangle]; }
+
+  FramePoint ToFrame(TriangleIndex triangle, const Vector3& working) const;
+  Vector3 FromFrame(TriangleIndex triangle, const FramePoint& point) const;
+
+  /// The frame's axes as unit vectors of the input's space: along the triangle's longest edge, from
+  /// it towards the apex, and the normal along which offsets are measured.
+  std::array<Vector3, 3> GetAxes(TriangleIndex triangle) const;
+
+  /// 1 if the frame's axes are right-handed, -1 if left-handed.
+  double GetHandedness(TriangleIndex triangle) const
+  {
+    return this->Columnar ? this->PlaneFrames[triangle].Side : 1.0;
+  }
+
+private:
+  /// Frame of a triangle in the plane.
+  struct PlaneFrame
+  {
+    Vector2 Origin;
+    Vector2 Tangent;
+    /// 1 if the apex is to the left of the tangent, -1 if to the right.
+    double Side;
+  };
+  /// Frame of a triangle in 3-space.
+  struct SpaceFrame
+  {
+    Vector3 Origin;
+    Vector3 Tangent;
+    Vector3 Inward;
+    Vector3 Normal;
+  };
+
+  void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used);
+  void ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
+  void ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
+
+  bool Planar = false;
+  bool Columnar = false;
+  /// Whether the plane is parallel to two axes: no rounding on the way to working coordinates.
+  bool AxisParallel = false;
+  double Scale = 1.0;
+  double LargestCoordinate = 0.0;
+  double Diagonal = 0.0;
+  double CoordinatePrecision = 0.0;
+
+  // The plane: axes U, V within it and the normal N, right-handed, and its distance from the origin.
+  std::array<Vector3, 3> PlaneAxes{};
+  std::array<int, 3> AxisOrder{ 0, 1, 2 };
+  double PlaneDistance = 0.0;
+
+  std::vector<Vector2> PlanePoints;
+  std::vector<Vector3> SpacePoints;
+  std::vector<TriangleShape> Shapes;
+  std::vector<PlaneFrame> PlaneFrames;
+  std::vector<SpaceFrame> SpaceFrames;
+};
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file Homeomorphism.h
+/// The map from one mesh's domain to the other's: point -> triangle -> coordinates -> triangle ->
+/// point.
+
+#ifndef Homeomorphism_h
+#define Homeomorphism_h
+
+#include "ChartedTriangulation.h"
+#include "TriangulationPair.h"
+
+#include <memory>
+
+class vtkPolyData;
+
+namespace homeomorphism
+{
+
+/// How a pair of meshes, or one triangulation, is to be understood.
+struct HomeomorphismOptions
+{
+  CoordinateSystem System = CoordinateSystem::Smooth;
+  CenterPoint Center = CenterPoint::Centroid;
+  /// Leave defective triangles out instead of refusing the meshes.
+  bool MaskInvalidTriangles = false;
+  /// Let the Linear system carry discordant triangles instead of refusing the meshes.
+  bool DiscordantByLinear = false;
+};
+
+/// The map's derivative, in the coordinates of the input.
+struct Jacobian
+{
+  /// Row-major.
+  std::array<double, 9> Matrix;
+  /// Ratio of areas, negative where orientation is reversed.
+  double Determinant;
+};
+
+/// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
+/// coordinates of a single one. Immutable; any number of threads may use it.
+class Homeomorphism
+{
+public:
+  /// Reads, validates and prepares. @a target may be null: then only coordinates can be asked for.
+  /// Defects are added to @a problems; returns null if they made the meshes be refused.
+  static std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target,
+    const HomeomorphismOptions& options, MeshProblems& problems);
+
+  const TriangulationPair& GetPair() const { return *this->Pair; }
+  const ChartedTriangulation& GetCharts(Side side) const { return *this->Charts[int(side)]; }
+
+  /// The distance, in working coordinates, up to which a point is taken to the nearest point of the
+  /// domain: what rounding of the mesh's coordinates, or of the point's, stored with the relative
+  /// error @a precision, amounts to, or @a tolerance times the diagonal of the domain if that is
+  /// more.
+  double GetReach(Side side, double tolerance, double precision) const;
+
+  /// The place of a point in a mesh's domain.
+  Location Locate(Side side, const double point[3], double reach, TriangleIndex hint) const;
+
+  /// The image of a place of @a from's domain. Corners go to corners exactly.
+  void MapPoint(Side from, const Location& place, double image[3]) const;
+
+  /// The derivative at a place; on an edge, the limit from the place's triangle.
+  Jacobian GetJacobian(Side from, const Location& place) const;
+
+  /// Triangular coordinates of a place of the domain.
+  TriangularCoordinates GetCoordinates(Side side, const Location& place) const
+  {
+    return this->GetCharts(side).ToCoordinates(place.Triangle, place.Point.InPlane);
+  }
+
+private:
+  Homeomorphism() = default;
+
+  template <typename Use>
+  auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
+
+  std::shared_ptr<const TriangulationPair> Pair;
+  std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;
+};
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "MeshProblem.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace homeomorphism
+{
+namespace
+{
+
+/// The sentence's end, after "3 triangles of the source (cells 1, 2, 5) ".
+const char* Fault(MeshProblem::Kind kind, bool one)
+{
+  using Kind = MeshProblem::Kind;
+  switch (kind)
+  {
+    case Kind::BadConnectivity:
+      return one ? "refers to points that do not exist" : "refer to points that do not exist";
+    case Kind::ConnectivityDiffers:
+      return one ? "has different points in the source and in the target"
+                 : "have different points in the source and in the target";
+    case Kind::RepeatedCorner:
+      return one ? "uses the same point twice" : "use the same point twice";
+    case Kind::NotFinite:
+      return one ? "has a coordinate that is not finite" : "have coordinates that are not finite";
+    case Kind::NoArea:
+      return one ? "has no area" : "have no area";
+    case Kind::EdgeOfManyTriangles:
+      return one ? "lies at an edge that has more than two triangles"
+                 : "lie at edges that have more than two triangles";
+    case Kind::NotOrientable:
+      return one ? "cannot be wound consistently with its neighbours (the surface has one side only)"
+                 : "cannot be wound consistently with their neighbours (the surface has one side "
+                   "only)";
+    case Kind::Flipped:
+      return one ? "is flipped between source and target relative to the rest"
+                 : "are flipped between source and target relative to the rest";
+    case Kind::Overlapping:
+      return one ? "overlaps another triangle" : "overlap other triangles";
+    case Kind::Discordant:
+      return one ? "is discordant: the foot of a center segment is not inside its edge, so the "
+                   "Contour system does not exist there"
+                 : "are discordant: the foot of a center segment is not inside its edge, so the "
+                   "Contour system does not exist there";
+    default:
+      return "";
+  }
+}
+
+const char* Advice(MeshProblem::Kind kind)
+{
+  using Kind = MeshProblem::Kind;
+  switch (kind)
+  {
+    case Kind::PointCountsDiffer:
+    case Kind::CellCountsDiffer:
+      return "Source and target must be the same mesh with different point coordinates.";
+    case Kind::TooManyTriangles:
+      return "Split the meshes.";
+    case Kind::NotTriangles:
+      return "Triangulate the source (vtkTriangleFilter) and give the target the source's cells, so "
+             "that both are cut along the same diagonals.";
+    case Kind::BadConnectivity:
+      return "The mesh is corrupt: read or build it again.";
+    case Kind::ConnectivityDiffers:
+      return "Give the target the source's cells, with its own point coordinates in the same order.";
+    case Kind::RepeatedCorner:
+    case Kind::NotFinite:
+    case Kind::NoArea:
+    case Kind::EdgeOfManyTriangles:
+    case Kind::Overlapping:
+      return "Repair or remove them in both meshes, or turn MaskInvalidTriangles on to leave them "
+             "out.";
+    case Kind::NotOrientable:
+      return "Cut the surface open along a line of edges in both meshes.";
+    case Kind::Flipped:
+      return "Move their points so that all triangles keep their orientation (or all are mirrored), "
+             "or turn MaskInvalidTriangles on to leave them out.";
+    case Kind::Discordant:
+      return "Use the Smooth system, which takes any triangle, or let the Linear system carry them "
+             "(DiscordantTriangles).";
+  }
+  return "";
+}
+
+} // namespace
+
+std::string MeshProblem::Message() const
+{
+  std::ostringstream text;
+  if (this->What == Kind::PointCountsDiffer || this->What == Kind::CellCountsDiffer ||
+    this->What == Kind::TooManyTriangles)
+  {
+    text << this->Details;
+  }
+  else
+  {
+    const bool one = this->Count == 1;
+    const bool cells = this->What == Kind::NotTriangles;
+    text << this->Count << (cells ? " cell" : " triangle") << (one ? "" : "s") << " of the "
+         << this->Where << (one ? " (cell " : " (cells ");
+    for (std::size_t i = 0; i < this->FirstCells.size(); ++i)
+    {
+      text << (i ? ", " : "") << this->FirstCells[i];
+    }
+    text << (this->Count > static_cast<vtkIdType>(this->FirstCells.size()) ? ", ...) " : ") ");
+    if (cells)
+    {
+      text << (one ? "is not a triangle" : "are not triangles") << " (" << this->Details << ")";
+    }
+    else
+    {
+      text << Fault(this->What, one);
+    }
+  }
+  switch (this->Result)
+  {
+    case Outcome::Refused:
+      text << ". " << Advice(this->What);
+      break;
+    case Outcome::Masked:
+      text << "; left out, as MaskInvalidTriangles asks.";
+      break;
+    case Outcome::CarriedByLinear:
+      text << "; carried by the Linear system, as DiscordantTriangles asks.";
+      break;
+  }
+  return text.str();
+}
+
+bool IsRefused(const MeshProblems& problems)
+{
+  return std::any_of(problems.begin(), problems.end(), [](const MeshProblem& problem) {
+    return problem.Result == MeshProblem::Outcome::Refused;
+  });
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file MeshValidation.h
+/// Everything for which a mesh or a pair of meshes is refused (or its triangles are masked). Each
+/// function finds one kind of defect and says which triangles have it; TriangulationPair decides what
+/// becomes of them.
+
+#ifndef MeshValidation_h
+#define MeshValidation_h
+
+#include "Embedding.h"
+#include "MeshProblem.h"
+#include "PointLocation.h"
+#include "Triangulation.h"
+
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+
+namespace homeomorphism
+{
+
+/// Numbers of triangles, ascending, without repetition.
+using TriangleList = std::vector<TriangleIndex>;
+
+/// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
+/// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
+/// exist, and counts beyond what can be numbered. @a where names the mesh in messages.
+std::vector<Triangulation::Corners> ReadTriangles(
+  vtkPolyData* mesh, const std::string& where, MeshProblems& problems);
+
+/// Reports what keeps source and target from being the same mesh: counts, and triangles that do not
+/// have the same three points. The order of the three points is free.
+void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
+  const std::vector<Triangulation::Corners>& sourceTriangles,
+  const std::vector<Triangulation::Corners>& targetTriangles, MeshProblems& problems);
+
+/// Triangles that the mesh itself blanks: hidden cells and cells with hidden points (vtkGhostType).
+TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation);
+
+/// Triangles that use a point twice.
+TriangleList FindRepeatedCorners(const Triangulation& triangulation);
+
+/// Triangles with a coordinate that is not finite.
+TriangleList FindNotFinite(const Triangulation& triangulation, const Embedding& embedding);
+
+/// Triangles without area.
+TriangleList FindNoArea(const Triangulation& triangulation, const Embedding& embedding);
+
+/// Of two planar meshes, the triangles that change their orientation if most do not, or keep it if
+/// most change it.
+TriangleList FindFlipped(
+  const Triangulation& triangulation, const Embedding& source, const Embedding& target);
+
+/// Triangles of a planar mesh whose interior meets another's, by exact predicates. Nearly linear in
+/// the number of triangles as long as there are none.
+TriangleList FindOverlapping(
+  const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location);
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file Triangulation.h
+/// The combinatorial half of a mesh: which points a triangle has, and what lies across its edges.
+
+#ifndef Triangulation_h
+#define Triangulation_h
+
+#include "vtkType.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Number of a triangle, from 0; -1 is no triangle.
+using TriangleIndex = std::int32_t;
+
+/// What lies across an edge of a triangle.
+struct AcrossEdge
+{
+  /// -1 on the boundary.
+  TriangleIndex Triangle = -1;
+  /// The shared edge in that triangle, 0 to 2.
+  int Edge = 0;
+  /// Whether that triangle's cyclic order runs through the edge in the same direction as this one's
+  /// (files that mix their winding do so; consistently wound neighbours run against each other).
+  bool SameDirection = false;
+};
+
+/// Triangles as triples of point ids, and their adjacency. Filled by ReadTriangulation and the
+/// validation, constant afterwards. Corner and edge numbers are 0 to 2, in the order of the cell's
+/// points; edge k is opposite corner k.
+class Triangulation
+{
+public:
+  using Corners = std::array<std::int32_t, 3>;
+
+  /// The most triangles that an adjacency entry can number.
+  static constexpr vtkIdType MaximumTriangles = vtkIdType(1) << 28;
+
+  TriangleIndex GetNumberOfTriangles() const
+  {
+    return static_cast<TriangleIndex>(this->Triangles.size());
+  }
+
+  const Corners& GetCorners(TriangleIndex triangle) const { return this->Triangles[triangle]; }
+
+  /// The id that the triangle has as a cell of the vtkPolyData it was read from.
+  vtkIdType GetCellId(TriangleIndex triangle) const { return this->FirstCell + triangle; }
+
+  /// Whether the triangle was left out: nothing is mapped by it and its edges are boundary.
+  bool IsMasked(TriangleIndex triangle) const { return this->Masked[triangle] != 0; }
+
+  AcrossEdge GetAcross(TriangleIndex triangle, int edge) const
+  {
+    const std::int32_t code = this->Adjacency[triangle][edge];
+    if (code < 0)
+    {
+      return {};
+    }
+    return { code >> 3, (code >> 1) & 3, (code & 1) != 0 };
+  }
+
+  void SetTriangles(std::vector<Corners> triangles, vtkIdType firstCell);
+  void Mask(TriangleIndex triangle) { this->Masked[triangle] = 1; }
+
+  /// Finds what lies across each edge. Linear in the number of triangles. Masked triangles take no
+  /// part. Returns, ascending, the triangles at edges that have more than two; such edges count as
+  /// boundary.
+  std::vector<TriangleIndex> FindAdjacency(vtkIdType numberOfPoints);
+
+  /// Returns, ascending, the triangles whose winding contradicts a neighbour's, however the winding
+  /// of triangles is reversed: none if the surface is orientable.
+  std::vector<TriangleIndex> FindNotOrientable() const;
+
+private:
+  std::vector<Corners> Triangles;
+  std::vector<std::uint8_t> Masked;
+  // Neighbour, its edge and the direction in one number: triangle * 8 + edge * 2 + same direction.
+  std::vector<std::array<std::int32_t, 3>> Adjacency;
+  vtkIdType FirstCell = 0;
+};
+
+} // namespace homeomorphism
+
+#endif

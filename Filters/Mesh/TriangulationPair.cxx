@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "TriangulationPair.h"
+
+#include "MeshValidation.h"
+
+#include "vtkPoints.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Builds a pair step by step, each step relying on what the ones before have ruled out.
+class TriangulationPair::Builder
+{
+public:
+  Builder(vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles,
+    MeshProblems& problems)
+    : Meshes{ source, target }
+    , Names{ target ? "source" : "triangulation", "target" }
+    , MaskInvalidTriangles(maskInvalidTriangles)
+    , Problems(problems)
+    , Pair(new TriangulationPair)
+  {
+  }
+
+  std::shared_ptr<const TriangulationPair> Build()
+  {
+    this->ReadTopology();
+    if (!IsRefused(this->Problems))
+    {
+      this->ReadGeometry();
+    }
+    if (!IsRefused(this->Problems))
+    {
+      this->FindAdjacency();
+    }
+    if (!IsRefused(this->Problems))
+    {
+      this->ExcludeOverlaps();
+    }
+    if (IsRefused(this->Problems))
+    {
+      return nullptr;
+    }
+    for (const auto& embedding : this->Pair->Embeddings)
+    {
+      if (embedding)
+      {
+        embedding->ComputeFrames(this->Pair->Topology);
+      }
+    }
+    return std::shared_ptr<const TriangulationPair>(std::move(this->Pair));
+  }
+
+private:
+  /// Masks or refuses triangles. Returns whether there were any.
+  bool Exclude(MeshProblem::Kind kind, const std::string& where, const TriangleList& triangles)
+  {
+    if (triangles.empty())
+    {
+      return false;
+    }
+    MeshProblem problem;
+    problem.What = kind;
+    problem.Where = where;
+    problem.Count = static_cast<vtkIdType>(triangles.size());
+    // One side only surfaces are not the fault of single triangles.
+    const bool mask = this->MaskInvalidTriangles && kind != MeshProblem::Kind::NotOrientable;
+    problem.Result = mask ? MeshProblem::Outcome::Masked : MeshProblem::Outcome::Refused;
+    for (const TriangleIndex t : triangles)
+    {
+      if (problem.FirstCells.size() < MeshProblem::MaximumIds)
+      {
+        problem.FirstCells.push_back(this->Pair->Topology.GetCellId(t));
+      }
+      if (mask)
+      {
+        this->Pair->Topology.Mask(t);
+      }
+    }
+    this->Problems.push_back(problem);
+    return true;
+  }
+
+  void ReadTopology()
+  {
+    std::vector<Triangulation::Corners> triangles =
+      ReadTriangles(this->Meshes[0], this->Names[0], this->Problems);
+    if (this->Meshes[1])
+    {
+      const std::vector<Triangulation::Corners> others =
+        ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
+      if (!IsRefused(this->Problems))
+      {
+        CompareConnectivity(
+          this->Meshes[0], this->Meshes[1], triangles, others, this->Problems);
+      }
+    }
+    if (IsRefused(this->Problems))
+    {
+      return;
+    }
+    Triangulation& topology = this->Pair->Topology;
+    const vtkIdType firstCell = this->Meshes[0]->GetNumberOfCells() -
+      static_cast<vtkIdType>(triangles.size());
+    topology.SetTriangles(std::move(triangles), firstCell);
+    for (vtkPolyData* mesh : this->Meshes)
+    {
+      // What the mesh blanks is not there: no defect, so no message.
+      for (const TriangleIndex t : mesh ? FindBlanked(mesh, topology) : TriangleList())
+      {
+        topology.Mask(t);
+      }
+    }
+    this->Exclude(
+      MeshProblem::Kind::RepeatedCorner, this->Names[0], FindRepeatedCorners(topology));
+  }
+
+  void ReadGeometry()
+  {
+    const Triangulation& topology = this->Pair->Topology;
+    const vtkNew<vtkPoints> none;
+    for (int side = 0; side < 2 && this->Meshes[side]; ++side)
+    {
+      vtkPoints* points = this->Meshes[side]->GetPoints();
+      this->Pair->Embeddings[side].reset(new Embedding(points ? points : none.Get(), topology));
+      const Embedding& embedding = *this->Pair->Embeddings[side];
+      this->Exclude(
+        MeshProblem::Kind::NotFinite, this->Names[side], FindNotFinite(topology, embedding));
+      if (IsRefused(this->Problems))
+      {
+        // Areas and orientations mean nothing then.
+        return;
+      }
+      this->Exclude(
+        MeshProblem::Kind::NoArea, this->Names[side], FindNoArea(topology, embedding));
+    }
+    const bool planar = this->Pair->Embeddings[0]->IsPlanar() &&
+      (!this->Meshes[1] || this->Pair->Embeddings[1]->IsPlanar());
+    for (const auto& embedding : this->Pair->Embeddings)
+    {
+      if (embedding)
+      {
+        embedding->SetColumnar(planar);
+      }
+    }
+    if (planar && this->Meshes[1] && !IsRefused(this->Problems))
+    {
+      this->Exclude(MeshProblem::Kind::Flipped, "pair",
+        FindFlipped(topology, *this->Pair->Embeddings[0], *this->Pair->Embeddings[1]));
+    }
+  }
+
+  void FindAdjacency()
+  {
+    Triangulation& topology = this->Pair->Topology;
+    const vtkIdType numberOfPoints = this->Meshes[0]->GetNumberOfPoints();
+    if (this->Exclude(MeshProblem::Kind::EdgeOfManyTriangles, this->Names[0],
+          topology.FindAdjacency(numberOfPoints)) &&
+      this->MaskInvalidTriangles)
+    {
+      topology.FindAdjacency(numberOfPoints);
+    }
+    this->Exclude(
+      MeshProblem::Kind::NotOrientable, this->Names[0], topology.FindNotOrientable());
+  }
+
+  void ExcludeOverlaps()
+  {
+    Triangulation& topology = this->Pair->Topology;
+    bool excluded = false;
+    for (int side = 0; side < 2 && this->Meshes[side]; ++side)
+    {
+      const Embedding& embedding = *this->Pair->Embeddings[side];
+      this->Pair->Locations[side].reset(new PointLocation(topology, embedding));
+      if (embedding.IsPlanar())
+      {
+        excluded |= this->Exclude(MeshProblem::Kind::Overlapping, this->Names[side],
+          FindOverlapping(topology, embedding, *this->Pair->Locations[side]));
+      }
+    }
+    if (excluded && !IsRefused(this->Problems))
+    {
+      topology.FindAdjacency(this->Meshes[0]->GetNumberOfPoints());
+      for (int side = 0; side < 2 && this->Meshes[side]; ++side)
+      {
+        this->Pair->Locations[side].reset(
+          new PointLocation(topology, *this->Pair->Embeddings[side]));
+      }
+    }
+  }
+
+  std::array<vtkPolyData*, 2> Meshes;
+  std::array<std::string, 2> Names;
+  bool MaskInvalidTriangles;
+  MeshProblems& Problems;
+  std::unique_ptr<TriangulationPair> Pair;
+};
+
+std::shared_ptr<const TriangulationPair> TriangulationPair::Read(
+  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshProblems& problems)
+{
+  return Builder(source, target, maskInvalidTriangles, problems).Build();
+}
+
+} // namespace homeomorphism

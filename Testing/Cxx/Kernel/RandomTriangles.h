@@ -1,0 +1,362 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file RandomTriangles.h
+/// Random triangles, neighbours and points for the property tests. Everything follows from a seed,
+/// on every platform: the distributions of the standard library would not.
+
+#ifndef RandomTriangles_h
+#define RandomTriangles_h
+
+#include "PlacedTriangle.h"
+
+#include "Kernel/ContourChart.h"
+#include "Kernel/ExactSign.h"
+#include "Kernel/LinearChart.h"
+#include "Kernel/SmoothChart.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <string>
+
+namespace homeomorphism_test
+{
+
+constexpr double Ulp = std::numeric_limits<double>::epsilon();
+
+class RandomNumbers
+{
+public:
+  explicit RandomNumbers(std::uint64_t seed)
+    : Engine(seed)
+  {
+  }
+
+  std::uint64_t Bits() { return this->Engine(); }
+
+  /// Uniform in [0, 1).
+  double Uniform() { return std::ldexp(static_cast<double>(this->Engine() >> 11), -53); }
+  double Uniform(double lower, double upper) { return lower + (upper - lower) * this->Uniform(); }
+  /// 10 to a power that is uniform between the two given.
+  double PowerOfTen(double lower, double upper)
+  {
+    return std::pow(10.0, this->Uniform(lower, upper));
+  }
+  /// 0 to @a count - 1.
+  int Below(int count)
+  {
+    return static_cast<int>(this->Engine() % static_cast<std::uint64_t>(count));
+  }
+  int Integer(int least, int greatest) { return least + this->Below(greatest - least + 1); }
+  bool Chance(double probability) { return this->Uniform() < probability; }
+
+  /// In [0, 1], as often anywhere as within any power of ten of either end.
+  double Proportion()
+  {
+    switch (this->Below(6))
+    {
+      case 0:
+        return this->PowerOfTen(-18.0, 0.0);
+      case 1:
+        return 1.0 - this->PowerOfTen(-18.0, 0.0);
+      case 2:
+        return this->Below(2);
+      default:
+        return this->Uniform();
+    }
+  }
+
+private:
+  std::mt19937_64 Engine;
+};
+
+using Corners = std::array<Vector2, 3>;
+
+/// The triangle with base from (0, 0) to (1, 0) and this apex, turned, scaled and with its corners
+/// renumbered at random.
+inline Corners Placed(RandomNumbers& random, const Vector2& apex, double scale)
+{
+  const double angle = random.Uniform(0.0, 6.283185307179586);
+  // One in four stays axis-parallel, where coordinates are exact.
+  const bool turned = random.Chance(0.75);
+  const Vector2 u =
+    turned ? Vector2{ scale * std::cos(angle), scale * std::sin(angle) } : Vector2{ scale, 0.0 };
+  const auto place = [&u](const Vector2& p) -> Vector2 {
+    return { p.x * u.x - p.y * u.y, p.x * u.y + p.y * u.x };
+  };
+  const Corners corners{ place({ 0.0, 0.0 }), place({ 1.0, 0.0 }), place(apex) };
+  const int first = random.Below(3);
+  return { corners[first], corners[NextCorner(first)], corners[PreviousCorner(first)] };
+}
+
+/// Neither flat nor sharp: the apex of the longest edge is at least a quarter of it high.
+inline Corners FatTriangle(RandomNumbers& random)
+{
+  const Vector2 apex{ random.Uniform(0.1, 0.9), random.Uniform(0.25, 0.86) };
+  return Placed(random, apex, random.PowerOfTen(-0.5, 0.5));
+}
+
+/// From fat to needles whose height is a millionth of their longest edge.
+inline Corners AnyTriangle(RandomNumbers& random)
+{
+  return Placed(
+    random, { random.Proportion(), random.PowerOfTen(-6.0, -0.07) }, random.PowerOfTen(-3.0, 3.0));
+}
+
+inline bool IsConcordant(const Corners& corners)
+{
+  return homeomorphism::IsConcordant(&corners[0].x, &corners[1].x, &corners[2].x, 2);
+}
+
+inline Corners FatConcordantTriangle(RandomNumbers& random)
+{
+  Corners corners;
+  do
+  {
+    corners = FatTriangle(random);
+  } while (!IsConcordant(corners));
+  return corners;
+}
+
+/// Concordant triangles of all kinds: fat ones, flat caps and tall needles down to a millionth, and
+/// triangles of each kind that are concordant by one bit only.
+inline Corners ConcordantTriangle(RandomNumbers& random)
+{
+  for (;;)
+  {
+    Corners corners;
+    const double scale = random.PowerOfTen(-3.0, 3.0);
+    const double thin = random.PowerOfTen(-6.0, 0.0);
+    const int kind = random.Below(3);
+    Vector2 apex;
+    if (kind == 0)
+    {
+      apex = { random.Uniform(-0.5, 1.5), random.Uniform(0.05, 1.5) };
+    }
+    else if (kind == 1)
+    {
+      // A flat cap is concordant where |x - 1/2| < 2 thin^2, roughly.
+      apex = { 0.5 + random.Uniform(-2.5, 2.5) * thin * thin, thin };
+    }
+    else
+    {
+      // With the short edge as unit, a tall needle is concordant for -1 < x < 2.
+      apex = { random.Chance(0.3) ? 0.5 : random.Uniform(-1.2, 2.2), 1.0 / thin };
+    }
+    corners = Placed(random, apex, kind == 2 ? scale * thin : scale);
+    if (!IsConcordant(corners))
+    {
+      continue;
+    }
+    if (random.Chance(0.25))
+    {
+      // Slide a corner along another edge until the triangle is discordant, then halve the way
+      // between until no double is left: the last concordant triangle.
+      const int k = random.Below(3);
+      const Vector2 inside = corners[k];
+      const Vector2 slide = 8.0 * (corners[NextCorner(k)] - corners[PreviousCorner(k)]);
+      double concordant = 0.0;
+      double discordant = random.Chance(0.5) ? 1.0 : -1.0;
+      for (int i = 0; i < 100; ++i)
+      {
+        const double t = 0.5 * (concordant + discordant);
+        corners[k] = inside + t * slide;
+        (IsConcordant(corners) ? concordant : discordant) = t;
+      }
+      corners[k] = inside + concordant * slide;
+    }
+    return corners;
+  }
+}
+
+/// A neighbour across an edge that sees the triangle as @a own: up to a million times lower or
+/// higher, its apex up to twenty edge lengths aside. One in eight is missing.
+inline Neighbor AnyNeighbor(RandomNumbers& random, const EdgeView& own)
+{
+  if (random.Chance(0.125))
+  {
+    return {};
+  }
+  Neighbor neighbor;
+  neighbor.Exists = true;
+  neighbor.View.Length = own.Length;
+  neighbor.View.Foot = random.Chance(0.5) ? random.Uniform() : random.Uniform(-20.0, 21.0);
+  neighbor.View.Height =
+    own.Height * (random.Chance(0.5) ? random.Uniform(0.2, 5.0) : random.PowerOfTen(-6.0, 6.0));
+  return neighbor;
+}
+
+inline std::array<Neighbor, 3> AnyNeighbors(RandomNumbers& random, const EdgeViews& views)
+{
+  return { AnyNeighbor(random, views[0]), AnyNeighbor(random, views[1]),
+    AnyNeighbor(random, views[2]) };
+}
+
+/// Neighbours about as large as the triangle.
+inline std::array<Neighbor, 3> ModerateNeighbors(RandomNumbers& random, const EdgeViews& views)
+{
+  std::array<Neighbor, 3> neighbors;
+  for (int k = 0; k < 3; ++k)
+  {
+    neighbors[k].Exists = true;
+    neighbors[k].View = { views[k].Length, random.Uniform(-0.5, 1.5),
+      views[k].Height * random.Uniform(0.3, 3.0) };
+  }
+  return neighbors;
+}
+
+/// Uniform in the triangle.
+inline Barycentric AnyBarycentric(RandomNumbers& random)
+{
+  double x = random.Uniform();
+  double y = random.Uniform();
+  if (x + y > 1.0)
+  {
+    x = 1.0 - x;
+    y = 1.0 - y;
+  }
+  return { x, y, 1.0 - x - y };
+}
+
+/// Barycentric coordinates on the inner border of the strip of edge @a k, u = 1.
+inline Barycentric OnStripBorder(int k, double tau, double proportion)
+{
+  // l_k = tau q and l_i + l_j = 1 - l_k with l_j / (l_i + l_j) = proportion.
+  const double q = tau * proportion * (1.0 - proportion);
+  const double sides = 1.0 / (1.0 + q);
+  Barycentric l;
+  l[k] = q * sides;
+  l[NextCorner(k)] = sides * (1.0 - proportion);
+  l[PreviousCorner(k)] = sides * proportion;
+  return l;
+}
+
+/// The systems, each with what makes a chart of it, so that a test can run over all of them.
+struct LinearSystem
+{
+  using Chart = LinearChart;
+  static constexpr const char* Name = "Linear";
+  static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
+  static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
+  static Chart Make(RandomNumbers&, const PlacedTriangle& t, bool) { return Chart(t.Shape); }
+};
+
+struct ContourSystem
+{
+  using Chart = ContourChart;
+  static constexpr const char* Name = "Contour";
+  static Corners Any(RandomNumbers& random) { return ConcordantTriangle(random); }
+  static Corners Fat(RandomNumbers& random) { return FatConcordantTriangle(random); }
+  static Chart Make(RandomNumbers&, const PlacedTriangle& t, bool)
+  {
+    return Chart(t.Shape, t.Views());
+  }
+};
+
+struct IncenterSystem
+{
+  using Chart = ContourChart;
+  static constexpr const char* Name = "Contour from the incenter";
+  static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
+  static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
+  static Chart Make(RandomNumbers&, const PlacedTriangle& t, bool)
+  {
+    return Chart(t.Shape, t.Views(), CenterPoint::Incenter);
+  }
+};
+
+struct SmoothSystem
+{
+  using Chart = SmoothChart;
+  static constexpr const char* Name = "Smooth";
+  static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
+  static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
+  static Chart Make(RandomNumbers& random, const PlacedTriangle& t, bool moderate)
+  {
+    const EdgeViews views = t.Views();
+    return Chart(
+      t.Shape, views, moderate ? ModerateNeighbors(random, views) : AnyNeighbors(random, views));
+  }
+};
+
+/// Names the tests over all systems.
+struct SystemName
+{
+  template <typename System>
+  static std::string GetName(int)
+  {
+    std::string name = System::Name;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
+  }
+};
+
+/// The largest |D ToPoint| / longest edge at a reference point, at least 1: by it the Smooth chart
+/// magnifies the rounding of (e, p, c) beside a neighbour that is far sheared or far larger.
+template <typename Chart>
+double Magnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
+{
+  return 1.0;
+}
+
+inline double Magnification(
+  const SmoothChart& chart, const TriangleShape& shape, const Barycentric& l)
+{
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    Barycentric direction{};
+    direction[NextCorner(k)] = -1.0;
+    direction[PreviousCorner(k)] = 1.0;
+    largest = std::max(largest, Norm(chart.Push(l, direction)));
+    // Between the two corners' directions: across the edge.
+    direction = { -0.5, -0.5, -0.5 };
+    direction[k] = 1.0;
+    largest = std::max(largest, Norm(chart.Push(l, direction)));
+  }
+  return std::max(1.0, largest / shape.Base);
+}
+
+/// The largest |D ToReference| longest edge: by it the Smooth chart magnifies the rounding of a
+/// point beside a far smaller neighbour.
+template <typename Chart>
+double InverseMagnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
+{
+  return 1.0;
+}
+
+inline double InverseMagnification(
+  const SmoothChart& chart, const TriangleShape& shape, const Barycentric& l)
+{
+  // Directions as the affine chart sees them, so that a needle counts as any other triangle.
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    Barycentric direction{ -0.5, -0.5, -0.5 };
+    direction[k] = 1.0;
+    for (const double component : chart.Pull(l, shape.FromBarycentric(direction)))
+    {
+      largest = std::max(largest, std::abs(component));
+    }
+  }
+  return std::max(1.0, largest);
+}
+
+/// A triangle's corners and a point in it, with all digits, for messages.
+inline std::string Description(const PlacedTriangle& t, const Vector2& inFrame)
+{
+  char text[1024];
+  std::snprintf(text, sizeof(text),
+    "corners (%.17g, %.17g) (%.17g, %.17g) (%.17g, %.17g); shape base %.17g apexX %.17g height "
+    "%.17g apex %d; point in frame (%.17g, %.17g)",
+    t.Corners[0].x, t.Corners[0].y, t.Corners[1].x, t.Corners[1].y, t.Corners[2].x, t.Corners[2].y,
+    t.Shape.Base, t.Shape.ApexX, t.Shape.Height, t.Shape.Apex, inFrame.x, inFrame.y);
+  return text;
+}
+
+} // namespace homeomorphism_test
+
+#endif

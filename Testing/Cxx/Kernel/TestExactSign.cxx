@@ -1,0 +1,388 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The predicates against integer arithmetic with 128 bits, which is exact: coordinates are integers
+// of at most 60 bits times a power of two, of which a double holds 53 leading bits.
+
+#include "RandomTriangles.h"
+
+#include "Kernel/ExactSign.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace
+{
+
+using namespace homeomorphism_test;
+
+// __extension__ because -Wpedantic knows no such type.
+__extension__ using Wide = __int128;
+
+using Point = std::array<std::int64_t, 3>;
+
+/// Coordinates in units of this power of two; products of two differences stay far from the ends of
+/// the exponent range.
+constexpr std::array<int, 4> units{ 0, -52, 380, -420 };
+
+std::array<double, 3> ToDouble(const Point& p, int unit)
+{
+  std::array<double, 3> result;
+  for (int i = 0; i < 3; ++i)
+  {
+    result[i] = std::ldexp(static_cast<double>(p[i]), unit);
+    // The test is about these very numbers.
+    EXPECT_EQ(static_cast<std::int64_t>(std::ldexp(result[i], -unit)), p[i]);
+  }
+  return result;
+}
+
+int SignOf(Wide value)
+{
+  return value > 0 ? 1 : (value < 0 ? -1 : 0);
+}
+
+Wide Difference(std::int64_t a, std::int64_t b)
+{
+  return static_cast<Wide>(a) - b;
+}
+
+int IntegerOrientation(const Point& a, const Point& b, const Point& c)
+{
+  return SignOf(Difference(b[0], a[0]) * Difference(c[1], a[1]) -
+    Difference(b[1], a[1]) * Difference(c[0], a[0]));
+}
+
+Wide Dot3(const Point& a, const Point& b, const Point& c, const Point& d)
+{
+  Wide sum = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    sum += Difference(b[i], a[i]) * Difference(d[i], c[i]);
+  }
+  return sum;
+}
+
+/// By the definition, times 3: 0 < (A + B + C - 3 A).(B - A) < 3 |B - A|^2.
+bool IntegerConcordant(const Point& a, const Point& b, const Point& c)
+{
+  const auto isInside = [](const Point& from, const Point& to, const Point& third)
+  {
+    const Wide square = Dot3(from, to, from, to);
+    const Wide foot = square + Dot3(from, to, from, third);
+    return foot > 0 && foot < 3 * square;
+  };
+  return isInside(a, b, c) && isInside(b, c, a) && isInside(c, a, b);
+}
+
+/// By the lengths: a^2 < b^2 + 3 c^2 in all six orders.
+bool LengthsConcordant(const Point& a, const Point& b, const Point& c)
+{
+  const std::array<Wide, 3> squares{ Dot3(b, c, b, c), Dot3(c, a, c, a), Dot3(a, b, a, b) };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      if (i != j && !(squares[i] < squares[j] + 3 * squares[3 - i - j]))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool KernelConcordant(const Point& a, const Point& b, const Point& c, int dimension, int unit)
+{
+  return homeomorphism::IsConcordant(
+    ToDouble(a, unit).data(), ToDouble(b, unit).data(), ToDouble(c, unit).data(), dimension);
+}
+
+int KernelOrientation(const Point& a, const Point& b, const Point& c, int unit)
+{
+  const auto inPlane = [unit](const Point& p)
+  {
+    const std::array<double, 3> x = ToDouble(p, unit);
+    return Vector2{ x[0], x[1] };
+  };
+  const Vector2 p = inPlane(a);
+  const Vector2 q = inPlane(b);
+  const Vector2 r = inPlane(c);
+  const int sign = Orientation(p, q, r);
+  // The filter must not hide what the exact evaluation says.
+  EXPECT_EQ(ExactOrientation(p, q, r), sign);
+  return sign;
+}
+
+/// An integer of up to @a bits bits, many of them small: at most 53 bits are not trailing zeros.
+std::int64_t AnyInteger(RandomNumbers& random, int bits)
+{
+  const int used = random.Integer(1, std::min(bits, 53));
+  const int shift = random.Below(bits - used + 1);
+  const auto magnitude = static_cast<std::int64_t>(random.Bits() >> (64 - used)) << shift;
+  return random.Chance(0.5) ? magnitude : -magnitude;
+}
+
+/// One of the three points, moved by one bit in one coordinate: an ulp of the largest coordinates.
+void Nudge(RandomNumbers& random, std::array<Point, 3>& points, int dimension)
+{
+  std::int64_t& x = points[random.Below(3)][random.Below(dimension)];
+  const double moved = std::nextafter(static_cast<double>(x), random.Chance(0.5) ? 1e300 : -1e300);
+  // Below 2^53 the next double is not an integer; the next integer is exact too.
+  const auto asInteger = static_cast<std::int64_t>(moved);
+  x = asInteger != x ? asInteger : x + (random.Chance(0.5) ? 1 : -1);
+}
+
+void ExpectOrientation(const std::array<Point, 3>& p, int unit)
+{
+  const int expected = IntegerOrientation(p[0], p[1], p[2]);
+  for (int first = 0; first < 3; ++first)
+  {
+    const Point& a = p[first];
+    const Point& b = p[NextCorner(first)];
+    const Point& c = p[PreviousCorner(first)];
+    EXPECT_EQ(KernelOrientation(a, b, c, unit), expected);
+    EXPECT_EQ(KernelOrientation(b, a, c, unit), -expected);
+  }
+}
+
+void ExpectConcordance(const std::array<Point, 3>& p, int dimension, int unit)
+{
+  const bool expected = IntegerConcordant(p[0], p[1], p[2]);
+  EXPECT_EQ(LengthsConcordant(p[0], p[1], p[2]), expected);
+  for (int first = 0; first < 3; ++first)
+  {
+    const Point& a = p[first];
+    const Point& b = p[NextCorner(first)];
+    const Point& c = p[PreviousCorner(first)];
+    EXPECT_EQ(KernelConcordant(a, b, c, dimension, unit), expected);
+    EXPECT_EQ(KernelConcordant(b, a, c, dimension, unit), expected);
+  }
+}
+
+TEST(ExactSign, OrientationIsExact)
+{
+  RandomNumbers random(11);
+  std::array<int, 3> seen{};
+  for (int n = 0; n < 100000; ++n)
+  {
+    std::array<Point, 3> p{};
+    for (Point& point : p)
+    {
+      point = { AnyInteger(random, 60), AnyInteger(random, 60), 0 };
+    }
+    ExpectOrientation(p, units[random.Below(4)]);
+    ++seen[IntegerOrientation(p[0], p[1], p[2]) + 1];
+  }
+  EXPECT_GT(seen[0], 1000);
+  EXPECT_GT(seen[2], 1000);
+}
+
+TEST(ExactSign, OrientationNearALineIsExact)
+{
+  RandomNumbers random(12);
+  std::array<int, 3> seen{};
+  for (int n = 0; n < 100000; ++n)
+  {
+    // Exactly on a line: multiples of one direction, small enough that the sums are doubles.
+    const std::int64_t dx = AnyInteger(random, 26);
+    const std::int64_t dy = AnyInteger(random, 26);
+    const Point start{ AnyInteger(random, 51), AnyInteger(random, 51), 0 };
+    std::array<Point, 3> p{};
+    for (Point& point : p)
+    {
+      const std::int64_t factor = AnyInteger(random, 25);
+      point = { start[0] + factor * dx, start[1] + factor * dy, 0 };
+    }
+    EXPECT_EQ(IntegerOrientation(p[0], p[1], p[2]), 0);
+    const int unit = units[random.Below(4)];
+    ExpectOrientation(p, unit);
+    Nudge(random, p, 2);
+    ExpectOrientation(p, unit);
+    ++seen[IntegerOrientation(p[0], p[1], p[2]) + 1];
+  }
+  EXPECT_GT(seen[0], 10000);
+  EXPECT_GT(seen[2], 10000);
+}
+
+TEST(ExactSign, OrientationOfRoundedPointsOnALineIsExact)
+{
+  // Points rounded to the nearest double on a line: every sign occurs, and a plain evaluation in
+  // doubles gets many of them wrong.
+  RandomNumbers random(13);
+  int wrongWithout = 0;
+  for (int n = 0; n < 100000; ++n)
+  {
+    const double dx = random.Uniform(-1.0, 1.0);
+    const double dy = random.Uniform(-1.0, 1.0);
+    std::array<Point, 3> p{};
+    for (Point& point : p)
+    {
+      const double t = random.Uniform(-1.0, 1.0);
+      // In [1, 2), where one ulp is 2^-52.
+      const double x = 1.5 + 0.4 * t * dx;
+      const double y = 1.5 + 0.4 * t * dy;
+      point = { static_cast<std::int64_t>(std::ldexp(x, 52)),
+        static_cast<std::int64_t>(std::ldexp(y, 52)), 0 };
+    }
+    ExpectOrientation(p, -52);
+    const std::array<double, 3> a = ToDouble(p[0], -52);
+    const std::array<double, 3> b = ToDouble(p[1], -52);
+    const std::array<double, 3> c = ToDouble(p[2], -52);
+    const double plain = a[0] * (b[1] - c[1]) + b[0] * (c[1] - a[1]) + c[0] * (a[1] - b[1]);
+    wrongWithout += ((plain > 0.0) - (plain < 0.0)) != IntegerOrientation(p[0], p[1], p[2]);
+  }
+  EXPECT_GT(wrongWithout, 1000);
+}
+
+TEST(ExactSign, ConcordanceIsExact)
+{
+  RandomNumbers random(14);
+  int concordant = 0;
+  for (int n = 0; n < 100000; ++n)
+  {
+    const int dimension = random.Integer(2, 3);
+    const int bits = random.Chance(0.5) ? 4 : 60;
+    std::array<Point, 3> p{};
+    for (Point& point : p)
+    {
+      point = { AnyInteger(random, bits), AnyInteger(random, bits),
+        dimension == 3 ? AnyInteger(random, bits) : 0 };
+    }
+    ExpectConcordance(p, dimension, units[random.Below(4)]);
+    concordant += IntegerConcordant(p[0], p[1], p[2]);
+  }
+  EXPECT_GT(concordant, 1000);
+}
+
+/// Three corners whose foot on the edge from the first to the second is exactly on the first: with
+/// u = B - A and v = C - A, u.(u + v) = 0, that is v = -u + w with w perpendicular to u.
+std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension)
+{
+  const int bits = random.Integer(3, 25);
+  const Point a{ AnyInteger(random, 52), AnyInteger(random, 52),
+    dimension == 3 ? AnyInteger(random, 52) : 0 };
+  Point u{ AnyInteger(random, bits), AnyInteger(random, bits),
+    dimension == 3 ? AnyInteger(random, bits) : 0 };
+  u[0] += u[0] == 0 && u[1] == 0;
+  const Point other{ AnyInteger(random, 25), AnyInteger(random, 25), AnyInteger(random, 25) };
+  const Point w = dimension == 2
+    ? Point{ -u[1] * other[0], u[0] * other[0], 0 }
+    : Point{ u[1] * other[2] - u[2] * other[1], u[2] * other[0] - u[0] * other[2],
+        u[0] * other[1] - u[1] * other[0] };
+  std::array<Point, 3> p{ a, a, a };
+  for (int i = 0; i < 3; ++i)
+  {
+    p[1][i] += u[i];
+    p[2][i] += w[i] - u[i];
+  }
+  return p;
+}
+
+TEST(ExactSign, ConcordanceOnTheLimitIsExact)
+{
+  RandomNumbers random(15);
+  std::array<int, 2> seen{};
+  for (int n = 0; n < 100000; ++n)
+  {
+    const int dimension = random.Integer(2, 3);
+    std::array<Point, 3> p = OnTheLimit(random, dimension);
+    EXPECT_FALSE(IntegerConcordant(p[0], p[1], p[2]));
+    const int unit = units[random.Below(4)];
+    ExpectConcordance(p, dimension, unit);
+    Nudge(random, p, dimension);
+    ExpectConcordance(p, dimension, unit);
+    ++seen[IntegerConcordant(p[0], p[1], p[2])];
+  }
+  EXPECT_GT(seen[0], 10000);
+  EXPECT_GT(seen[1], 10000);
+}
+
+TEST(ExactSign, DimensionsAgree)
+{
+  RandomNumbers random(16);
+  for (int n = 0; n < 50000; ++n)
+  {
+    std::array<Point, 3> p = OnTheLimit(random, 2);
+    if (random.Chance(0.7))
+    {
+      Nudge(random, p, 2);
+    }
+    const bool inPlane = KernelConcordant(p[0], p[1], p[2], 2, 0);
+    // The same triangle in a plane of space that is parallel to two of the axes.
+    const int normal = random.Below(3);
+    const std::int64_t height = AnyInteger(random, 53);
+    std::array<Point, 3> q{};
+    for (int k = 0; k < 3; ++k)
+    {
+      q[k][normal] = height;
+      q[k][NextCorner(normal)] = p[k][0];
+      q[k][PreviousCorner(normal)] = p[k][1];
+    }
+    EXPECT_EQ(KernelConcordant(q[0], q[1], q[2], 3, 0), inPlane);
+  }
+}
+
+TEST(ExactSign, IsoscelesTrianglesAreConcordant)
+{
+  RandomNumbers random(17);
+  for (int n = 0; n < 50000; ++n)
+  {
+    // Legs that differ by the order and the signs of their components have exactly equal lengths.
+    const int bits = random.Integer(1, 50);
+    const Point leg{ AnyInteger(random, bits), AnyInteger(random, bits), AnyInteger(random, bits) };
+    const int rotation = random.Below(3);
+    Point otherLeg;
+    for (int i = 0; i < 3; ++i)
+    {
+      otherLeg[i] = (random.Chance(0.5) ? 1 : -1) * leg[(i + rotation) % 3];
+    }
+    const Point apex{ AnyInteger(random, 50), AnyInteger(random, 50), AnyInteger(random, 50) };
+    std::array<Point, 3> p{ apex, apex, apex };
+    for (int i = 0; i < 3; ++i)
+    {
+      p[1][i] += leg[i];
+      p[2][i] += otherLeg[i];
+    }
+    // Not if the legs are on a line, in the same direction or opposite ones.
+    bool parallel = true;
+    for (int i = 0; i < 3; ++i)
+    {
+      const int j = NextCorner(i);
+      parallel = parallel &&
+        static_cast<Wide>(leg[i]) * otherLeg[j] == static_cast<Wide>(leg[j]) * otherLeg[i];
+    }
+    if (!parallel)
+    {
+      EXPECT_TRUE(KernelConcordant(p[0], p[1], p[2], 3, units[random.Below(4)]));
+    }
+  }
+}
+
+TEST(ExactSign, AcuteTrianglesAreConcordant)
+{
+  RandomNumbers random(18);
+  int acute = 0;
+  while (acute < 20000)
+  {
+    const int dimension = random.Integer(2, 3);
+    const int bits = random.Chance(0.5) ? 6 : 60;
+    std::array<Point, 3> p{};
+    for (Point& point : p)
+    {
+      point = { AnyInteger(random, bits), AnyInteger(random, bits),
+        dimension == 3 ? AnyInteger(random, bits) : 0 };
+    }
+    if (Dot3(p[0], p[1], p[0], p[2]) > 0 && Dot3(p[1], p[2], p[1], p[0]) > 0 &&
+      Dot3(p[2], p[0], p[2], p[1]) > 0)
+    {
+      ++acute;
+      EXPECT_TRUE(KernelConcordant(p[0], p[1], p[2], dimension, units[random.Below(4)]));
+    }
+  }
+}
+
+} // namespace

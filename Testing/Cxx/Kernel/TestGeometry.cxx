@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What an edge sees of the corner opposite, against integer arithmetic: where the coordinates'
+// differences are exact every number of the view is good to a few ulp of itself, in needles too.
+
+#include "RandomTriangles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+
+namespace
+{
+
+using namespace homeomorphism_test;
+
+double RelativeError(double found, double expected)
+{
+  return found == expected ? 0.0 : std::abs(found - expected) / std::abs(expected);
+}
+
+TEST(Geometry, ViewFromEdgeIsGoodToAFewUlp)
+{
+  RandomNumbers random(71);
+  double worstLength = 0.0;
+  double worstFoot = 0.0;
+  double worstHeight = 0.0;
+  for (int n = 0; n < 200000; ++n)
+  {
+    // At most 26 bits, so that products are exact as 64-bit integers. Edges and opposite corners
+    // are short or long independently; often the three points are almost on a line.
+    const auto component = [&random]()
+    {
+      const int bits = random.Integer(1, 25);
+      return random.Integer(-(1 << bits), 1 << bits);
+    };
+    const std::int64_t ex = component();
+    const std::int64_t ey = component();
+    std::int64_t ox = component();
+    std::int64_t oy = component();
+    if (random.Chance(0.5))
+    {
+      const double t = random.Uniform(-1.0, 1.0);
+      ox = std::llround(t * static_cast<double>(ex)) + random.Integer(-2, 2);
+      oy = std::llround(t * static_cast<double>(ey)) + random.Integer(-2, 2);
+    }
+    const std::int64_t square = ex * ex + ey * ey;
+    if (square == 0)
+    {
+      continue;
+    }
+    const auto length = std::sqrt(static_cast<long double>(square));
+    const auto foot =
+      static_cast<long double>(ex * ox + ey * oy) / static_cast<long double>(square);
+    const auto height = std::abs(static_cast<long double>(ex * oy - ey * ox)) / length;
+
+    // Translated by an integer, so that the differences stay exact.
+    const Vector2 start{ static_cast<double>(component()), static_cast<double>(component()) };
+    const Vector2 end = start + Vector2{ static_cast<double>(ex), static_cast<double>(ey) };
+    const Vector2 opposite = start + Vector2{ static_cast<double>(ox), static_cast<double>(oy) };
+    const EdgeView view = ViewFromEdge(start, end, opposite);
+    worstLength = std::max(worstLength, RelativeError(view.Length, static_cast<double>(length)));
+    worstFoot = std::max(worstFoot, RelativeError(view.Foot, static_cast<double>(foot)));
+    worstHeight = std::max(worstHeight, RelativeError(view.Height, static_cast<double>(height)));
+  }
+  std::cout << "Views: length off by " << worstLength / Ulp << ", foot by " << worstFoot / Ulp
+            << ", height by " << worstHeight / Ulp << " ulp\n";
+  EXPECT_LT(worstLength, 2.0 * Ulp);
+  EXPECT_LT(worstFoot, 8.0 * Ulp);
+  EXPECT_LT(worstHeight, 8.0 * Ulp);
+}
+
+TEST(Geometry, BarycentricCoordinatesOfCornersAreExact)
+{
+  RandomNumbers random(72);
+  for (int n = 0; n < 50000; ++n)
+  {
+    const TriangleShape shape = PlacedTriangle(AnyTriangle(random)).Shape;
+    for (int k = 0; k < 3; ++k)
+    {
+      const Barycentric l = shape.ToBarycentric(shape.Corner(k));
+      Barycentric expected{};
+      expected[k] = 1.0;
+      ASSERT_EQ(l, expected);
+      const Vector2 corner = shape.FromBarycentric(expected);
+      ASSERT_EQ(corner.x, shape.Corner(k).x);
+      ASSERT_EQ(corner.y, shape.Corner(k).y);
+    }
+  }
+}
+
+TEST(Geometry, VectorsFollowPoints)
+{
+  RandomNumbers random(73);
+  double worst = 0.0;
+  for (int n = 0; n < 50000; ++n)
+  {
+    const TriangleShape shape = PlacedTriangle(AnyTriangle(random)).Shape;
+    const Barycentric l = AnyBarycentric(random);
+    const Barycentric m = AnyBarycentric(random);
+    const Vector2 vector = shape.FromBarycentric(m) - shape.FromBarycentric(l);
+    const Barycentric components = shape.VectorToBarycentric(vector);
+    // The points' own ulps, seen across the low triangle.
+    const double rounding = Ulp * shape.Base / shape.Height;
+    for (int k = 0; k < 3; ++k)
+    {
+      worst = std::max(worst, std::abs(components[k] - (m[k] - l[k])) / rounding);
+    }
+    EXPECT_LT(std::abs(components[0] + components[1] + components[2]), 4.0 * Ulp);
+  }
+  EXPECT_LT(worst, 8.0);
+}
+
+} // namespace

@@ -1,0 +1,416 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the Smooth system is for: first and second derivatives that agree from both sides of an
+// edge; and what it stands on: a positive determinant, disjoint strips, and that only neighbours
+// matter.
+
+#include "AdjacentTriangles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <string>
+
+namespace
+{
+
+using namespace homeomorphism_test;
+
+/// The derivative, in the plane, of the map between one of the two triangles and its counterpart.
+Matrix2 Jacobian(const PlacedTriangle& p, const SmoothChart& chartP, const PlacedTriangle& q,
+  const SmoothChart& chartQ, const Barycentric& l)
+{
+  return InPlane(p, q, MapDerivative(chartP, chartQ, l));
+}
+
+/// By how much rounding of the corners, an ulp of the longest edge, may change a derivative of the
+/// map, relative to the derivatives that it is composed of.
+double Aspect(const PlacedTriangle& triangle)
+{
+  return triangle.Shape.Base / triangle.Shape.Height;
+}
+
+TEST(SmoothEdge, FirstDerivativesAgree)
+{
+  RandomNumbers random(51);
+  for (const bool moderate : { true, false })
+  {
+    double worst = 0.0;
+    std::string where;
+    for (int n = 0; n < 50000; ++n)
+    {
+      const AdjacentTriangles p =
+        moderate ? ModerateAdjacentTriangles(random) : AnyAdjacentTriangles(random);
+      const AdjacentTriangles q =
+        moderate ? ModerateAdjacentTriangles(random) : AnyAdjacentTriangles(random);
+      const std::array<SmoothChart, 2> chartsP = p.SmoothCharts();
+      const std::array<SmoothChart, 2> chartsQ = q.SmoothCharts();
+      const double w = random.Uniform(0.001, 0.999);
+      const std::array<Barycentric, 2> l = OnSharedEdge(w);
+      const Matrix2 first = Jacobian(p.First, chartsP[0], q.First, chartsQ[0], l[0]);
+      const Matrix2 second = Jacobian(p.Second, chartsP[1], q.Second, chartsQ[1], l[1]);
+      // Both map the edge and the direction across it, which are conditioned by the angle at which
+      // the chart crosses the edge in P.
+      double condition = 1.0;
+      for (const PlacedTriangle* triangle : { &p.First, &p.Second, &q.First, &q.Second })
+      {
+        condition = std::max(condition, Aspect(*triangle));
+      }
+      condition *= std::max({ Magnification(chartsP[0], p.First.Shape, l[0]),
+        Magnification(chartsP[1], p.Second.Shape, l[1]),
+        InverseMagnification(chartsP[0], p.First.Shape, l[0]),
+        InverseMagnification(chartsP[1], p.Second.Shape, l[1]) });
+      const double error = Norm(first - second) / (Ulp * condition * Norm(first));
+      if (!(error <= worst))
+      {
+        worst = error;
+        where = Description(p.First, {}) + " | " + Description(p.Second, {}) + " to " +
+          Description(q.First, {}) + " | " + Description(q.Second, {});
+      }
+    }
+    std::cout << (moderate ? "moderate" : "any") << " pairs: first derivatives differ by " << worst
+              << " times rounding\n";
+    EXPECT_LT(worst, 64.0) << where;
+  }
+}
+
+TEST(SmoothEdge, SecondDerivativesAgree)
+{
+  // The derivative across the edge of all entries of the Jacobian, one-sided with an error of order
+  // h^2: the sides must differ by no more, so by 64 times less if h is 8 times less. Two steps in
+  // between make sure that the coarse differences are not small by chance.
+  RandomNumbers random(52);
+  double worstFall = 0.0;
+  double worstLeft = 0.0;
+  double largest = 0.0;
+  int pairs = 0;
+  for (int n = 0; n < 5000; ++n)
+  {
+    const AdjacentTriangles p = ModerateAdjacentTriangles(random);
+    const AdjacentTriangles q = ModerateAdjacentTriangles(random);
+    const std::array<SmoothChart, 2> chartsP = p.SmoothCharts();
+    const std::array<SmoothChart, 2> chartsQ = q.SmoothCharts();
+    const Vector2 point = p.At(random.Uniform(0.2, 0.8));
+    // To the first triangle and, with the sign changed, to the second.
+    const Vector2 inward = p.Normal() + random.Uniform(-1.0, 1.0) * p.Tangent();
+    const auto jacobian = [&](int side, double distance)
+    {
+      const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
+      const PlacedTriangle& image = side == 0 ? q.First : q.Second;
+      const Vector2 at = point + ((side == 0 ? distance : -distance) * p.Length()) * inward;
+      const Barycentric l = chartsP[side].ToReference(triangle.ToFrame(at));
+      return Jacobian(triangle, chartsP[side], image, chartsQ[side], l);
+    };
+    const auto derivative = [&](int side, double h) -> Matrix2
+    {
+      const Matrix2 at0 = jacobian(side, 0.0);
+      const Matrix2 at1 = jacobian(side, h);
+      const Matrix2 at2 = jacobian(side, 2.0 * h);
+      const double factor = (side == 0 ? 0.5 : -0.5) / h;
+      const auto combine = [factor](const Vector2& a, const Vector2& b, const Vector2& c)
+      { return factor * (4.0 * b - 3.0 * a - c); };
+      return { combine(at0.ImageOfX, at1.ImageOfX, at2.ImageOfX),
+        combine(at0.ImageOfY, at1.ImageOfY, at2.ImageOfY) };
+    };
+    const double scale = Norm(jacobian(0, 0.0));
+    const auto jump = [&](double h) { return Norm(derivative(0, h) - derivative(1, h)) / scale; };
+    const double coarse = std::max({ jump(8e-4), 4.0 * jump(4e-4), 16.0 * jump(2e-4) });
+    const double fine = jump(1e-4);
+    largest = std::max(largest, coarse);
+    worstLeft = std::max(worstLeft, fine);
+    // Where the jump is not rounding already.
+    if (coarse > 1e-7)
+    {
+      ++pairs;
+      worstFall = std::max(worstFall, fine / coarse);
+    }
+  }
+  std::cout << "second derivatives differ by up to " << largest << ", with a step 8 times less by "
+            << worstLeft << "; it falls to " << worstFall << " of it at most\n";
+  EXPECT_GT(pairs, 4000);
+  EXPECT_LT(worstFall, 1.0 / 32.0);
+}
+
+TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
+{
+  RandomNumbers random(53);
+  double worst = 0.0;
+  for (int n = 0; n < 100000; ++n)
+  {
+    const AdjacentTriangles p =
+      random.Chance(0.5) ? ModerateAdjacentTriangles(random) : AnyAdjacentTriangles(random);
+    const std::array<SmoothChart, 2> charts = p.SmoothCharts();
+    const std::array<Barycentric, 2> l = OnSharedEdge(random.Uniform(0.001, 0.999));
+    // Of low triangles the areas are differences of nearly equal products.
+    using Wide = long double;
+    const Wide ex = static_cast<Wide>(p.End.x) - p.Start.x;
+    const Wide ey = static_cast<Wide>(p.End.y) - p.Start.y;
+    const auto fromMiddle = [&](const Vector2& apex) -> std::array<Wide, 2>
+    {
+      return { apex.x - 0.5L * (static_cast<Wide>(p.Start.x) + p.End.x),
+        apex.y - 0.5L * (static_cast<Wide>(p.Start.y) + p.End.y) };
+    };
+    const std::array<Wide, 2> left = fromMiddle(p.First.Corners[2]);
+    const std::array<Wide, 2> right = fromMiddle(p.Second.Corners[2]);
+    const Wide area = ex * left[1] - ey * left[0];
+    const Wide otherArea = ey * right[0] - ex * right[1];
+    const Vector2 v{ static_cast<double>(
+                       (otherArea * left[0] - area * right[0]) / (area + otherArea)),
+      static_cast<double>((otherArea * left[1] - area * right[1]) / (area + otherArea)) };
+    const Barycentric across{ -0.5, -0.5, 1.0 };
+    const Vector2 fromFirst = p.First.VectorFromFrame(charts[0].Push(l[0], across));
+    const Vector2 fromSecond = p.Second.VectorFromFrame(charts[1].Push(l[1], across));
+    // The chart adds up components along the corners, which are as large as the shear, so that up
+    // to twenty times this is rounded.
+    const double size = p.First.Shape.Base + p.Second.Shape.Base;
+    worst = std::max({ worst, Norm(fromFirst - v) / size, Norm(fromSecond + v) / size });
+    // And along the edge, the edge.
+    const Vector2 along = p.First.VectorFromFrame(charts[0].Push(l[0], { -1.0, 1.0, 0.0 }));
+    worst = std::max(worst, Norm(along - (p.End - p.Start)) / size);
+  }
+  std::cout << "derivative across the edge off by " << worst << " of the triangles' size\n";
+  EXPECT_LT(worst, 4e-14);
+}
+
+TEST(SmoothEdge, AffineImagesGiveTheAffineMap)
+{
+  RandomNumbers random(54);
+  double worst = 0.0;
+  double worstDerivative = 0.0;
+  std::string where;
+  for (int n = 0; n < 20000; ++n)
+  {
+    const AdjacentTriangles p =
+      random.Chance(0.5) ? ModerateAdjacentTriangles(random) : AnyAdjacentTriangles(random);
+    // A rotation, a stretch and another rotation.
+    const double a = random.Uniform(0.0, 6.283185307179586);
+    const double b = random.Uniform(0.0, 6.283185307179586);
+    const double stretch = random.PowerOfTen(-1.0, 1.0);
+    const auto turn = [](const Vector2& v, double angle) -> Vector2
+    {
+      return { v.x * std::cos(angle) - v.y * std::sin(angle),
+        v.x * std::sin(angle) + v.y * std::cos(angle) };
+    };
+    const auto linear = [&](const Vector2& v)
+    {
+      const Vector2 turned = turn(v, a);
+      return turn({ stretch * turned.x, turned.y }, b);
+    };
+    const AdjacentTriangles q(
+      linear(p.Start), linear(p.End), linear(p.First.Corners[2]), linear(p.Second.Corners[2]));
+    const Matrix2 expected{ linear({ 1.0, 0.0 }), linear({ 0.0, 1.0 }) };
+    const std::array<SmoothChart, 2> chartsP = p.SmoothCharts();
+    const std::array<SmoothChart, 2> chartsQ = q.SmoothCharts();
+    for (int i = 0; i < 6; ++i)
+    {
+      const int side = i % 2;
+      const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
+      const PlacedTriangle& image = side == 0 ? q.First : q.Second;
+      const Vector2 inFrame = triangle.Shape.FromBarycentric(AnyBarycentric(random));
+      const Barycentric l = chartsP[side].ToReference(inFrame);
+      const Vector2 found = image.FromFrame(chartsQ[side].ToPoint(l));
+      const double size = Norm(expected) * triangle.Shape.Base + image.Shape.Base;
+      const double condition = std::max(Aspect(triangle), Aspect(image)) *
+        Magnification(chartsP[side], triangle.Shape, l) *
+        InverseMagnification(chartsP[side], triangle.Shape, l);
+      // The corners of the image are rounded, and so are the neighbours' places in both.
+      const double error = Norm(found - linear(triangle.FromFrame(inFrame))) / size;
+      const Matrix2 derivative = Jacobian(triangle, chartsP[side], image, chartsQ[side], l);
+      const double errorOfDerivative = Norm(derivative - expected) / (condition * Norm(expected));
+      if (!(error <= worst))
+      {
+        worst = error;
+        where = Description(triangle, inFrame) + " to " + Description(image, {});
+      }
+      worstDerivative = std::max(worstDerivative, errorOfDerivative);
+    }
+  }
+  std::cout << "affine map off by " << worst << " of the triangles' size, its derivative by "
+            << worstDerivative << " of its condition\n";
+  EXPECT_LT(worst, 1e-14) << where;
+  EXPECT_LT(worstDerivative, 1e-14);
+}
+
+/// Barycentric coordinates in the strip of edge @a k, at u and at a proportion of the edge.
+Barycentric InStrip(int k, double tau, double u, double proportion)
+{
+  return OnStripBorder(k, tau * u, proportion);
+}
+
+TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
+{
+  constexpr int triangles = 100000;
+  constexpr int pointsPerTriangle = 102;
+  RandomNumbers random(55);
+  long points = 0;
+  long below = 0;
+  // The least determinant over pairs whose shares 2 a / (a + a*) are no small numbers, and the
+  // least over its bound where the bound is the neighbour's share.
+  double lowest = 1e300;
+  double nearestShare = 1e300;
+  std::string where;
+  for (int n = 0; n < triangles; ++n)
+  {
+    const AdjacentTriangles p = AnyAdjacentTriangles(random);
+    const std::array<SmoothChart, 2> charts = p.SmoothCharts();
+    const int side = random.Below(2);
+    const SmoothChart& chart = charts[side];
+    const double bound = chart.DeterminantBound();
+    const double height = p.First.Views()[2].Height;
+    const double otherHeight = p.Second.Views()[2].Height;
+    const double share = 2.0 * (side == 0 ? otherHeight : height) / (height + otherHeight);
+    const double tau = chart.StripWidth(2);
+    for (int i = 0; i < pointsPerTriangle; ++i, ++points)
+    {
+      // 0.6 is where K' is least and u^3 (1 - u)^2 greatest.
+      const double u = i % 3 == 0 ? random.Uniform(0.55, 0.65) : random.Uniform();
+      double proportion = random.Uniform();
+      if (i % 2 == 0)
+      {
+        const double nearCorner = std::ldexp(proportion, -random.Below(30));
+        proportion = random.Chance(0.5) ? nearCorner : 1.0 - nearCorner;
+      }
+      const double ratio = chart.DeterminantRatio(InStrip(2, tau, u, proportion));
+      if (!(ratio > 0.0 && ratio >= bound * (1.0 - 4.0 * Ulp)))
+      {
+        ++below;
+        where = Description(p.First, {}) + " | " + Description(p.Second, {});
+      }
+      if (share > 0.5)
+      {
+        lowest = std::min(lowest, ratio);
+      }
+      if (share < 0.25)
+      {
+        nearestShare = std::min(nearestShare, ratio / bound);
+      }
+    }
+  }
+  std::cout << points << " points: determinant at least " << lowest << ", or " << nearestShare
+            << " times the neighbour's share\n";
+  EXPECT_GE(points, 10000000);
+  EXPECT_EQ(below, 0) << where;
+  // 1 + K' - 6 u^3 (1 - u)^2 is least at u = 3/5, where K' and u^3 (1 - u)^2 both are extreme:
+  // there it is 4385 / 15625 = 0.28064. It is approached beside far larger neighbours, near a
+  // corner.
+  EXPECT_GE(lowest, 0.28064 - 1e-12);
+  EXPECT_LT(lowest, 0.2808);
+  EXPECT_LT(nearestShare, 1.001);
+}
+
+TEST(SmoothEdge, DeterminantIsThatOfTheDerivative)
+{
+  RandomNumbers random(56);
+  double worst = 0.0;
+  for (int n = 0; n < 100000; ++n)
+  {
+    const PlacedTriangle t(FatTriangle(random));
+    const EdgeViews views = t.Views();
+    const SmoothChart chart(t.Shape, views, AnyNeighbors(random, views));
+    const int k = random.Below(3);
+    const Barycentric l = random.Chance(0.5)
+      ? AnyBarycentric(random)
+      : InStrip(k, chart.StripWidth(k), random.Uniform(), random.Uniform(0.001, 0.999));
+    const Vector2 a = chart.Push(l, { -1.0, 1.0, 0.0 });
+    const Vector2 b = chart.Push(l, { -1.0, 0.0, 1.0 });
+    const double affine = t.Shape.Base * t.Shape.Height;
+    const double condition = Norm(a) * Norm(b) / affine;
+    worst = std::max(
+      worst, std::abs(Cross(a, b) / affine - chart.DeterminantRatio(l)) / (1.0 + condition));
+  }
+  std::cout << "determinant off by " << worst << " of its condition\n";
+  EXPECT_LT(worst, 1e-14);
+}
+
+TEST(SmoothEdge, OnlyTheStripChanges)
+{
+  RandomNumbers random(57);
+  int inside = 0;
+  int changed = 0;
+  int wrong = 0;
+  for (int n = 0; n < 20000; ++n)
+  {
+    const PlacedTriangle t(AnyTriangle(random));
+    const EdgeViews views = t.Views();
+    std::array<Neighbor, 3> neighbors = AnyNeighbors(random, views);
+    const SmoothChart before(t.Shape, views, neighbors);
+    const int k = random.Below(3);
+    neighbors[k] = AnyNeighbor(random, views[k]);
+    const SmoothChart after(t.Shape, views, neighbors);
+    const double tau = std::max(before.StripWidth(k), after.StripWidth(k));
+    for (int i = 0; i < 20; ++i)
+    {
+      const Barycentric l =
+        i < 10 ? AnyBarycentric(random) : InStrip(k, 1.0, random.Uniform(), random.Uniform());
+      const double sides = l[NextCorner(k)] * l[PreviousCorner(k)];
+      const double least = l[k] * (l[NextCorner(k)] + l[PreviousCorner(k)]);
+      const Vector2 x = before.ToPoint(l);
+      const Vector2 y = after.ToPoint(l);
+      const bool isSame = x.x == y.x && x.y == y.y;
+      if (least < tau * sides)
+      {
+        // Deep enough inside for the change to be seen.
+        if (least < 0.5 * std::min(before.StripWidth(k), after.StripWidth(k)) * sides &&
+          least > 0.01 * tau * sides)
+        {
+          ++inside;
+          changed += !isSame;
+        }
+      }
+      else
+      {
+        const Barycentric back = before.ToReference(x);
+        const Barycentric backAfter = after.ToReference(x);
+        // The inverse is the same too, but for a point that rounding moves over the border.
+        double difference = 0.0;
+        for (int j = 0; j < 3; ++j)
+        {
+          difference = std::max(difference, std::abs(back[j] - backAfter[j]));
+        }
+        wrong += !isSame || !(difference < 1e-15);
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(inside, 10000);
+  EXPECT_GT(changed, 0.99 * inside);
+}
+
+TEST(SmoothEdge, StripsAreDisjointAndTheChartIsAffineOutside)
+{
+  RandomNumbers random(58);
+  int outside = 0;
+  for (int n = 0; n < 200000; ++n)
+  {
+    const Barycentric l = AnyBarycentric(random);
+    int strips = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const double i = l[NextCorner(k)];
+      const double j = l[PreviousCorner(k)];
+      strips += l[k] * (i + j) < i * j * (1.0 - 4.0 * Ulp);
+    }
+    EXPECT_LE(strips, 1);
+    outside += strips == 0;
+  }
+  EXPECT_GT(outside, 1000);
+  // With no neighbours the chart is the Linear system's.
+  for (int n = 0; n < 20000; ++n)
+  {
+    const PlacedTriangle t(AnyTriangle(random));
+    const SmoothChart chart(t.Shape, t.Views(), {});
+    const Barycentric l = AnyBarycentric(random);
+    const Vector2 point = chart.ToPoint(l);
+    EXPECT_EQ(point.x, t.Shape.FromBarycentric(l).x);
+    EXPECT_EQ(point.y, t.Shape.FromBarycentric(l).y);
+    EXPECT_EQ(chart.ToReference(point), t.Shape.ToBarycentric(point));
+    EXPECT_EQ(chart.DeterminantRatio(l), 1.0);
+    EXPECT_EQ(chart.DeterminantBound(), 1.0);
+  }
+}
+
+} // namespace
