@@ -29,13 +29,13 @@
 namespace homeomorphism
 {
 
-/// The defects as one text, one to a line.
-inline std::string DescribeProblems(const MeshProblems& problems, bool refused)
+/// The messages of the defects with an outcome, one to a line.
+inline std::string DescribeProblems(const MeshProblems& problems, MeshProblem::Outcome outcome)
 {
   std::string text;
   for (const MeshProblem& problem : problems)
   {
-    if ((problem.Result == MeshProblem::Outcome::Refused) == refused)
+    if (problem.Result == outcome)
     {
       text += (text.empty() ? "" : "\n") + problem.Message();
     }
@@ -43,11 +43,12 @@ inline std::string DescribeProblems(const MeshProblems& problems, bool refused)
   return text;
 }
 
-/// Errors for what made the meshes be refused, warnings for what was masked or replaced.
+/// Errors for what made the meshes be refused, warnings for what was left out of them. That the Linear
+/// system carries discordant triangles is no surprise to who asked for it, and shows in an array.
 inline void ReportProblems(vtkObject* self, const MeshProblems& problems)
 {
-  const std::string errors = DescribeProblems(problems, true);
-  const std::string warnings = DescribeProblems(problems, false);
+  const std::string errors = DescribeProblems(problems, MeshProblem::Outcome::Refused);
+  const std::string warnings = DescribeProblems(problems, MeshProblem::Outcome::Masked);
   if (!errors.empty())
   {
     vtkErrorWithObjectMacro(self, << errors);

@@ -16,6 +16,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -186,6 +187,13 @@ private:
       this->Triangles->SetNumberOfTuples(this->NumberOfPoints);
       this->Triangles->FillValue(-1);
     }
+    if (this->Self->NumberOfDiscordantTriangles > 0)
+    {
+      this->Systems = vtkSmartPointer<vtkIntArray>::New();
+      this->Systems->SetName("UsedCoordinateSystem");
+      this->Systems->SetNumberOfTuples(this->NumberOfPoints);
+      this->Systems->FillValue(-1);
+    }
     if (needsJacobians || this->Self->ComputeJacobian)
     {
       this->Jacobians = NewDoubles("Jacobian", 9, this->NumberOfPoints);
@@ -228,6 +236,11 @@ private:
     {
       this->Triangles->SetValue(
         i, this->Map.GetPair().GetTriangulation().GetCellId(place.Triangle));
+    }
+    if (this->Systems)
+    {
+      this->Systems->SetValue(
+        i, static_cast<int>(this->Map.GetCharts(this->From).GetSystemOf(place.Triangle)));
     }
     if (this->Jacobians || this->Determinants)
     {
@@ -371,6 +384,10 @@ private:
     {
       pointData->AddArray(this->Triangles);
     }
+    if (this->Systems)
+    {
+      pointData->AddArray(this->Systems);
+    }
     if (this->Self->ComputeJacobian)
     {
       pointData->AddArray(this->Jacobians);
@@ -426,6 +443,7 @@ private:
   vtkIdType NumberOfPoints;
   vtkSmartPointer<vtkUnsignedCharArray> Mask;
   vtkSmartPointer<vtkIdTypeArray> Triangles;
+  vtkSmartPointer<vtkIntArray> Systems;
   vtkSmartPointer<vtkDoubleArray> Jacobians;
   vtkSmartPointer<vtkDoubleArray> Determinants;
 };
@@ -537,6 +555,7 @@ int vtkDifferentiableHomeomorphism::RequestData(
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
   vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
   this->NumberOfOutsidePoints = 0;
+  this->NumberOfDiscordantTriangles = 0;
 
   HomeomorphismOptions options;
   options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
@@ -549,6 +568,12 @@ int vtkDifferentiableHomeomorphism::RequestData(
   if (!map)
   {
     return 0;
+  }
+
+  const ChartedTriangulation& charts = map->GetCharts(Side::Source);
+  for (TriangleIndex t = 0; t < map->GetPair().GetTriangulation().GetNumberOfTriangles(); ++t)
+  {
+    this->NumberOfDiscordantTriangles += charts.GetSystemOf(t) != options.System;
   }
 
   if (!data)
@@ -614,4 +639,5 @@ void vtkDifferentiableHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BlankOutside: " << this->BlankOutside << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
   os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
+  os << indent << "NumberOfDiscordantTriangles: " << this->NumberOfDiscordantTriangles << "\n";
 }

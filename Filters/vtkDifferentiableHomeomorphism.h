@@ -39,6 +39,8 @@
  * These arrays are added (an array of the same name is replaced):
  *
  * - point array `ValidPointMask` (unsigned char): 1 inside, 0 outside P's domain;
+ * - where the Linear system carries discordant triangles (see DiscordantTriangles), point array
+ *   `UsedCoordinateSystem` (int): LINEAR or CONTOUR, -1 outside;
  * - with ComputeTriangleId, point array `TriangleId` (vtkIdType): cell id in P, -1 outside;
  * - with ComputeJacobian, point array `Jacobian` (double, 9 components): row-major, NaN outside. On
  *   an edge it is the limit from the triangle TriangleId;
@@ -101,7 +103,7 @@ public:
   enum DiscordantTrianglesModes
   {
     REFUSE = 0,         ///< an error that names them
-    CARRY_BY_LINEAR = 1 ///< the Linear system carries them, with a warning; the map stays continuous
+    CARRY_BY_LINEAR = 1 ///< the Linear system carries them; the map stays continuous
   };
 
   /// How an array is carried.
@@ -234,6 +236,9 @@ public:
   /// Number of points of the data that the last execution found outside.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
+  /// Number of triangles that are discordant in P or Q and are carried by the Linear system.
+  vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
+
   /// How often the meshes have been read and validated since this filter was made.
   vtkIdType GetNumberOfMeshBuilds();
 
@@ -266,6 +271,7 @@ protected:
   bool BlankOutside = true;
   int OutputPointsPrecision = DEFAULT_PRECISION;
   vtkIdType NumberOfOutsidePoints = 0;
+  vtkIdType NumberOfDiscordantTriangles = 0;
 
 private:
   vtkDifferentiableHomeomorphism(const vtkDifferentiableHomeomorphism&) = delete;

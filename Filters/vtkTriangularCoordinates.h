@@ -91,7 +91,7 @@ public:
   enum DiscordantTrianglesModes
   {
     REFUSE = 0,         ///< an error that names them
-    CARRY_BY_LINEAR = 1 ///< the Linear system stands in for them, with a warning
+    CARRY_BY_LINEAR = 1 ///< the Linear system stands in for them (`UsedCoordinateSystem` tells where)
   };
 
   /// What a line of output 1 is.
