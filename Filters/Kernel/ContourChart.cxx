@@ -209,7 +209,9 @@ ContourChart::Reference ContourChart::ToReference(const Vector2& point) const
     }
   }
   const Edge& edge = this->Edges[k];
-  const Vector2 fromStart = point - edge.Start;
+  // On the boundary, and outside by rounding, the nearest point of the triangle counts.
+  const bool inside = l[0] > 0.0 && l[1] > 0.0 && l[2] > 0.0;
+  const Vector2 fromStart = (inside ? point : this->Shape.FromBarycentric(l)) - edge.Start;
   const double along = Dot(fromStart, edge.Tangent);
   const double y = std::max(0.0, Cross(edge.Tangent, fromStart));
   const Half half = this->HalfAt(edge, along / edge.Length);

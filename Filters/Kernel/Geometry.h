@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace homeomorphism
 {
@@ -96,18 +97,48 @@ struct TriangleShape
     return { corner == NextCorner(this->Apex) ? 0.0 : this->Base, 0.0 };
   }
 
-  /// Barycentric coordinates of a point of the closed triangle. Coordinates that rounding has made
-  /// negative are 0.
+  /// Barycentric coordinates of a point of the closed triangle, or of the nearest point of it.
   Barycentric ToBarycentric(const Vector2& point) const
   {
-    const double apex = point.y > 0.0 ? point.y / this->Height : 0.0;
+    const double apex = point.y / this->Height;
     const double second = (point.x - this->ApexX * apex) / this->Base;
     const double first = 1.0 - apex - second;
+    if (!(apex >= 0.0 && first >= 0.0 && second >= 0.0))
+    {
+      return this->NearestOnBoundary(point);
+    }
     Barycentric l;
     l[this->Apex] = apex;
-    l[NextCorner(this->Apex)] = first > 0.0 ? first : 0.0;
-    l[PreviousCorner(this->Apex)] = second > 0.0 ? second : 0.0;
+    l[NextCorner(this->Apex)] = first;
+    l[PreviousCorner(this->Apex)] = second;
     return l;
+  }
+
+  /// Barycentric coordinates of the point of the triangle's boundary that is nearest to @a point.
+  Barycentric NearestOnBoundary(const Vector2& point) const
+  {
+    Barycentric nearest{};
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vector2 start = this->Corner(NextCorner(k));
+      const Vector2 end = this->Corner(PreviousCorner(k));
+      const Vector2 edge = end - start;
+      const double length = std::hypot(edge.x, edge.y);
+      const Vector2 fromStart = point - start;
+      const double along =
+        (fromStart.x * (edge.x / length) + fromStart.y * (edge.y / length)) / length;
+      const double t = along > 0.0 ? (along < 1.0 ? along : 1.0) : 0.0;
+      const double distance = std::hypot(fromStart.x - t * edge.x, fromStart.y - t * edge.y);
+      if (distance < least)
+      {
+        least = distance;
+        nearest[k] = 0.0;
+        nearest[NextCorner(k)] = 1.0 - t;
+        nearest[PreviousCorner(k)] = t;
+      }
+    }
+    return nearest;
   }
 
   /// The point with these barycentric coordinates. Linear, so it also takes a vector's components to
@@ -153,9 +184,8 @@ inline EdgeView ViewFromEdge(const Vector2& start, const Vector2& end, const Vec
   const Vector2 edge = end - start;
   const Vector2 other = opposite - start;
   const double length = std::hypot(edge.x, edge.y);
-  return { length,
-    DifferenceOfProducts(edge.x / length, other.x / length, -edge.y / length, other.y / length),
-    std::abs(DifferenceOfProducts(edge.x / length, other.y, edge.y / length, other.x)) };
+  return { length, DifferenceOfProducts(edge.x, other.x, -edge.y, other.y) / length / length,
+    std::abs(DifferenceOfProducts(edge.x, other.y, edge.y, other.x)) / length };
 }
 
 /// The views from the three edges: element k from the edge opposite corner k.

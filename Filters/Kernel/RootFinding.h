@@ -21,42 +21,58 @@ struct ValueAndSlope
 };
 
 /// The root of an increasing function in [lower, upper]. @a function returns its ValueAndSlope.
-/// Newton's step is taken where it stays inside the bracket, which every evaluation narrows, and the
-/// bracket is halved where it does not: so this ends, at a number next to a change of sign or where
-/// Newton's steps have sunk into rounding.
+/// Newton's step is taken where it stays inside the bracket, which every evaluation narrows. Where it
+/// leads out, an end of the bracket is tried, once, and then the bracket is halved. So this ends: at a
+/// number next to a change of sign, at an end, or where Newton's steps have sunk into rounding.
 template <typename Function>
 double RootOfIncreasing(Function&& function, double lower, double upper, double guess)
 {
   constexpr double ulp = std::numeric_limits<double>::epsilon();
-  // Newton needs a handful of steps; a bracket of doubles in [0, 1] is exhausted by halving well
-  // before this many down to the smallest root that matters, one ulp of 1 cubed.
-  constexpr int limit = 200;
+  // Newton needs a handful of steps. Halving alone, which only a function that is not increasing would
+  // bring about, exhausts the doubles from 1 down to the smallest root that matters, an ulp of 1 cubed,
+  // well before this many.
+  constexpr int limit = 250;
   double x = guess < lower ? lower : (guess > upper ? upper : guess);
-  double lastStep = upper - lower;
+  bool triedLower = false;
+  bool triedUpper = false;
+  double lastNewtonStep = std::numeric_limits<double>::infinity();
   for (int i = 0; i < limit; ++i)
   {
     const ValueAndSlope at = function(x);
-    if (at.Value == 0.0)
-    {
-      return x;
-    }
     const double newtonStep = std::abs(at.Value / at.Slope);
     const double size = ulp * std::abs(x);
-    if (newtonStep <= 2.0 * size || (newtonStep <= 1024.0 * size && newtonStep >= 0.5 * lastStep))
+    const bool stalled = newtonStep <= 1024.0 * size && newtonStep >= 0.5 * lastNewtonStep;
+    // Beyond an end there is no root, whatever rounding says.
+    const bool rootAtEnd = (at.Value < 0.0 && x == upper) || (at.Value > 0.0 && x == lower);
+    if (at.Value == 0.0 || newtonStep <= 2.0 * size || stalled || rootAtEnd)
     {
       return x;
     }
     (at.Value < 0.0 ? lower : upper) = x;
+    (at.Value < 0.0 ? triedLower : triedUpper) = true;
     double next = x - at.Value / at.Slope;
+    lastNewtonStep = newtonStep;
     if (!(next > lower && next < upper))
     {
-      next = lower + 0.5 * (upper - lower);
+      lastNewtonStep = std::numeric_limits<double>::infinity();
+      const double middle = lower + 0.5 * (upper - lower);
+      if (next <= lower && !triedLower)
+      {
+        next = lower;
+      }
+      else if (next >= upper && !triedUpper)
+      {
+        next = upper;
+      }
+      else if (middle > lower && middle < upper)
+      {
+        next = middle;
+      }
+      else
+      {
+        return x;
+      }
     }
-    if (next == lower || next == upper)
-    {
-      return next;
-    }
-    lastStep = std::abs(next - x);
     x = next;
   }
   return x;

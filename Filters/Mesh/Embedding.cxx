@@ -40,6 +40,22 @@ double Length(const Vector3& a)
   return std::hypot(a[0], a[1], a[2]);
 }
 
+/// As if computed with twice the precision (Ogita, Rump and Oishi 2005).
+double AccurateDot3(const Vector3& a, const Vector3& b)
+{
+  double sum = 0.0;
+  double lost = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double product = a[axis] * b[axis];
+    const double next = sum + product;
+    const double share = next - sum;
+    lost += std::fma(a[axis], b[axis], -product) + ((sum - (next - share)) + (product - share));
+    sum = next;
+  }
+  return sum + lost;
+}
+
 Vector3 Scaled(const Vector3& a, double factor)
 {
   return { a[0] * factor, a[1] * factor, a[2] * factor };
@@ -50,8 +66,8 @@ EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vecto
   const Vector3 edge = Difference(end, start);
   const Vector3 other = Difference(opposite, start);
   const double length = Length(edge);
-  const Vector3 tangent = Scaled(edge, 1.0 / length);
-  return { length, Dot3(tangent, other) / length, Length(Cross3(tangent, other)) };
+  return { length, AccurateDot3(edge, other) / length / length,
+    Length(Cross3(edge, other)) / length };
 }
 
 /// The corner opposite the longest edge; the first of equals.

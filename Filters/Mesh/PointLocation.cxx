@@ -12,46 +12,16 @@ namespace homeomorphism
 namespace
 {
 
-/// The point of a segment nearest to @a point.
-Vector2 NearestOnSegment(const Vector2& start, const Vector2& end, const Vector2& point)
-{
-  const Vector2 edge = end - start;
-  const double length = std::hypot(edge.x, edge.y);
-  const Vector2 tangent{ edge.x / length, edge.y / length };
-  const double along = Dot(point - start, tangent);
-  if (along <= 0.0)
-  {
-    return start;
-  }
-  return along >= length ? end : start + along * tangent;
-}
-
 double Distance(const Vector2& a, const Vector2& b)
 {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-/// The point of the closed triangle nearest to @a point.
+/// The point of the closed triangle nearest to @a point: itself if it is inside.
 Vector2 NearestInTriangle(const TriangleShape& shape, const Vector2& point)
 {
-  Vector2 nearest = point;
-  bool outside = false;
-  for (int k = 0; k < 3; ++k)
-  {
-    const Vector2 start = shape.Corner(NextCorner(k));
-    const Vector2 end = shape.Corner(PreviousCorner(k));
-    if (Cross(end - start, point - start) >= 0.0)
-    {
-      continue;
-    }
-    const Vector2 candidate = NearestOnSegment(start, end, point);
-    if (!outside || Distance(candidate, point) < Distance(nearest, point))
-    {
-      nearest = candidate;
-      outside = true;
-    }
-  }
-  return nearest;
+  const Barycentric l = shape.ToBarycentric(point);
+  return l[0] > 0.0 && l[1] > 0.0 && l[2] > 0.0 ? point : shape.FromBarycentric(l);
 }
 
 /// Whether a point is in a triangle of the plane: 1 inside, 0 on its boundary, -1 outside.

@@ -286,6 +286,46 @@ TYPED_TEST(ContourDerivatives, ContourParameterIsArcLength)
   }
 }
 
+TYPED_TEST(ContourDerivatives, DirectionIsThatOfCoordinates)
+{
+  // The map's derivative does not tell in which units directions are; their definition does: x is
+  // the change of c, y is c times the change of p.
+  RandomNumbers random(48);
+  double worst = 0.0;
+  int compared = 0;
+  for (int n = 0; n < 10000; ++n)
+  {
+    const Side<TypeParam> p(random, true);
+    const int e = random.Integer(1, 3);
+    const double t = random.Uniform(0.1, 0.9);
+    const double c = random.Uniform(0.1, 0.9);
+    const auto along = [&](double byP, double byC, double h)
+    {
+      return (0.5 / h) *
+        (p.Chart.ToPoint({ e, t + byP * h, c + byC * h }) -
+          p.Chart.ToPoint({ e, t - byP * h, c - byC * h }));
+    };
+    // Where both steps give the same no formula changes in between.
+    const double h = 1e-4;
+    for (const Vector2& direction : { Vector2{ 1.0, 0.0 }, Vector2{ 0.0, 1.0 } })
+    {
+      const Vector2 coarse = along(direction.y, direction.x, h);
+      const Vector2 fine = along(direction.y, direction.x, 0.5 * h);
+      const double size = p.Triangle.Shape.Base;
+      if (Norm(fine - coarse) < 1e-8 * size)
+      {
+        ++compared;
+        const Vector2 found = p.Chart.Push({ e, t, c }, { direction.x, c * direction.y });
+        const Vector2 expected = fine + (1.0 / 3.0) * (fine - coarse);
+        worst = std::max(worst, Norm(found - expected) / size);
+      }
+    }
+  }
+  std::cout << TypeParam::Name << ": directions differ from differences by " << worst << '\n';
+  EXPECT_GT(compared, 10000);
+  EXPECT_LT(worst, 1e-8);
+}
+
 TYPED_TEST(ContourDerivatives, ContourIsStraightThenAnArcAtARightAngle)
 {
   RandomNumbers random(45);

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -260,15 +261,16 @@ TEST(ExactSign, ConcordanceIsExact)
 
 /// Three corners whose foot on the edge from the first to the second is exactly on the first: with
 /// u = B - A and v = C - A, u.(u + v) = 0, that is v = -u + w with w perpendicular to u.
-std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension)
+/// u has up to @a bits bits, w is up to @a otherBits bits longer.
+std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension, int bits, int otherBits)
 {
-  const int bits = random.Integer(3, 25);
   const Point a{ AnyInteger(random, 52), AnyInteger(random, 52),
     dimension == 3 ? AnyInteger(random, 52) : 0 };
   Point u{ AnyInteger(random, bits), AnyInteger(random, bits),
     dimension == 3 ? AnyInteger(random, bits) : 0 };
   u[0] += u[0] == 0 && u[1] == 0;
-  const Point other{ AnyInteger(random, 25), AnyInteger(random, 25), AnyInteger(random, 25) };
+  const Point other{ AnyInteger(random, otherBits), AnyInteger(random, otherBits),
+    AnyInteger(random, otherBits) };
   const Point w = dimension == 2
     ? Point{ -u[1] * other[0], u[0] * other[0], 0 }
     : Point{ u[1] * other[2] - u[2] * other[1], u[2] * other[0] - u[0] * other[2],
@@ -289,7 +291,7 @@ TEST(ExactSign, ConcordanceOnTheLimitIsExact)
   for (int n = 0; n < 100000; ++n)
   {
     const int dimension = random.Integer(2, 3);
-    std::array<Point, 3> p = OnTheLimit(random, dimension);
+    std::array<Point, 3> p = OnTheLimit(random, dimension, random.Integer(3, 25), 25);
     EXPECT_FALSE(IntegerConcordant(p[0], p[1], p[2]));
     const int unit = units[random.Below(4)];
     ExpectConcordance(p, dimension, unit);
@@ -301,12 +303,55 @@ TEST(ExactSign, ConcordanceOnTheLimitIsExact)
   EXPECT_GT(seen[1], 10000);
 }
 
+TEST(ExactSign, DifferencesThatRoundAreExact)
+{
+  // Two corners far from the origin, the third within a few of their ulps of it: the differences of
+  // coordinates round, and what they lose decides.
+  RandomNumbers random(19);
+  std::array<int, 3> orientations{};
+  std::array<int, 2> concordances{};
+  for (int n = 0; n < 100000; ++n)
+  {
+    const int dimension = random.Integer(2, 3);
+    std::array<Point, 3> p = random.Chance(0.5) ? OnTheLimit(random, dimension, 48, 1)
+                                                : OnTheLimit(random, dimension, 25, 25);
+    constexpr std::int64_t far = 256;
+    const Point origin = p[0];
+    const int last = random.Integer(0, 2);
+    for (int i = 0; i < 3; ++i)
+    {
+      p[0][i] = i < dimension ? random.Integer(-512, 512) : 0;
+      p[1][i] = far * (p[1][i] - origin[i]);
+      p[2][i] = far * (p[2][i] - origin[i]);
+    }
+    std::rotate(p.begin(), p.begin() + last, p.end());
+    const int unit = units[random.Below(4)];
+    ExpectConcordance(p, dimension, unit);
+    ++concordances[IntegerConcordant(p[0], p[1], p[2])];
+
+    // The same for orientation: two points on a line through the origin, as far as a double goes.
+    const std::int64_t dx = AnyInteger(random, 26);
+    const std::int64_t dy = AnyInteger(random, 26);
+    const std::int64_t first = AnyInteger(random, 25);
+    const std::int64_t second = AnyInteger(random, 25);
+    std::array<Point, 3> q{ Point{ random.Integer(-512, 512), random.Integer(-512, 512), 0 },
+      Point{ far * first * dx, far * first * dy, 0 },
+      Point{ far * second * dx, far * second * dy, 0 } };
+    ExpectOrientation(q, unit);
+    ++orientations[IntegerOrientation(q[0], q[1], q[2]) + 1];
+  }
+  EXPECT_GT(concordances[0], 10000);
+  EXPECT_GT(concordances[1], 10000);
+  EXPECT_GT(orientations[0], 10000);
+  EXPECT_GT(orientations[2], 10000);
+}
+
 TEST(ExactSign, DimensionsAgree)
 {
   RandomNumbers random(16);
   for (int n = 0; n < 50000; ++n)
   {
-    std::array<Point, 3> p = OnTheLimit(random, 2);
+    std::array<Point, 3> p = OnTheLimit(random, 2, random.Integer(3, 25), 25);
     if (random.Chance(0.7))
     {
       Nudge(random, p, 2);

@@ -74,6 +74,28 @@ TEST(Geometry, ViewFromEdgeIsGoodToAFewUlp)
   EXPECT_LT(worstHeight, 8.0 * Ulp);
 }
 
+TEST(Geometry, DifferenceOfProductsIsGoodToAnUlpAndAHalf)
+{
+  // __extension__ because -Wpedantic knows no such type.
+  __extension__ using Wide = __int128;
+  RandomNumbers random(74);
+  double worst = 0.0;
+  for (int n = 0; n < 100000; ++n)
+  {
+    const auto integer = [&random]() { return static_cast<std::int64_t>(random.Bits() >> 11); };
+    const std::int64_t a = integer();
+    const std::int64_t d = integer();
+    // Often close to a d.
+    const std::int64_t b = random.Chance(0.2) ? integer() : a + random.Integer(-2, 2);
+    const std::int64_t c = random.Chance(0.2) ? integer() : d + random.Integer(-2, 2);
+    const Wide exact = static_cast<Wide>(a) * d - static_cast<Wide>(b) * c;
+    const double found = DifferenceOfProducts(static_cast<double>(a), static_cast<double>(d),
+      static_cast<double>(b), static_cast<double>(c));
+    worst = std::max(worst, RelativeError(found, static_cast<double>(exact)));
+  }
+  EXPECT_LE(worst, 2.0 * Ulp);
+}
+
 TEST(Geometry, BarycentricCoordinatesOfCornersAreExact)
 {
   RandomNumbers random(72);

@@ -326,6 +326,32 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivative)
   EXPECT_LT(worst, 1e-14);
 }
 
+TEST(SmoothEdge, DeterminantOnAnEdgeIsTheNeighborsShare)
+{
+  RandomNumbers random(59);
+  double worst = 0.0;
+  for (int n = 0; n < 50000; ++n)
+  {
+    const PlacedTriangle t(AnyTriangle(random));
+    const EdgeViews views = t.Views();
+    const std::array<Neighbor, 3> neighbors = AnyNeighbors(random, views);
+    const SmoothChart chart(t.Shape, views, neighbors);
+    double least = 1.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const double own = views[k].Height;
+      const double other = neighbors[k].View.Height;
+      const double share = neighbors[k].Exists ? 2.0 * other / (own + other) : 1.0;
+      least = neighbors[k].Exists ? std::min(least, share) : least;
+      // Relative to itself, however small the neighbour.
+      const double ratio = chart.DeterminantRatio(InStrip(k, 0.0, 0.0, random.Uniform(0.01, 0.99)));
+      worst = std::max(worst, std::abs(ratio - share) / share);
+    }
+    EXPECT_LE(chart.DeterminantBound(), least * (1.0 + 4.0 * Ulp));
+  }
+  EXPECT_LT(worst, 4.0 * Ulp);
+}
+
 TEST(SmoothEdge, OnlyTheStripChanges)
 {
   RandomNumbers random(57);
