@@ -72,7 +72,8 @@ vtkSmartPointer<vtkDataArray> CarryArray(
   const bool isVector = components == 3;
   const bool isTensor = components == 6 || components == 9;
   if (rule == TransportRule::None || !(isVector || isTensor) ||
-    (rule == TransportRule::Normal && !isVector))
+    (rule == TransportRule::Normal && !isVector) ||
+    array->GetNumberOfTuples() != jacobians->GetNumberOfTuples())
   {
     return nullptr;
   }

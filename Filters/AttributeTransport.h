@@ -4,8 +4,8 @@
 /// @file AttributeTransport.h
 /// How vectors, normals and tensors are carried along by a map's Jacobian.
 
-#ifndef AttributeTransport_h
-#define AttributeTransport_h
+#ifndef homeomorphism_AttributeTransport_h
+#define homeomorphism_AttributeTransport_h
 
 #include "vtkSmartPointer.h"
 
@@ -49,7 +49,8 @@ enum class TransportRule
 
 /// A copy of @a array carried tuple by tuple by the Jacobians of @a jacobians (9 components). Arrays of
 /// 3 components are vectors, of 9 tensors (row-major), of 6 symmetric tensors in VTK's order XX, YY,
-/// ZZ, XY, YZ, XZ. Integers become doubles. Null if the rule does not apply to the array.
+/// ZZ, XY, YZ, XZ. Integers become doubles. Null if the rule does not apply to the
+/// array, or if it has another number of tuples.
 vtkSmartPointer<vtkDataArray> CarryArray(
   vtkDataArray* array, vtkDoubleArray* jacobians, TransportRule rule);
 

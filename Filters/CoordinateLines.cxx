@@ -5,6 +5,7 @@
 
 #include "vtkTriangularCoordinates.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -122,14 +123,22 @@ void AddGuides(LineCollector& lines, TriangleIndex triangle, const ContourChart&
 
 } // namespace
 
-void MakeCoordinateLines(
-  const Homeomorphism& map, const CoordinateLineOptions& options, vtkPolyData* output)
+void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
+  const CoordinateLineOptions& options, vtkPolyData* output)
 {
   const Triangulation& topology = map.GetPair().GetTriangulation();
   const ChartedTriangulation& charts = map.GetCharts(Side::Source);
   LineCollector lines(map);
   for (TriangleIndex t = 0; t < topology.GetNumberOfTriangles(); ++t)
   {
+    if (t % 1024 == 0)
+    {
+      self->UpdateProgress(0.1 * t / topology.GetNumberOfTriangles());
+      if (self->GetAbortExecute())
+      {
+        break;
+      }
+    }
     if (topology.IsMasked(t))
     {
       continue;

@@ -4,11 +4,12 @@
 /// @file CoordinateLines.h
 /// The lines that show a triangulation's coordinates: guides, contours and rings.
 
-#ifndef CoordinateLines_h
-#define CoordinateLines_h
+#ifndef homeomorphism_CoordinateLines_h
+#define homeomorphism_CoordinateLines_h
 
 #include "Mesh/Homeomorphism.h"
 
+class vtkAlgorithm;
 class vtkPolyData;
 
 namespace homeomorphism
@@ -23,9 +24,10 @@ struct CoordinateLineOptions
 };
 
 /// Fills @a output with the lines of all triangles of the source, as output 1 of
-/// vtkTriangularCoordinates describes.
-void MakeCoordinateLines(
-  const Homeomorphism& map, const CoordinateLineOptions& options, vtkPolyData* output);
+/// vtkTriangularCoordinates describes. On behalf of @a self, whose request to abort leaves the lines of
+/// the triangles done by then.
+void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
+  const CoordinateLineOptions& options, vtkPolyData* output);
 
 } // namespace homeomorphism
 

@@ -5,8 +5,8 @@
 /// What the module's filters have in common: telling users of defects, running over points in
 /// parallel, and going through composite data sets.
 
-#ifndef FilterSupport_h
-#define FilterSupport_h
+#ifndef homeomorphism_FilterSupport_h
+#define homeomorphism_FilterSupport_h
 
 #include "Mesh/HomeomorphismCache.h"
 
@@ -14,7 +14,6 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
-#include "vtkDataObjectTypes.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkObject.h"
@@ -74,7 +73,7 @@ template <typename Work>
 vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
   double progressEnd, Work&& work)
 {
-  constexpr vtkIdType blockSize = 1 << 18;
+  constexpr vtkIdType blockSize = 1 << 17;
   for (vtkIdType begin = 0; begin < count; begin += blockSize)
   {
     self->UpdateProgress(progressBegin +
@@ -130,16 +129,44 @@ inline void RequestWholeMesh(vtkInformation* meshInfo)
   }
 }
 
-/// Puts a new object of a data set's or tree's own type into an output, unless one is there.
-inline void MakeOutputOfType(vtkInformation* outInfo, const char* type)
+/// Puts a new object of a type into an output, unless one of that type is there.
+template <typename Type>
+void MakeOutput(vtkInformation* outInfo)
+{
+  if (!Type::SafeDownCast(vtkDataObject::GetData(outInfo)))
+  {
+    outInfo->Set(vtkDataObject::DATA_OBJECT(), vtkSmartPointer<Type>::New());
+  }
+}
+
+/// The same with an object's own type.
+inline void MakeOutputLike(vtkDataObject* data, vtkInformation* outInfo)
 {
   vtkDataObject* current = vtkDataObject::GetData(outInfo);
-  if (!current || std::string(current->GetClassName()) != type)
+  if (!current || std::string(current->GetClassName()) != data->GetClassName())
   {
-    const auto output =
-      vtkSmartPointer<vtkDataObject>::Take(vtkDataObjectTypes::NewDataObject(type));
-    outInfo->Set(vtkDataObject::DATA_OBJECT(), output);
+    outInfo->Set(vtkDataObject::DATA_OBJECT(),
+      vtkSmartPointer<vtkDataObject>::Take(data->NewInstance()));
   }
+}
+
+/// Whether an output that is made from the meshes alone belongs to this request: they are read whole
+/// for every piece, and only the first piece gets what they make.
+inline bool IsFirstPiece(vtkInformation* outInfo)
+{
+  return outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) <= 0;
+}
+
+/// How a filter or transform wants its meshes understood.
+template <typename Algorithm>
+HomeomorphismOptions GetOptions(Algorithm* self)
+{
+  HomeomorphismOptions options;
+  options.System = static_cast<CoordinateSystem>(self->GetCoordinateSystem());
+  options.Center = static_cast<CenterPoint>(self->GetCenterPoint());
+  options.MaskInvalidTriangles = self->GetMaskInvalidTriangles();
+  options.DiscordantByLinear = self->GetDiscordantTriangles() == Algorithm::CARRY_BY_LINEAR;
+  return options;
 }
 
 /// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input.

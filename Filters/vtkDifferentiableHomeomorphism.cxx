@@ -68,8 +68,9 @@ bool BecomesStructuredGrid(vtkDataObject* data)
 vtkDataArray* CopyOfGhosts(vtkDataSetAttributes* attributes, vtkIdType tuples)
 {
   const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  if (auto* current = vtkArrayDownCast<vtkUnsignedCharArray>(
-        attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())))
+  auto* current = vtkArrayDownCast<vtkUnsignedCharArray>(
+    attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (current && current->GetNumberOfValues() == tuples)
   {
     ghosts->DeepCopy(current);
   }
@@ -277,7 +278,10 @@ private:
       for (vtkIdType i = begin; i < end; ++i)
       {
         this->Input->GetCellPoints(i, ids);
-        const vtkIdType count = ids->GetNumberOfIds();
+        const vtkIdType count =
+          std::all_of(ids->begin(), ids->end(), [this](vtkIdType id) { return this->IsPoint(id); })
+          ? ids->GetNumberOfIds()
+          : 0;
         double mean[3] = { 0.0, 0.0, 0.0 };
         for (vtkIdType k = 0; k < count; ++k)
         {
@@ -310,6 +314,9 @@ private:
     });
     return jacobians;
   }
+
+  /// Whether a point id, which may come from a corrupt cell, is one.
+  bool IsPoint(vtkIdType point) const { return point >= 0 && point < this->NumberOfPoints; }
 
   TransportRule GetRule(vtkDataSetAttributes* attributes, vtkDataArray* array) const
   {
@@ -363,12 +370,16 @@ private:
       {
         continue;
       }
-      // Replaces the array passed, and loses its role.
+      // Takes the place of the array passed, and its role.
       const int role = input->IsArrayAnAttribute(i);
-      if (carried->GetName())
+      for (int passed = output->GetNumberOfArrays() - 1; passed >= 0; --passed)
       {
-        output->AddArray(carried);
+        if (output->GetAbstractArray(passed) == array)
+        {
+          output->RemoveArray(passed);
+        }
       }
+      output->AddArray(carried);
       if (role >= 0)
       {
         output->SetAttribute(carried, role);
@@ -426,8 +437,9 @@ private:
     for (vtkIdType cell = 0; cell < cells; ++cell)
     {
       this->Input->GetCellPoints(cell, ids);
-      if (std::any_of(ids->begin(), ids->end(),
-            [this](vtkIdType point) { return !this->Mask->GetValue(point); }))
+      if (std::any_of(ids->begin(), ids->end(), [this](vtkIdType point) {
+            return !this->IsPoint(point) || !this->Mask->GetValue(point);
+          }))
       {
         cellGhosts->SetValue(
           cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
@@ -522,12 +534,19 @@ int vtkDifferentiableHomeomorphism::RequestDataObject(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
-  const char* type = "vtkPolyData";
-  if (data)
+  vtkInformation* outInfo = outputs->GetInformationObject(0);
+  if (!data)
   {
-    type = BecomesStructuredGrid(data) ? "vtkStructuredGrid" : data->GetClassName();
+    MakeOutput<vtkPolyData>(outInfo);
   }
-  MakeOutputOfType(outputs->GetInformationObject(0), type);
+  else if (BecomesStructuredGrid(data))
+  {
+    MakeOutput<vtkStructuredGrid>(outInfo);
+  }
+  else
+  {
+    MakeOutputLike(data, outInfo);
+  }
   return 1;
 }
 
@@ -557,13 +576,8 @@ int vtkDifferentiableHomeomorphism::RequestData(
   this->NumberOfOutsidePoints = 0;
   this->NumberOfDiscordantTriangles = 0;
 
-  HomeomorphismOptions options;
-  options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
-  options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
-  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
-  options.DiscordantByLinear = this->DiscordantTriangles == CARRY_BY_LINEAR;
   const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(source, target, options);
+    this->Internal->Cache.Get(source, target, GetOptions(this));
   ReportProblems(this, this->Internal->Cache.GetProblems());
   if (!map)
   {
@@ -573,9 +587,13 @@ int vtkDifferentiableHomeomorphism::RequestData(
   const ChartedTriangulation& charts = map->GetCharts(Side::Source);
   for (TriangleIndex t = 0; t < map->GetPair().GetTriangulation().GetNumberOfTriangles(); ++t)
   {
-    this->NumberOfDiscordantTriangles += charts.GetSystemOf(t) != options.System;
+    this->NumberOfDiscordantTriangles += charts.GetSystemOf(t) != charts.GetSystem();
   }
 
+  if (!data && !IsFirstPiece(outputs->GetInformationObject(0)))
+  {
+    return 1;
+  }
   if (!data)
   {
     data = this->Inverse ? target : source;

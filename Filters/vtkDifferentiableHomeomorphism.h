@@ -45,7 +45,9 @@
  * - with ComputeJacobian, point array `Jacobian` (double, 9 components): row-major, NaN outside. On
  *   an edge it is the limit from the triangle TriangleId;
  * - with ComputeJacobianDeterminant, point array `JacobianDeterminant` (double): the ratio of areas,
- *   negative where a planar map reverses orientation; NaN outside.
+ *   negative where a planar map reverses orientation; NaN outside. Orientation is with respect to the
+ *   planes' normals: the source's is the one that points along the axis it is closest to, the target's
+ *   is less than a right angle from it. On surfaces the ratio is positive.
  *
  * Outside points are given no image. They stay where they are, marked by ValidPointMask, with NaN in
  * arrays that would have been carried; GetNumberOfOutsidePoints counts them; and they, with the cells
@@ -55,11 +57,13 @@
  * If both meshes are planar (in any planes), points off P's plane are mapped along with their foot,
  * and their distance from the plane is kept, so that heights pass through a map of the plane. The
  * Jacobian takes the plane's normal to the other plane's. On surfaces, points must lie on the surface
- * to the rounding of their coordinates, or within Tolerance, and the Jacobian takes normal to normal.
+ * to the rounding of their coordinates, or within Tolerance; their images lie on the other surface, and
+ * the Jacobian takes normal to normal.
  *
  * The meshes are validated, and refused with a message that names the kind of defect, how many
  * triangles have it and the first of their ids; see MaskInvalidTriangles. Empty meshes leave all
- * points outside. What is computed from the meshes is kept until their points or cells change.
+ * points outside. What is computed from the meshes is kept until their points or cells change. If the
+ * output is asked for in pieces, a mesh that is its own data is part of piece 0.
  *
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
  *

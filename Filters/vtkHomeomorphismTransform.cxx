@@ -24,23 +24,37 @@ vtkCxxSetObjectMacro(vtkHomeomorphismTransform, Target, vtkPolyData);
 class vtkHomeomorphismTransform::Internals
 {
 public:
+  /// Where a point is whose coordinates were stored with a relative error.
+  Location Locate(Side from, const double point[3], double precision, TriangleIndex hint) const
+  {
+    return this->Map ? this->Map->Locate(from, point,
+                         this->Map->GetReach(from, this->Tolerance, precision), hint)
+                     : Location{};
+  }
+
+  void MapPlace(Side from, const Location& place, double image[3]) const
+  {
+    if (place.Triangle < 0)
+    {
+      std::fill_n(image, 3, this->OutsideCoordinate);
+      return;
+    }
+    this->Map->MapPoint(from, place, image);
+  }
+
   /// Maps a point; returns where it was found.
   template <typename Real>
-  Location MapPoint(Side from, const Real in[3], Real out[3], TriangleIndex hint) const
+  Location MapPoint(Side from, const Real in[3], Real out[3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
-    double image[3] = { this->OutsideCoordinate, this->OutsideCoordinate,
-      this->OutsideCoordinate };
-    Location place;
-    if (this->Map)
-    {
-      place = this->Map->Locate(from, point, this->GetReach<Real>(from), hint);
-      if (place.Triangle >= 0)
-      {
-        this->Map->MapPoint(from, place, image);
-      }
-    }
-    std::transform(image, image + 3, out, [](double x) { return static_cast<Real>(x); });
+    const Location place = this->Locate(
+      from, point, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), -1);
+    double image[3];
+    this->MapPlace(from, place, image);
+    const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
+    std::transform(image, image + 3, out, [largest](double x) {
+      return static_cast<Real>(std::max(-largest, std::min(largest, x)));
+    });
     return place;
   }
 
@@ -62,20 +76,13 @@ public:
     Side from, const Real in[3], Real out[3], Real derivative[3][3]) const
   {
     double matrix[3][3];
-    this->GetDerivative(from, this->MapPoint(from, in, out, -1), matrix);
+    this->GetDerivative(from, this->MapPoint(from, in, out), matrix);
     if (from == Side::Target)
     {
       vtkMath::Invert3x3(matrix, matrix);
     }
     std::transform(&matrix[0][0], &matrix[0][0] + 9, &derivative[0][0],
       [](double x) { return static_cast<Real>(x); });
-  }
-
-  template <typename Real>
-  double GetReach(Side from) const
-  {
-    return this->Map->GetReach(
-      from, this->Tolerance, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
   }
 
   HomeomorphismCache Cache;
@@ -121,12 +128,7 @@ void vtkHomeomorphismTransform::InternalUpdate()
                   << " mesh is not set (SetSource, SetTarget): every point counts as outside.");
     return;
   }
-  HomeomorphismOptions options;
-  options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
-  options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
-  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
-  options.DiscordantByLinear = this->DiscordantTriangles == CARRY_BY_LINEAR;
-  const auto map = this->Internal->Cache.Get(this->Source, this->Target, options);
+  const auto map = this->Internal->Cache.Get(this->Source, this->Target, GetOptions(this));
   ReportProblems(this, this->Internal->Cache.GetProblems());
   if (!map)
   {
@@ -143,7 +145,8 @@ void vtkHomeomorphismTransform::InternalUpdate()
       return;
     }
     this->Internal->OutsideCoordinate = std::max(this->Internal->OutsideCoordinate,
-      1e3 * embedding.GetLargestCoordinate() / embedding.GetScale());
+      std::min(
+        VTK_DOUBLE_MAX, 1e3 * embedding.GetLargestCoordinate() / embedding.GetScale()));
   }
   this->Internal->Map = map;
 }
@@ -171,9 +174,9 @@ void vtkHomeomorphismTransform::InternalDeepCopy(vtkAbstractTransform* transform
 bool vtkHomeomorphismTransform::IsInside(const double point[3])
 {
   this->Update();
-  double image[3];
   return this->Internal
-           ->MapPoint(this->InverseFlag ? Side::Target : Side::Source, point, image, -1)
+           ->Locate(this->InverseFlag ? Side::Target : Side::Source, point,
+             PrecisionOfType(VTK_DOUBLE), -1)
            .Triangle >= 0;
 }
 
@@ -226,7 +229,8 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
 
   const Internals& internals = *this->Internal;
   const Side from = this->InverseFlag ? Side::Target : Side::Source;
-  const bool isFloat = inPts->GetDataType() == VTK_FLOAT;
+  // Coordinates stored as float are rounded as such, and count as inside accordingly.
+  const double precision = PrecisionOfType(inPts->GetDataType());
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
     TriangleIndex hint = -1;
     for (vtkIdType i = begin; i < end; ++i)
@@ -234,24 +238,8 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
       double point[3];
       double image[3];
       inPts->GetPoint(i, point);
-      Location place;
-      if (isFloat)
-      {
-        // Coordinates stored as float are rounded as such, and count as inside accordingly.
-        const float floatPoint[3] = { static_cast<float>(point[0]), static_cast<float>(point[1]),
-          static_cast<float>(point[2]) };
-        float ignored[3];
-        place = internals.MapPoint(from, floatPoint, ignored, hint);
-        std::fill_n(image, 3, internals.OutsideCoordinate);
-        if (place.Triangle >= 0)
-        {
-          internals.Map->MapPoint(from, place, image);
-        }
-      }
-      else
-      {
-        place = internals.MapPoint(from, point, image, hint);
-      }
+      const Location place = internals.Locate(from, point, precision, hint);
+      internals.MapPlace(from, place, image);
       hint = place.Triangle;
       outPts->SetPoint(firstPoint + i, image);
       if (carried.empty())
@@ -281,12 +269,12 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
 
 void vtkHomeomorphismTransform::ForwardTransformPoint(const float in[3], float out[3])
 {
-  this->Internal->MapPoint(Side::Source, in, out, -1);
+  this->Internal->MapPoint(Side::Source, in, out);
 }
 
 void vtkHomeomorphismTransform::ForwardTransformPoint(const double in[3], double out[3])
 {
-  this->Internal->MapPoint(Side::Source, in, out, -1);
+  this->Internal->MapPoint(Side::Source, in, out);
 }
 
 void vtkHomeomorphismTransform::ForwardTransformDerivative(
@@ -303,12 +291,12 @@ void vtkHomeomorphismTransform::ForwardTransformDerivative(
 
 void vtkHomeomorphismTransform::InverseTransformPoint(const float in[3], float out[3])
 {
-  this->Internal->MapPoint(Side::Target, in, out, -1);
+  this->Internal->MapPoint(Side::Target, in, out);
 }
 
 void vtkHomeomorphismTransform::InverseTransformPoint(const double in[3], double out[3])
 {
-  this->Internal->MapPoint(Side::Target, in, out, -1);
+  this->Internal->MapPoint(Side::Target, in, out);
 }
 
 void vtkHomeomorphismTransform::InverseTransformDerivative(

@@ -14,19 +14,19 @@
  * and the number of iterations of vtkWarpTransform play no part.
  *
  * Both meshes must be planar, in any plane. A point's distance from the source's plane is kept as its
- * distance from the target's, in the direction of the planes' normals (that which points along the
- * axis it is closest to), so a map of the xy plane leaves z alone, and the derivative takes normal to
- * normal.
+ * distance from the target's, in the direction of the planes' normals (the source's is the one that
+ * points along the axis it is closest to, the target's is less than a right angle from it), so a map of
+ * the xy plane leaves z alone, and the derivative takes normal to normal.
  *
  * A transform has no way to mark a point as outside. Points outside the domain go to a place that
- * is in no image or mesh: all three coordinates are GetOutsideCoordinate(), about 1e30, unless the
- * meshes are larger. vtkImageReslice then gives such pixels its background colour (do not combine
+ * is in no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is more, a
+ * thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its background colour (do not combine
  * with its Wrap or Mirror modes). Derivatives there are NaN. IsInside tells, too. Before both meshes
  * are set, and if they are refused (an error says why), every point is outside.
  *
  * Once updated, the transform may be used by any number of threads; TransformPoints and
  * TransformPointsNormalsVectors use vtkSMPTools themselves, with the same result for any number of
- * threads. Copies and inverses share what was computed from the meshes.
+ * threads. Copies and inverses of an updated transform share what it has computed from the meshes.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangularCoordinates
  */

@@ -214,11 +214,16 @@ int vtkTriangularCoordinates::FillOutputPortInformation(int port, vtkInformation
 int vtkTriangularCoordinates::RequestDataObject(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* data = vtkDataObject::GetData(inputs[1]);
-  MakeOutputOfType(
-    outputs->GetInformationObject(0), data ? data->GetClassName() : "vtkPolyData");
-  MakeOutputOfType(outputs->GetInformationObject(1), "vtkPolyData");
-  MakeOutputOfType(outputs->GetInformationObject(2), "vtkPolyData");
+  if (vtkDataObject* data = vtkDataObject::GetData(inputs[1]))
+  {
+    MakeOutputLike(data, outputs->GetInformationObject(0));
+  }
+  else
+  {
+    MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
+  }
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(2));
   return 1;
 }
 
@@ -248,25 +253,25 @@ int vtkTriangularCoordinates::RequestData(
   this->NumberOfOutsidePoints = 0;
   this->NumberOfDiscordantTriangles = 0;
 
-  HomeomorphismOptions options;
-  options.System = static_cast<homeomorphism::CoordinateSystem>(this->CoordinateSystem);
-  options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
-  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
-  options.DiscordantByLinear = this->DiscordantTriangles == CARRY_BY_LINEAR;
   const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(triangulation, nullptr, options);
+    this->Internal->Cache.Get(triangulation, nullptr, GetOptions(this));
   ReportProblems(this, this->Internal->Cache.GetProblems());
   if (!map)
   {
     return 0;
   }
 
-  described->ShallowCopy(triangulation);
-  this->NumberOfDiscordantTriangles = DescribeTriangles(*map, described);
-  if (this->GenerateLines)
+  const vtkNew<vtkPolyData> triangles;
+  triangles->ShallowCopy(triangulation);
+  this->NumberOfDiscordantTriangles = DescribeTriangles(*map, triangles);
+  if (IsFirstPiece(outputs->GetInformationObject(2)))
+  {
+    described->ShallowCopy(triangles);
+  }
+  if (this->GenerateLines && IsFirstPiece(outputs->GetInformationObject(1)))
   {
     MakeCoordinateLines(
-      *map, { this->NumberOfContours, this->NumberOfRings, this->LineResolution }, lines);
+      this, *map, { this->NumberOfContours, this->NumberOfRings, this->LineResolution }, lines);
   }
 
   const auto addCoordinates = [this, &map](vtkDataSet* input, vtkDataSet* result) {
@@ -304,11 +309,14 @@ int vtkTriangularCoordinates::RequestData(
       return result;
     });
   }
-  else
+  else if (data)
+  {
+    addCoordinates(vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(output));
+  }
+  else if (IsFirstPiece(outputs->GetInformationObject(0)))
   {
     // Without data of its own, the triangulation gets the coordinates on top of its cell arrays.
-    addCoordinates(
-      data ? vtkDataSet::SafeDownCast(data) : described, vtkDataSet::SafeDownCast(output));
+    addCoordinates(triangles, vtkDataSet::SafeDownCast(output));
   }
   this->UpdateProgress(1.0);
   return 1;

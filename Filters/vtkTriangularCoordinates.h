@@ -9,8 +9,8 @@
  * the point's triangular coordinates in it. *Contours* run from the triangle's centre to its edges;
  * e tells the edge at which the point's contour ends, p where on the edge it ends, and c how far
  * along the contour the point is. Two points of two isomorphic triangulations that have the same
- * triangle and the same coordinates correspond: that is the homeomorphism of
- * vtkDifferentiableHomeomorphism.
+ * triangle and the same coordinates (the triangle's points being listed in the same order)
+ * correspond: that is the homeomorphism of vtkDifferentiableHomeomorphism.
  *
  * Output port 0 is the data with these point arrays added (an array of the same name is replaced):
  *
@@ -40,7 +40,8 @@
  * - `DeterminantBound` (double): a lower bound, in closed form, of the Smooth chart's determinant
  *   over that of the affine chart. Small beside a far smaller neighbour.
  *
- * If the triangulation itself is mapped, output 0 has these cell arrays too.
+ * If there is no data on port 1, output 0 has these cell arrays too. What is made from the
+ * triangulation alone is part of piece 0 if the outputs are asked for in pieces.
  *
  * The triangulation may lie in any plane, where its points' distance from the plane is ignored, or be
  * a surface in 3-space, closed or not. It is validated, and refused with a message that names the
@@ -148,7 +149,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether output 1 is made (default on). It has dozens of lines for every triangle.
+  /// Whether output 1 is made (default on). At the default resolution its lines take about 27 kB for
+  /// every triangle: turn it off for large meshes if only the coordinates are wanted.
   vtkSetMacro(GenerateLines, bool);
   vtkGetMacro(GenerateLines, bool);
   vtkBooleanMacro(GenerateLines, bool);
@@ -156,17 +158,17 @@ public:
 
   ///@{
   /// Number of intervals into which the contours drawn divide an edge, and into which the rings drawn
-  /// divide a contour; 1 draws only the contours to the vertices, or no rings. 4 by default, from 1.
-  vtkSetClampMacro(NumberOfContours, int, 1, 1000);
+  /// divide a contour; 1 draws only the contours to the vertices, or no rings. 4 by default, 1 to 100.
+  vtkSetClampMacro(NumberOfContours, int, 1, 100);
   vtkGetMacro(NumberOfContours, int);
-  vtkSetClampMacro(NumberOfRings, int, 1, 1000);
+  vtkSetClampMacro(NumberOfRings, int, 1, 100);
   vtkGetMacro(NumberOfRings, int);
   ///@}
 
   ///@{
   /// Number of straight pieces of a contour, and of a ring along one edge, in output 1. 16 by default,
-  /// from 1.
-  vtkSetClampMacro(LineResolution, int, 1, 10000);
+  /// 1 to 1000.
+  vtkSetClampMacro(LineResolution, int, 1, 1000);
   vtkGetMacro(LineResolution, int);
   ///@}
 

@@ -12,8 +12,8 @@
 /// contours if the feet of the center segments lie strictly inside the edges (a *concordant*
 /// triangle, see IsConcordant).
 
-#ifndef ContourChart_h
-#define ContourChart_h
+#ifndef homeomorphism_ContourChart_h
+#define homeomorphism_ContourChart_h
 
 #include "CoordinateSystem.h"
 #include "Geometry.h"

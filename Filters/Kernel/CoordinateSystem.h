@@ -22,8 +22,8 @@
 /// on an edge they are the limits from this triangle's side. Charts are immutable: any number of
 /// threads may use one.
 
-#ifndef CoordinateSystem_h
-#define CoordinateSystem_h
+#ifndef homeomorphism_CoordinateSystem_h
+#define homeomorphism_CoordinateSystem_h
 
 #include "Geometry.h"
 

@@ -3,6 +3,8 @@
 
 #include "ExactSign.h"
 
+#include <algorithm>
+
 namespace homeomorphism
 {
 namespace
@@ -80,6 +82,12 @@ private:
   int Size = 0;
 };
 
+/// Divides by a power of two, exactly.
+TwoTerms Scaled(const TwoTerms& x, double scale)
+{
+  return { x.High / scale, x.Low / scale };
+}
+
 /// The sign of (b - a).((b - a) + (c - a)).
 int SignOfFoot(const double* a, const double* b, const double* c, int dimension)
 {
@@ -95,19 +103,29 @@ int SignOfFoot(const double* a, const double* b, const double* c, int dimension)
   // Two rounded differences, a product and at most five additions: fewer than 10 relative errors of
   // half an ulp on any term.
   const double bound = 10.0 * std::numeric_limits<double>::epsilon() * magnitude;
-  if (value > bound)
+  // Products near the least normal number are not rounded relatively.
+  if (magnitude > 1e-280)
   {
-    return 1;
+    if (value > bound)
+    {
+      return 1;
+    }
+    if (value < -bound)
+    {
+      return -1;
+    }
   }
-  if (value < -bound)
+  double largest = 0.0;
+  for (int i = 0; i < dimension; ++i)
   {
-    return -1;
+    largest = std::max({ largest, std::abs(b[i] - a[i]), std::abs(c[i] - a[i]) });
   }
+  const double scale = PowerOfTwoNear(largest);
   Expansion sum;
   for (int i = 0; i < dimension; ++i)
   {
-    const TwoTerms u = Sum(b[i], -a[i]);
-    const TwoTerms v = Sum(c[i], -a[i]);
+    const TwoTerms u = Scaled(Sum(b[i], -a[i]), scale);
+    const TwoTerms v = Scaled(Sum(c[i], -a[i]), scale);
     sum.AddProduct(u, u, 1.0);
     sum.AddProduct(u, v, 1.0);
   }
@@ -118,10 +136,12 @@ int SignOfFoot(const double* a, const double* b, const double* c, int dimension)
 
 int ExactOrientation(const Vector2& a, const Vector2& b, const Vector2& c)
 {
-  const TwoTerms ax = Sum(a.x, -c.x);
-  const TwoTerms ay = Sum(a.y, -c.y);
-  const TwoTerms bx = Sum(b.x, -c.x);
-  const TwoTerms by = Sum(b.y, -c.y);
+  const double scaleA = PowerOfTwoNear(std::max(std::abs(a.x - c.x), std::abs(a.y - c.y)));
+  const double scaleB = PowerOfTwoNear(std::max(std::abs(b.x - c.x), std::abs(b.y - c.y)));
+  const TwoTerms ax = Scaled(Sum(a.x, -c.x), scaleA);
+  const TwoTerms ay = Scaled(Sum(a.y, -c.y), scaleA);
+  const TwoTerms bx = Scaled(Sum(b.x, -c.x), scaleB);
+  const TwoTerms by = Scaled(Sum(b.y, -c.y), scaleB);
   Expansion determinant;
   determinant.AddProduct(ax, by, 1.0);
   determinant.AddProduct(ay, bx, -1.0);

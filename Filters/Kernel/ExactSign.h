@@ -6,12 +6,12 @@
 ///
 /// A floating-point evaluation with an error bound decides nearly always; where it cannot, the
 /// polynomial is evaluated exactly as a sum of doubles (Dekker's and Shewchuk's expansions:
-/// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997). Exact
-/// as long as no product of two coordinate differences underflows or overflows; the mesh floor
-/// scales its coordinates so that they do not.
+/// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997).
+/// Differences are scaled by powers of two, so that products do not underflow however small the
+/// triangle. Coordinates must be below 1e150, which those of the mesh floor are.
 
-#ifndef ExactSign_h
-#define ExactSign_h
+#ifndef homeomorphism_ExactSign_h
+#define homeomorphism_ExactSign_h
 
 #include "Geometry.h"
 
@@ -30,16 +30,21 @@ inline int Orientation(const Vector2& a, const Vector2& b, const Vector2& c)
   const double left = (a.x - c.x) * (b.y - c.y);
   const double right = (a.y - c.y) * (b.x - c.x);
   const double determinant = left - right;
+  const double magnitude = std::abs(left) + std::abs(right);
   // Shewchuk's bound (3 + 16 u) u on the relative error, with u half an ulp of 1.
   constexpr double u = std::numeric_limits<double>::epsilon() / 2.0;
-  const double bound = (3.0 + 16.0 * u) * u * (std::abs(left) + std::abs(right));
-  if (determinant > bound)
+  const double bound = (3.0 + 16.0 * u) * u * magnitude;
+  // Products near the least normal number are not rounded relatively.
+  if (magnitude > 1e-280)
   {
-    return 1;
-  }
-  if (determinant < -bound)
-  {
-    return -1;
+    if (determinant > bound)
+    {
+      return 1;
+    }
+    if (determinant < -bound)
+    {
+      return -1;
+    }
   }
   return ExactOrientation(a, b, c);
 }

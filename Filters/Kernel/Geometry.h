@@ -4,8 +4,8 @@
 /// @file Geometry.h
 /// Plain structs of plane geometry: vectors, and a triangle seen in its own frame.
 
-#ifndef Geometry_h
-#define Geometry_h
+#ifndef homeomorphism_Geometry_h
+#define homeomorphism_Geometry_h
 
 #include <array>
 #include <cmath>
@@ -67,6 +67,17 @@ inline double DifferenceOfProducts(double a, double d, double b, double c)
   const double bc = b * c;
   const double error = std::fma(-b, c, bc);
   return std::fma(a, d, -bc) + error;
+}
+
+/// The power of two next to a positive number, 1 for others; it and its reciprocal are normal numbers.
+inline double PowerOfTwoNear(double x)
+{
+  if (!(x > 0.0 && std::isfinite(x)))
+  {
+    return 1.0;
+  }
+  const int exponent = std::ilogb(x);
+  return std::ldexp(1.0, exponent < -1021 ? -1021 : (exponent > 1021 ? 1021 : exponent));
 }
 
 /// Barycentric coordinates of a point of a triangle (they sum to 1), or the components of a vector
@@ -181,11 +192,14 @@ struct EdgeView
 /// edge of a needle, where the triangle's own frame knows only the corners' places.
 inline EdgeView ViewFromEdge(const Vector2& start, const Vector2& end, const Vector2& opposite)
 {
-  const Vector2 edge = end - start;
-  const Vector2 other = opposite - start;
+  // A power of two keeps the products from underflow without rounding anything.
+  const double scale = PowerOfTwoNear(std::hypot(end.x - start.x, end.y - start.y));
+  const Vector2 edge = (1.0 / scale) * (end - start);
+  const Vector2 other = (1.0 / scale) * (opposite - start);
   const double length = std::hypot(edge.x, edge.y);
-  return { length, DifferenceOfProducts(edge.x, other.x, -edge.y, other.y) / length / length,
-    std::abs(DifferenceOfProducts(edge.x, other.y, edge.y, other.x)) / length };
+  return { scale * length,
+    DifferenceOfProducts(edge.x, other.x, -edge.y, other.y) / length / length,
+    scale * std::abs(DifferenceOfProducts(edge.x, other.y, edge.y, other.x)) / length };
 }
 
 /// The views from the three edges: element k from the edge opposite corner k.

@@ -5,8 +5,8 @@
 /// The Linear coordinate system: contours are straight from the centroid to the edge, and the
 /// homeomorphism is the piecewise linear one.
 
-#ifndef LinearChart_h
-#define LinearChart_h
+#ifndef homeomorphism_LinearChart_h
+#define homeomorphism_LinearChart_h
 
 #include "CoordinateSystem.h"
 #include "Geometry.h"

@@ -4,8 +4,8 @@
 /// @file RootFinding.h
 /// The root of an increasing function, by Newton's method kept inside a bracket.
 
-#ifndef RootFinding_h
-#define RootFinding_h
+#ifndef homeomorphism_RootFinding_h
+#define homeomorphism_RootFinding_h
 
 #include <cmath>
 #include <limits>

@@ -20,8 +20,8 @@
 /// V = (a* m - a m*) / (a + a*) across it, m and m* being the vectors from the edge's midpoint to
 /// the two apexes, and no second derivative but zero, because W'(0) = 0.
 
-#ifndef SmoothChart_h
-#define SmoothChart_h
+#ifndef homeomorphism_SmoothChart_h
+#define homeomorphism_SmoothChart_h
 
 #include "CoordinateSystem.h"
 #include "Geometry.h"

@@ -4,8 +4,8 @@
 /// @file BoxTree.h
 /// A hierarchy of boxes around triangles, for finding the few that are near a point or a box.
 
-#ifndef BoxTree_h
-#define BoxTree_h
+#ifndef homeomorphism_BoxTree_h
+#define homeomorphism_BoxTree_h
 
 #include "Triangulation.h"
 
@@ -91,8 +91,8 @@ public:
     }
   }
 
-  /// Calls visit(triangle) for every triangle in the leaves whose box meets @a box, which is read
-  /// anew at each step, so that a visit may shrink it.
+  /// Calls visit(triangle) for every triangle in the leaves whose box meets @a box, until it returns
+  /// false. The box is read anew at each step, so that a visit may shrink it.
   template <typename Visit>
   void Search(const BoxType& box, Visit&& visit) const
   {
@@ -120,7 +120,10 @@ public:
       }
       for (std::int32_t i = node.First; i < node.First + node.Count; ++i)
       {
-        visit(this->Triangles[i]);
+        if (!visit(this->Triangles[i]))
+        {
+          return;
+        }
       }
     }
   }

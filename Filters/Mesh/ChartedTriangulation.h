@@ -4,8 +4,8 @@
 /// @file ChartedTriangulation.h
 /// The charts that a coordinate system gives to the triangles of one mesh.
 
-#ifndef ChartedTriangulation_h
-#define ChartedTriangulation_h
+#ifndef homeomorphism_ChartedTriangulation_h
+#define homeomorphism_ChartedTriangulation_h
 
 #include "Embedding.h"
 #include "Triangulation.h"

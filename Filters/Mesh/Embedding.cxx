@@ -63,11 +63,12 @@ Vector3 Scaled(const Vector3& a, double factor)
 
 EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vector3& opposite)
 {
-  const Vector3 edge = Difference(end, start);
-  const Vector3 other = Difference(opposite, start);
+  const double scale = PowerOfTwoNear(Length(Difference(end, start)));
+  const Vector3 edge = Scaled(Difference(end, start), 1.0 / scale);
+  const Vector3 other = Scaled(Difference(opposite, start), 1.0 / scale);
   const double length = Length(edge);
-  return { length, AccurateDot3(edge, other) / length / length,
-    Length(Cross3(edge, other)) / length };
+  return { scale * length, AccurateDot3(edge, other) / length / length,
+    scale * Length(Cross3(edge, other)) / length };
 }
 
 /// The corner opposite the longest edge; the first of equals.
@@ -97,7 +98,8 @@ TriangleShape MakeShape(const EdgeViews& views, int apex)
 
 } // namespace
 
-Embedding::Embedding(vtkPoints* points, const Triangulation& triangulation)
+Embedding::Embedding(
+  vtkPoints* points, const Triangulation& triangulation, const Embedding* companion)
 {
   const vtkIdType count = points->GetNumberOfPoints();
   std::vector<std::uint8_t> used(count, 0);
@@ -134,9 +136,7 @@ Embedding::Embedding(vtkPoints* points, const Triangulation& triangulation)
   }
   if (largest > 0.0)
   {
-    // Clamped so that Scale and its reciprocal are both normal numbers.
-    const int exponent = std::max(-1021, std::min(1021, std::ilogb(largest)));
-    this->Scale = std::ldexp(1.0, -exponent);
+    this->Scale = 1.0 / PowerOfTwoNear(largest);
   }
   Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
   Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
@@ -152,10 +152,13 @@ Embedding::Embedding(vtkPoints* points, const Triangulation& triangulation)
   this->LargestCoordinate = largest * this->Scale;
   this->Diagonal = largest > 0.0 ? Length(Difference(greatest, least)) : 0.0;
 
-  this->FindPlane(positions, used);
-  if (!this->Planar)
+  this->FindPlane(positions, used, companion);
+  if (!this->AxisParallel)
   {
     this->SpacePoints = std::move(positions);
+  }
+  if (!this->Planar)
+  {
     return;
   }
   this->PlanePoints.resize(count);
@@ -173,14 +176,19 @@ Embedding::Embedding(vtkPoints* points, const Triangulation& triangulation)
   }
 }
 
-void Embedding::FindPlane(
-  const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used)
+void Embedding::FindPlane(const std::vector<Vector3>& points,
+  const std::vector<std::uint8_t>& used, const Embedding* companion)
 {
+  const auto isTurnedAway = [companion](const Vector3& normal) {
+    // Not for planes that are at right angles to rounding, where either side is as good.
+    return companion && companion->Planar && Dot3(companion->PlaneAxes[2], normal) < -1e-6;
+  };
   const auto first = std::find(used.begin(), used.end(), 1);
   if (first == used.end())
   {
     // Nothing to see: the xy plane is as good as any.
     this->Planar = this->AxisParallel = true;
+    this->PlaneAxes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
     return;
   }
   const Vector3& origin = points[first - used.begin()];
@@ -197,12 +205,19 @@ void Embedding::FindPlane(
     {
       this->Planar = this->AxisParallel = true;
       this->AxisOrder = { (normalAxis + 1) % 3, (normalAxis + 2) % 3, normalAxis };
+      Vector3 axisNormal{};
+      axisNormal[normalAxis] = 1.0;
+      if (isTurnedAway(axisNormal))
+      {
+        std::swap(this->AxisOrder[0], this->AxisOrder[1]);
+        this->NormalSign = -1.0;
+      }
       for (int axis = 0; axis < 3; ++axis)
       {
         this->PlaneAxes[axis] = { 0.0, 0.0, 0.0 };
-        this->PlaneAxes[axis][this->AxisOrder[axis]] = 1.0;
+        this->PlaneAxes[axis][this->AxisOrder[axis]] = axis == 2 ? this->NormalSign : 1.0;
       }
-      this->PlaneDistance = origin[normalAxis];
+      this->PlaneDistance = this->NormalSign * origin[normalAxis];
       return;
     }
   }
@@ -231,13 +246,13 @@ void Embedding::FindPlane(
       normal = Scaled(c, 1.0 / widest);
     }
   }
-  // Rounding of its own coordinates and of the three points that span the plane.
-  const double rounding = 16.0 * this->CoordinatePrecision * this->LargestCoordinate;
-  if (!(widest > rounding))
+  // Any other point is the first plus at most twice the vector to the second plus at most once the
+  // vector to the third, so that their rounding and its own move it by a few times its rounding.
+  const double spread = 32.0 * this->CoordinatePrecision * this->LargestCoordinate;
+  if (!(widest > spread))
   {
     return;
   }
-  const double spread = rounding * (1.0 + farthest / widest);
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     if (used[i] && std::abs(Dot3(normal, Difference(points[i], origin))) > spread)
@@ -246,14 +261,15 @@ void Embedding::FindPlane(
     }
   }
   this->Planar = true;
-  // The normal that points along the axis it is closest to, so that two meshes in one plane agree on
-  // which side is up.
   int main = 0;
   for (const int axis : { 1, 2 })
   {
-    main = std::abs(normal[axis]) >= std::abs(normal[main]) ? axis : main;
+    // Rounding does not decide which of two equally close axes counts.
+    main = std::abs(normal[axis]) >= (1.0 - 1e-6) * std::abs(normal[main]) ? axis : main;
   }
-  if (normal[main] < 0.0)
+  const bool byCompanion = companion && companion->Planar &&
+    std::abs(Dot3(companion->PlaneAxes[2], normal)) > 1e-6;
+  if (byCompanion ? isTurnedAway(normal) : normal[main] < 0.0)
   {
     normal = Scaled(normal, -1.0);
   }
@@ -275,7 +291,7 @@ Vector3 Embedding::ToWorking(const double point[3]) const
   if (this->AxisParallel)
   {
     return { p[this->AxisOrder[0]], p[this->AxisOrder[1]],
-      p[this->AxisOrder[2]] - this->PlaneDistance };
+      this->NormalSign * p[this->AxisOrder[2]] - this->PlaneDistance };
   }
   return { Dot3(this->PlaneAxes[0], p), Dot3(this->PlaneAxes[1], p),
     Dot3(this->PlaneAxes[2], p) - this->PlaneDistance };
@@ -297,7 +313,7 @@ void Embedding::FromWorking(const Vector3& working, double point[3]) const
   {
     point[this->AxisOrder[0]] = working[0] * unscale;
     point[this->AxisOrder[1]] = working[1] * unscale;
-    point[this->AxisOrder[2]] = height * unscale;
+    point[this->AxisOrder[2]] = this->NormalSign * height * unscale;
     return;
   }
   for (int axis = 0; axis < 3; ++axis)
@@ -305,6 +321,23 @@ void Embedding::FromWorking(const Vector3& working, double point[3]) const
     point[axis] = (working[0] * this->PlaneAxes[0][axis] + working[1] * this->PlaneAxes[1][axis] +
                     height * this->PlaneAxes[2][axis]) *
       unscale;
+  }
+}
+
+void Embedding::FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const
+{
+  if (!this->Planar || this->AxisParallel)
+  {
+    Vector3 working = this->GetPoint(meshPoint);
+    working[2] += this->Planar ? offset : 0.0;
+    this->FromWorking(working, point);
+    return;
+  }
+  const double unscale = 1.0 / this->Scale;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    point[axis] =
+      (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) * unscale;
   }
 }
 
@@ -337,10 +370,15 @@ bool Embedding::IsFinite(const Triangulation::Corners& corners) const
 
 bool Embedding::IsConcordant(const Triangulation::Corners& corners) const
 {
-  const Vector3 a = this->GetPoint(corners[0]);
-  const Vector3 b = this->GetPoint(corners[1]);
-  const Vector3 c = this->GetPoint(corners[2]);
-  return homeomorphism::IsConcordant(a.data(), b.data(), c.data(), this->Planar ? 2 : 3);
+  if (this->AxisParallel)
+  {
+    const Vector3 a = this->GetPoint(corners[0]);
+    const Vector3 b = this->GetPoint(corners[1]);
+    const Vector3 c = this->GetPoint(corners[2]);
+    return homeomorphism::IsConcordant(a.data(), b.data(), c.data(), 2);
+  }
+  return homeomorphism::IsConcordant(this->SpacePoints[corners[0]].data(),
+    this->SpacePoints[corners[1]].data(), this->SpacePoints[corners[2]].data(), 3);
 }
 
 EdgeViews Embedding::GetViews(const Triangulation::Corners& corners) const
@@ -408,8 +446,9 @@ void Embedding::ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::C
   frame.Tangent = Scaled(
     Difference(this->SpacePoints[corners[PreviousCorner(shape.Apex)]], frame.Origin),
     1.0 / shape.Base);
+  const Vector3 toApex = Difference(this->SpacePoints[corners[shape.Apex]], frame.Origin);
   const Vector3 normal =
-    Cross3(frame.Tangent, Difference(this->SpacePoints[corners[shape.Apex]], frame.Origin));
+    Cross3(frame.Tangent, Scaled(toApex, 1.0 / PowerOfTwoNear(shape.Height)));
   frame.Normal = Scaled(normal, 1.0 / Length(normal));
   frame.Inward = Cross3(frame.Normal, frame.Tangent);
 }

@@ -4,8 +4,8 @@
 /// @file Embedding.h
 /// The geometric half of a mesh: where the points are, and each triangle's own frame.
 
-#ifndef Embedding_h
-#define Embedding_h
+#ifndef homeomorphism_Embedding_h
+#define homeomorphism_Embedding_h
 
 #include "Triangulation.h"
 
@@ -40,8 +40,12 @@ struct FramePoint
 class Embedding
 {
 public:
-  /// Reads the points that @a triangulation's triangles use. The triangles' corners must exist.
-  Embedding(vtkPoints* points, const Triangulation& triangulation);
+  /// Reads the points that @a triangulation's triangles use. The triangles' corners must exist. If the
+  /// points are planar, the plane's normal is the one that points along the axis it is closest to (the
+  /// last of equally close ones), or, if @a companion is given and planar, the one that is less than a
+  /// right angle from the companion's.
+  Embedding(vtkPoints* points, const Triangulation& triangulation,
+    const Embedding* companion = nullptr);
 
   /// Computes the triangles' frames. All triangles that are not masked must have an area.
   void ComputeFrames(const Triangulation& triangulation);
@@ -64,6 +68,10 @@ public:
 
   Vector3 ToWorking(const double point[3]) const;
   void FromWorking(const Vector3& working, double point[3]) const;
+
+  /// The place at a distance from a point of the mesh, along the plane's normal; the mesh's own point,
+  /// unrounded, if the distance is 0.
+  void FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const;
 
   /// Working coordinates of a point of the mesh; in the plane the third is the distance from it.
   Vector3 GetPoint(std::int32_t point) const
@@ -124,7 +132,8 @@ private:
     Vector3 Normal;
   };
 
-  void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used);
+  void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
+    const Embedding* companion);
   void ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
   void ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
 
@@ -140,9 +149,11 @@ private:
   // The plane: axes U, V within it and the normal N, right-handed, and its distance from the origin.
   std::array<Vector3, 3> PlaneAxes{};
   std::array<int, 3> AxisOrder{ 0, 1, 2 };
+  double NormalSign = 1.0;
   double PlaneDistance = 0.0;
 
   std::vector<Vector2> PlanePoints;
+  // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times Scale.
   std::vector<Vector3> SpacePoints;
   std::vector<TriangleShape> Shapes;
   std::vector<PlaneFrame> PlaneFrames;

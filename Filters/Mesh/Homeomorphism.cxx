@@ -104,21 +104,18 @@ void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) 
 {
   const Embedding& source = this->Pair->GetEmbedding(from);
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  // Distances from a plane are lengths of the input's space, not of either working space.
+  const double offset = place.Point.Offset == 0.0
+    ? 0.0
+    : place.Point.Offset / source.GetScale() * target.GetScale();
   if (place.Corner >= 0)
   {
-    const std::int32_t corner =
-      this->Pair->GetTriangulation().GetCorners(place.Triangle)[place.Corner];
-    Vector3 working = target.GetPoint(corner);
-    if (target.IsPlanar() && source.IsPlanar())
-    {
-      working[2] = place.Point.Offset * (target.GetScale() / source.GetScale());
-    }
-    target.FromWorking(working, image);
+    target.FromMeshPoint(
+      this->Pair->GetTriangulation().GetCorners(place.Triangle)[place.Corner], offset, image);
     return;
   }
-  // Distances from the surface are lengths of the input's space, not of either working space.
   FramePoint point;
-  point.Offset = place.Point.Offset * (target.GetScale() / source.GetScale());
+  point.Offset = offset;
   point.InPlane = this->VisitCharts(from, place.Triangle,
     [&place](const auto& chart, const auto& other) {
       return homeomorphism::MapPoint(chart, other, place.Point.InPlane);

@@ -5,8 +5,8 @@
 /// The map from one mesh's domain to the other's: point -> triangle -> coordinates -> triangle ->
 /// point.
 
-#ifndef Homeomorphism_h
-#define Homeomorphism_h
+#ifndef homeomorphism_Homeomorphism_h
+#define homeomorphism_Homeomorphism_h
 
 #include "ChartedTriangulation.h"
 #include "TriangulationPair.h"

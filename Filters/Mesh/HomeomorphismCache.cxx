@@ -25,11 +25,18 @@ void HomeomorphismCache::AddStamps(vtkPolyData* mesh, std::vector<Stamp>& stamps
     add(nullptr);
     return;
   }
+  // An object changed in place may keep its arrays' times, but hardly its size.
+  const auto addSize = [&stamps](vtkIdType size) {
+    stamps.emplace_back(nullptr, static_cast<vtkMTimeType>(size));
+  };
+  addSize(mesh->GetNumberOfPoints());
   add(mesh->GetPoints());
   add(mesh->GetPoints() ? mesh->GetPoints()->GetData() : nullptr);
   for (vtkCellArray* cells :
     { mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips() })
   {
+    add(cells);
+    addSize(cells ? cells->GetNumberOfCells() : 0);
     add(cells ? cells->GetOffsetsArray() : nullptr);
     add(cells ? cells->GetConnectivityArray() : nullptr);
   }

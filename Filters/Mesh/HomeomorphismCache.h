@@ -4,8 +4,8 @@
 /// @file HomeomorphismCache.h
 /// Keeps a homeomorphism until its meshes or its options change.
 
-#ifndef HomeomorphismCache_h
-#define HomeomorphismCache_h
+#ifndef homeomorphism_HomeomorphismCache_h
+#define homeomorphism_HomeomorphismCache_h
 
 #include "Homeomorphism.h"
 

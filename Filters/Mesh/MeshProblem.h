@@ -4,8 +4,8 @@
 /// @file MeshProblem.h
 /// What can be wrong with a triangulation or a pair of them, and how a user is told.
 
-#ifndef MeshProblem_h
-#define MeshProblem_h
+#ifndef homeomorphism_MeshProblem_h
+#define homeomorphism_MeshProblem_h
 
 #include "vtkType.h"
 

@@ -67,12 +67,6 @@ vtkIdType CountCells(vtkCellArray* cells)
   return cells ? cells->GetNumberOfCells() : 0;
 }
 
-/// Cell id of the first polygon: vertices and lines are numbered before polygons.
-vtkIdType FirstPolygon(vtkPolyData* mesh)
-{
-  return CountCells(mesh->GetVerts()) + CountCells(mesh->GetLines());
-}
-
 /// The triangles for which a predicate holds, masked ones excepted.
 template <typename Predicate>
 TriangleList FindTriangles(const Triangulation& triangulation, Predicate&& predicate)
@@ -203,13 +197,36 @@ bool GoesRoundTwice(
   return false;
 }
 
-bool IsAtBoundary(const Triangulation& triangulation, TriangleIndex t)
+/// Whether a triangle's interior meets that of one that is near a box.
+bool OverlapsNear(const Triangulation& triangulation, const Embedding& embedding,
+  const PointLocation& location, TriangleIndex t, const Box<2>& box)
 {
-  return triangulation.GetAcross(t, 0).Triangle < 0 ||
-    triangulation.GetAcross(t, 1).Triangle < 0 || triangulation.GetAcross(t, 2).Triangle < 0;
+  bool overlaps = false;
+  location.VisitNear(box, [&](TriangleIndex other) {
+    overlaps = other != t &&
+      InteriorsMeet(embedding, triangulation.GetCorners(t), triangulation.GetCorners(other));
+    return !overlaps;
+  });
+  return overlaps;
+}
+
+/// The box around some corners of a triangle of the plane.
+Box<2> BoxAround(const Embedding& embedding, std::initializer_list<std::int32_t> points)
+{
+  Box<2> box;
+  for (const std::int32_t point : points)
+  {
+    box.Add({ embedding.GetPlanePoint(point).x, embedding.GetPlanePoint(point).y });
+  }
+  return box;
 }
 
 } // namespace
+
+vtkIdType FirstPolygon(vtkPolyData* mesh)
+{
+  return CountCells(mesh->GetVerts()) + CountCells(mesh->GetLines());
+}
 
 std::vector<Triangulation::Corners> ReadTriangles(
   vtkPolyData* mesh, const std::string& where, MeshProblems& problems)
@@ -301,8 +318,9 @@ TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation)
   };
   vtkUnsignedCharArray* cells = ghosts(mesh->GetCellData(), mesh->GetNumberOfCells());
   vtkUnsignedCharArray* points = ghosts(mesh->GetPointData(), mesh->GetNumberOfPoints());
+  const vtkIdType firstCell = FirstPolygon(mesh);
   return FindTriangles(triangulation, [&](TriangleIndex t) {
-    if (cells && (cells->GetValue(triangulation.GetCellId(t)) & vtkDataSetAttributes::HIDDENCELL))
+    if (cells && (cells->GetValue(firstCell + t) & vtkDataSetAttributes::HIDDENCELL))
     {
       return true;
     }
@@ -341,8 +359,11 @@ TriangleList FindFlipped(
     return source.GetOrientation(corners) != target.GetOrientation(corners);
   };
   TriangleList mirrored = FindTriangles(triangulation, isMirrored);
-  const auto all =
-    static_cast<std::size_t>(FindTriangles(triangulation, [](TriangleIndex) { return true; }).size());
+  std::size_t all = 0;
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    all += triangulation.IsMasked(t) ? 0 : 1;
+  }
   if (2 * mirrored.size() <= all)
   {
     return mirrored;
@@ -364,42 +385,37 @@ TriangleList FindOverlapping(
   }
   // Without folds across edges and with one turn at most around each vertex the mesh is an immersed
   // surface: how often a point of the plane is covered changes only across boundary edges. Beside a
-  // region that is covered twice there then lies a triangle with a boundary edge that overlaps
-  // another, so that only those have to be compared with what is near.
-  const TriangleList folds = FindTriangles(triangulation,
-    [&](TriangleIndex t) { return HasFold(triangulation, embedding, t); });
+  // region that is covered twice there then is a boundary edge whose triangle is on the side that is
+  // covered twice: there it overlaps a triangle that touches the edge. So only what is near boundary
+  // edges has to be compared.
   const bool immersed =
-    folds.empty() && !GoesRoundTwice(triangulation, embedding, numberOfPoints);
-
-  TriangleList overlapping;
-  const auto compare = [&](bool all) {
-    overlapping.clear();
-    for (TriangleIndex t = 0; t < count; ++t)
+    FindTriangles(triangulation, [&](TriangleIndex t) {
+      return HasFold(triangulation, embedding, t);
+    }).empty() &&
+    !GoesRoundTwice(triangulation, embedding, numberOfPoints);
+  const auto overlapsAtBoundary = [&](TriangleIndex t) {
+    const Triangulation::Corners& corners = triangulation.GetCorners(t);
+    for (int k = 0; k < 3; ++k)
     {
-      if (triangulation.IsMasked(t) || !(all || IsAtBoundary(triangulation, t)))
+      if (triangulation.GetAcross(t, k).Triangle < 0 &&
+        OverlapsNear(triangulation, embedding, location, t,
+          BoxAround(embedding, { corners[NextCorner(k)], corners[PreviousCorner(k)] })))
       {
-        continue;
-      }
-      bool overlaps = false;
-      location.VisitNear(t, [&](TriangleIndex other) {
-        overlaps = overlaps ||
-          (other != t &&
-            InteriorsMeet(
-              embedding, triangulation.GetCorners(t), triangulation.GetCorners(other)));
-      });
-      if (overlaps)
-      {
-        overlapping.push_back(t);
+        return true;
       }
     }
+    return false;
   };
-  compare(!immersed);
-  if (immersed && !overlapping.empty())
+  if (immersed && FindTriangles(triangulation, overlapsAtBoundary).empty())
   {
-    // Name all of them, not only those at the boundary.
-    compare(true);
+    return {};
   }
-  return overlapping;
+  // Something overlaps: name all that do.
+  return FindTriangles(triangulation, [&](TriangleIndex t) {
+    const Triangulation::Corners& corners = triangulation.GetCorners(t);
+    return OverlapsNear(triangulation, embedding, location, t,
+      BoxAround(embedding, { corners[0], corners[1], corners[2] }));
+  });
 }
 
 } // namespace homeomorphism

@@ -6,8 +6,8 @@
 /// function finds one kind of defect and says which triangles have it; TriangulationPair decides what
 /// becomes of them.
 
-#ifndef MeshValidation_h
-#define MeshValidation_h
+#ifndef homeomorphism_MeshValidation_h
+#define homeomorphism_MeshValidation_h
 
 #include "Embedding.h"
 #include "MeshProblem.h"
@@ -24,6 +24,9 @@ namespace homeomorphism
 
 /// Numbers of triangles, ascending, without repetition.
 using TriangleList = std::vector<TriangleIndex>;
+
+/// Cell id of a mesh's first polygon: vertices and lines are numbered before polygons.
+vtkIdType FirstPolygon(vtkPolyData* mesh);
 
 /// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
 /// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
@@ -54,8 +57,9 @@ TriangleList FindNoArea(const Triangulation& triangulation, const Embedding& emb
 TriangleList FindFlipped(
   const Triangulation& triangulation, const Embedding& source, const Embedding& target);
 
-/// Triangles of a planar mesh whose interior meets another's, by exact predicates. Nearly linear in
-/// the number of triangles as long as there are none.
+/// Triangles of a planar mesh whose interior meets another's, by exact predicates. @a triangulation's
+/// adjacency and @a location must know which triangles are masked. Nearly linear in the number of
+/// triangles as long as there are none.
 TriangleList FindOverlapping(
   const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location);
 

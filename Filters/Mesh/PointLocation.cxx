@@ -115,15 +115,18 @@ Location PointLocation::Find(
   {
     return {};
   }
-  if (!this->Geometry.IsPlanar())
-  {
-    return this->FindNearest(working, tolerance);
-  }
-  if (!this->Geometry.IsColumnar() && std::abs(working[2]) > tolerance)
+  if (!this->Geometry.IsColumnar() && this->Geometry.IsPlanar() &&
+    std::abs(working[2]) > tolerance)
   {
     return {};
   }
-  return this->FindInPlane(working, tolerance, hint);
+  Location location = this->Geometry.IsPlanar() ? this->FindInPlane(working, tolerance, hint)
+                                                : this->FindNearest(working, tolerance);
+  if (!this->Geometry.IsColumnar())
+  {
+    location.Point.Offset = 0.0;
+  }
+  return location;
 }
 
 /// The place of a point that is in a triangle of the plane.
@@ -162,6 +165,7 @@ Location PointLocation::FindInPlane(
         {
           found = t;
         }
+        return true;
       });
   }
   if (found >= 0)
@@ -177,6 +181,7 @@ Location PointLocation::FindInPlane(
     place.InPlane = inTriangle;
     nearest.Offer(t, place, distance);
     reach = Box<2>::Around({ point.x, point.y }, nearest.Distance);
+    return true;
   });
   return nearest.Found;
 }
@@ -192,6 +197,7 @@ Location PointLocation::FindNearest(const Vector3& working, double tolerance) co
     place.InPlane = inTriangle;
     nearest.Offer(t, place, distance);
     reach = Box<3>::Around(working, nearest.Distance);
+    return true;
   });
   if (nearest.Found.Triangle >= 0)
   {

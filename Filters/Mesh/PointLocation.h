@@ -4,8 +4,8 @@
 /// @file PointLocation.h
 /// Which triangle is a point in?
 
-#ifndef PointLocation_h
-#define PointLocation_h
+#ifndef homeomorphism_PointLocation_h
+#define homeomorphism_PointLocation_h
 
 #include "BoxTree.h"
 #include "Embedding.h"
@@ -42,11 +42,12 @@ public:
   /// them, @a hint the triangle where the point probably is, or -1.
   Location Find(const Vector3& working, double tolerance, TriangleIndex hint) const;
 
-  /// Calls visit(triangle) for the triangles of a planar domain whose boxes may meet a triangle's.
+  /// Calls visit(triangle) for the triangles of a planar domain whose boxes may meet a box, until it
+  /// returns false.
   template <typename Visit>
-  void VisitNear(TriangleIndex triangle, Visit&& visit) const
+  void VisitNear(const Box<2>& box, Visit&& visit) const
   {
-    this->PlaneTree.Search(this->PlaneBox(triangle), visit);
+    this->PlaneTree.Search(box, visit);
   }
 
 private:

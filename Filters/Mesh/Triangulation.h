@@ -4,8 +4,8 @@
 /// @file Triangulation.h
 /// The combinatorial half of a mesh: which points a triangle has, and what lies across its edges.
 
-#ifndef Triangulation_h
-#define Triangulation_h
+#ifndef homeomorphism_Triangulation_h
+#define homeomorphism_Triangulation_h
 
 #include "vtkType.h"
 

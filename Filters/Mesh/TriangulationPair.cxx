@@ -62,7 +62,9 @@ public:
 
 private:
   /// Masks or refuses triangles. Returns whether there were any.
-  bool Exclude(MeshProblem::Kind kind, const std::string& where, const TriangleList& triangles)
+  /// Of a pair's defects, the ids are those of the source's cells.
+  bool Exclude(MeshProblem::Kind kind, int side, const std::string& where,
+    const TriangleList& triangles)
   {
     if (triangles.empty())
     {
@@ -79,7 +81,7 @@ private:
     {
       if (problem.FirstCells.size() < MeshProblem::MaximumIds)
       {
-        problem.FirstCells.push_back(this->Pair->Topology.GetCellId(t));
+        problem.FirstCells.push_back(FirstPolygon(this->Meshes[side]) + t);
       }
       if (mask)
       {
@@ -109,9 +111,7 @@ private:
       return;
     }
     Triangulation& topology = this->Pair->Topology;
-    const vtkIdType firstCell = this->Meshes[0]->GetNumberOfCells() -
-      static_cast<vtkIdType>(triangles.size());
-    topology.SetTriangles(std::move(triangles), firstCell);
+    topology.SetTriangles(std::move(triangles), FirstPolygon(this->Meshes[0]));
     for (vtkPolyData* mesh : this->Meshes)
     {
       // What the mesh blanks is not there: no defect, so no message.
@@ -121,7 +121,7 @@ private:
       }
     }
     this->Exclude(
-      MeshProblem::Kind::RepeatedCorner, this->Names[0], FindRepeatedCorners(topology));
+      MeshProblem::Kind::RepeatedCorner, 0, this->Names[0], FindRepeatedCorners(topology));
   }
 
   void ReadGeometry()
@@ -131,17 +131,18 @@ private:
     for (int side = 0; side < 2 && this->Meshes[side]; ++side)
     {
       vtkPoints* points = this->Meshes[side]->GetPoints();
-      this->Pair->Embeddings[side].reset(new Embedding(points ? points : none.Get(), topology));
+      this->Pair->Embeddings[side] = std::make_unique<Embedding>(
+        points ? points : none.Get(), topology, this->Pair->Embeddings[0].get());
       const Embedding& embedding = *this->Pair->Embeddings[side];
-      this->Exclude(
-        MeshProblem::Kind::NotFinite, this->Names[side], FindNotFinite(topology, embedding));
+      this->Exclude(MeshProblem::Kind::NotFinite, side, this->Names[side],
+        FindNotFinite(topology, embedding));
       if (IsRefused(this->Problems))
       {
         // Areas and orientations mean nothing then.
         return;
       }
       this->Exclude(
-        MeshProblem::Kind::NoArea, this->Names[side], FindNoArea(topology, embedding));
+        MeshProblem::Kind::NoArea, side, this->Names[side], FindNoArea(topology, embedding));
     }
     const bool planar = this->Pair->Embeddings[0]->IsPlanar() &&
       (!this->Meshes[1] || this->Pair->Embeddings[1]->IsPlanar());
@@ -154,7 +155,7 @@ private:
     }
     if (planar && this->Meshes[1] && !IsRefused(this->Problems))
     {
-      this->Exclude(MeshProblem::Kind::Flipped, "pair",
+      this->Exclude(MeshProblem::Kind::Flipped, 0, "pair",
         FindFlipped(topology, *this->Pair->Embeddings[0], *this->Pair->Embeddings[1]));
     }
   }
@@ -163,37 +164,40 @@ private:
   {
     Triangulation& topology = this->Pair->Topology;
     const vtkIdType numberOfPoints = this->Meshes[0]->GetNumberOfPoints();
-    if (this->Exclude(MeshProblem::Kind::EdgeOfManyTriangles, this->Names[0],
+    if (this->Exclude(MeshProblem::Kind::EdgeOfManyTriangles, 0, this->Names[0],
           topology.FindAdjacency(numberOfPoints)) &&
       this->MaskInvalidTriangles)
     {
       topology.FindAdjacency(numberOfPoints);
     }
     this->Exclude(
-      MeshProblem::Kind::NotOrientable, this->Names[0], topology.FindNotOrientable());
+      MeshProblem::Kind::NotOrientable, 0, this->Names[0], topology.FindNotOrientable());
+  }
+
+  void LocatePoints(int side)
+  {
+    this->Pair->Locations[side] =
+      std::make_unique<PointLocation>(this->Pair->Topology, *this->Pair->Embeddings[side]);
   }
 
   void ExcludeOverlaps()
   {
     Triangulation& topology = this->Pair->Topology;
-    bool excluded = false;
     for (int side = 0; side < 2 && this->Meshes[side]; ++side)
     {
       const Embedding& embedding = *this->Pair->Embeddings[side];
-      this->Pair->Locations[side].reset(new PointLocation(topology, embedding));
-      if (embedding.IsPlanar())
+      this->LocatePoints(side);
+      if (embedding.IsPlanar() &&
+        this->Exclude(MeshProblem::Kind::Overlapping, side, this->Names[side],
+          FindOverlapping(topology, embedding, *this->Pair->Locations[side])) &&
+        !IsRefused(this->Problems))
       {
-        excluded |= this->Exclude(MeshProblem::Kind::Overlapping, this->Names[side],
-          FindOverlapping(topology, embedding, *this->Pair->Locations[side]));
-      }
-    }
-    if (excluded && !IsRefused(this->Problems))
-    {
-      topology.FindAdjacency(this->Meshes[0]->GetNumberOfPoints());
-      for (int side = 0; side < 2 && this->Meshes[side]; ++side)
-      {
-        this->Pair->Locations[side].reset(
-          new PointLocation(topology, *this->Pair->Embeddings[side]));
+        // What has been left out is gone for the other mesh, too.
+        topology.FindAdjacency(this->Meshes[0]->GetNumberOfPoints());
+        for (int done = 0; done <= side; ++done)
+        {
+          this->LocatePoints(done);
+        }
       }
     }
   }

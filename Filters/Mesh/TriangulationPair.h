@@ -4,8 +4,8 @@
 /// @file TriangulationPair.h
 /// Two isomorphic triangulations, read and validated once.
 
-#ifndef TriangulationPair_h
-#define TriangulationPair_h
+#ifndef homeomorphism_TriangulationPair_h
+#define homeomorphism_TriangulationPair_h
 
 #include "Embedding.h"
 #include "MeshProblem.h"
