@@ -169,20 +169,30 @@ HomeomorphismOptions GetOptions(Algorithm* self)
   return options;
 }
 
-/// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input.
+/// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input. Each
+/// conversion's progress counts as a part of the whole.
 template <typename Convert>
-void ConvertLeaves(vtkCompositeDataSet* input, vtkCompositeDataSet* output, Convert&& convert)
+void ConvertLeaves(
+  vtkAlgorithm* self, vtkCompositeDataSet* input, vtkCompositeDataSet* output, Convert&& convert)
 {
   output->CopyStructure(input);
   const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(input->NewIterator());
+  int leaves = 0;
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
+    ++leaves;
+  }
+  int done = 0;
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    self->SetProgressShiftScale(static_cast<double>(done++) / leaves, 1.0 / leaves);
     if (auto* leaf = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
     {
       const vtkSmartPointer<vtkDataSet> converted = convert(leaf);
       output->SetDataSet(iterator, converted);
     }
   }
+  self->SetProgressShiftScale(0.0, 1.0);
 }
 
 } // namespace homeomorphism

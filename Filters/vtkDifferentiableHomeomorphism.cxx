@@ -600,7 +600,7 @@ int vtkDifferentiableHomeomorphism::RequestData(
   }
   if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
   {
-    ConvertLeaves(tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
+    ConvertLeaves(this, tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
       vtkSmartPointer<vtkPointSet> result;
       if (BecomesStructuredGrid(leaf))
       {

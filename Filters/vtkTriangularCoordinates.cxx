@@ -303,7 +303,7 @@ int vtkTriangularCoordinates::RequestData(
 
   if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
   {
-    ConvertLeaves(tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
+    ConvertLeaves(this, tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
       const auto result = vtkSmartPointer<vtkDataSet>::Take(leaf->NewInstance());
       addCoordinates(leaf, result);
       return result;

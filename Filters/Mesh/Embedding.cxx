@@ -324,6 +324,13 @@ void Embedding::FromWorking(const Vector3& working, double point[3]) const
   }
 }
 
+bool Embedding::IsMeshPoint(std::int32_t meshPoint, const double point[3]) const
+{
+  double position[3];
+  this->FromMeshPoint(meshPoint, 0.0, position);
+  return std::equal(position, position + 3, point);
+}
+
 void Embedding::FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const
 {
   if (!this->Planar || this->AxisParallel)

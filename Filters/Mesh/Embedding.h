@@ -69,6 +69,9 @@ public:
   Vector3 ToWorking(const double point[3]) const;
   void FromWorking(const Vector3& working, double point[3]) const;
 
+  /// Whether a place is a point of the mesh, bit for bit.
+  bool IsMeshPoint(std::int32_t meshPoint, const double point[3]) const;
+
   /// The place at a distance from a point of the mesh, along the plane's normal; the mesh's own point,
   /// unrounded, if the distance is 0.
   void FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const;

@@ -80,8 +80,17 @@ double Homeomorphism::GetReach(Side side, double tolerance, double precision) co
 Location Homeomorphism::Locate(
   Side side, const double point[3], double reach, TriangleIndex hint) const
 {
-  return this->Pair->GetLocation(side).Find(
-    this->Pair->GetEmbedding(side).ToWorking(point), reach, hint);
+  const Embedding& embedding = this->Pair->GetEmbedding(side);
+  Location place =
+    this->Pair->GetLocation(side).Find(embedding.ToWorking(point), reach, hint);
+  if (place.Corner >= 0 &&
+    embedding.IsMeshPoint(
+      this->Pair->GetTriangulation().GetCorners(place.Triangle)[place.Corner], point))
+  {
+    // The rounding of its distance from a plane that is not parallel to two axes must not move it.
+    place.Point.Offset = 0.0;
+  }
+  return place;
 }
 
 template <typename Use>

@@ -34,18 +34,24 @@ public:
   std::shared_ptr<const TriangulationPair> Build()
   {
     this->ReadTopology();
-    if (!IsRefused(this->Problems))
+    // What is masked has no part in where the plane is or how large the domain, so after masking
+    // everything is looked at again.
+    do
     {
-      this->ReadGeometry();
-    }
-    if (!IsRefused(this->Problems))
-    {
-      this->FindAdjacency();
-    }
-    if (!IsRefused(this->Problems))
-    {
-      this->ExcludeOverlaps();
-    }
+      this->HasMasked = false;
+      if (!IsRefused(this->Problems))
+      {
+        this->ReadGeometry();
+      }
+      if (!IsRefused(this->Problems))
+      {
+        this->FindAdjacency();
+      }
+      if (!IsRefused(this->Problems))
+      {
+        this->ExcludeOverlaps();
+      }
+    } while (this->HasMasked && !IsRefused(this->Problems));
     if (IsRefused(this->Problems))
     {
       return nullptr;
@@ -86,6 +92,7 @@ private:
       if (mask)
       {
         this->Pair->Topology.Mask(t);
+        this->HasMasked = true;
       }
     }
     this->Problems.push_back(problem);
@@ -128,18 +135,20 @@ private:
   {
     const Triangulation& topology = this->Pair->Topology;
     const vtkNew<vtkPoints> none;
+    // The second is read in view of the first, which must not be one of an earlier pass.
+    this->Pair->Embeddings = {};
     for (int side = 0; side < 2 && this->Meshes[side]; ++side)
     {
       vtkPoints* points = this->Meshes[side]->GetPoints();
       this->Pair->Embeddings[side] = std::make_unique<Embedding>(
         points ? points : none.Get(), topology, this->Pair->Embeddings[0].get());
       const Embedding& embedding = *this->Pair->Embeddings[side];
-      this->Exclude(MeshProblem::Kind::NotFinite, side, this->Names[side],
-        FindNotFinite(topology, embedding));
-      if (IsRefused(this->Problems))
+      if (this->Exclude(MeshProblem::Kind::NotFinite, side, this->Names[side],
+            FindNotFinite(topology, embedding)) &&
+        !this->MaskInvalidTriangles)
       {
-        // Areas and orientations mean nothing then.
-        return;
+        // Areas mean nothing then.
+        continue;
       }
       this->Exclude(
         MeshProblem::Kind::NoArea, side, this->Names[side], FindNoArea(topology, embedding));
@@ -174,30 +183,20 @@ private:
       MeshProblem::Kind::NotOrientable, 0, this->Names[0], topology.FindNotOrientable());
   }
 
-  void LocatePoints(int side)
-  {
-    this->Pair->Locations[side] =
-      std::make_unique<PointLocation>(this->Pair->Topology, *this->Pair->Embeddings[side]);
-  }
-
   void ExcludeOverlaps()
   {
     Triangulation& topology = this->Pair->Topology;
     for (int side = 0; side < 2 && this->Meshes[side]; ++side)
     {
       const Embedding& embedding = *this->Pair->Embeddings[side];
-      this->LocatePoints(side);
+      this->Pair->Locations[side] = std::make_unique<PointLocation>(topology, embedding);
       if (embedding.IsPlanar() &&
         this->Exclude(MeshProblem::Kind::Overlapping, side, this->Names[side],
           FindOverlapping(topology, embedding, *this->Pair->Locations[side])) &&
-        !IsRefused(this->Problems))
+        this->MaskInvalidTriangles)
       {
-        // What has been left out is gone for the other mesh, too.
+        // What has been left out is gone for the other mesh, too, before it is looked at.
         topology.FindAdjacency(this->Meshes[0]->GetNumberOfPoints());
-        for (int done = 0; done <= side; ++done)
-        {
-          this->LocatePoints(done);
-        }
       }
     }
   }
@@ -205,6 +204,7 @@ private:
   std::array<vtkPolyData*, 2> Meshes;
   std::array<std::string, 2> Names;
   bool MaskInvalidTriangles;
+  bool HasMasked = false;
   MeshProblems& Problems;
   std::unique_ptr<TriangulationPair> Pair;
 };

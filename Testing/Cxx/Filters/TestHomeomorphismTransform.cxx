@@ -1,0 +1,790 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// vtkHomeomorphismTransform: that it is the filter's map wherever VTK takes a transform.
+
+#include "FilterRuns.h"
+
+#include "vtkHomeomorphismTransform.h"
+
+#include "vtkGeneralTransform.h"
+#include "vtkImageData.h"
+#include "vtkImageReslice.h"
+#include "vtkSMPTools.h"
+#include "vtkTransform.h"
+#include "vtkTransformFilter.h"
+#include "vtkTransformPolyDataFilter.h"
+
+#include <sstream>
+#include <thread>
+
+namespace
+{
+
+using namespace filter_runs;
+
+vtkSmartPointer<vtkHomeomorphismTransform> MakeTransform(const System& system, const MeshPair& pair)
+{
+  auto transform = vtkSmartPointer<vtkHomeomorphismTransform>::New();
+  SetSystem(transform.Get(), system);
+  transform->SetSource(pair.Source);
+  transform->SetTarget(pair.Target);
+  return transform;
+}
+
+/// Pairs of planes: xy to xy, and tilted to x = const.
+std::vector<MeshPair> PlanarPairs(std::uint64_t seed)
+{
+  const MeshPair pair = MakePlanarPair(8, seed);
+  return { pair,
+    { Tilted(pair.Source, Tilt(), { 1.0, 0.5, -2.0 }),
+      Moved(pair.Target,
+        [](const Point& p) -> Point {
+          return { 3.0, p[0], p[1] };
+        }) } };
+}
+
+/// In the domain and around it, over and under its plane.
+std::vector<Point> PositionsAround(vtkPolyData* mesh, std::uint64_t seed)
+{
+  std::vector<Point> positions;
+  for (const Place& place : RandomPlaces(mesh, 4000, seed))
+  {
+    positions.push_back(PositionOf(mesh, place));
+  }
+  Random random(seed + 1);
+  const double size = SizeOf(mesh);
+  for (const Place& place : RandomPlaces(mesh, 1000, seed + 2))
+  {
+    positions.push_back(PositionOf(mesh, place) + 0.5 * size * random.Vector());
+  }
+  return positions;
+}
+
+Point Transformed(vtkAbstractTransform* transform, const Point& p)
+{
+  Point image;
+  transform->TransformPoint(p.data(), image.data());
+  return image;
+}
+
+class TransformInEverySystem : public ::testing::TestWithParam<System>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(
+  All, TransformInEverySystem, ::testing::ValuesIn(AllSystems()), NameOfSystem);
+
+// --- Agreement with the filter -------------------------------------------------------------------
+
+TEST_P(TransformInEverySystem, AgreesWithTheFilter)
+{
+  for (const MeshPair& pair : PlanarPairs(500))
+  {
+    for (const bool inverse : { false, true })
+    {
+      const std::vector<Point> positions = PositionsAround(inverse ? pair.Target : pair.Source, 60);
+      const auto cloud = MakeCloud(positions);
+      const vtkIdType count = cloud->GetNumberOfPoints();
+      const auto filter = MakeFilter(GetParam(), pair, cloud);
+      filter->SetInverse(inverse);
+      filter->ComputeJacobianOn();
+      vtkPointSet* mapped = Output(filter);
+      vtkDataArray* mask = PointArray(mapped, "ValidPointMask");
+      EXPECT_GT(filter->GetNumberOfOutsidePoints(), 100);
+
+      const auto transform = MakeTransform(GetParam(), pair);
+      if (inverse)
+      {
+        transform->Inverse();
+      }
+      const double outside = transform->GetOutsideCoordinate();
+      const auto expected = [&](vtkIdType i)
+      {
+        return mask->GetComponent(i, 0) != 0.0 ? PointOf(mapped, i)
+                                               : Point{ outside, outside, outside };
+      };
+      const auto countDifferent = [&](vtkPoints* points, vtkIdType first)
+      {
+        vtkIdType different = points->GetNumberOfPoints() != first + count;
+        for (vtkIdType i = 0; i < count; ++i)
+        {
+          different += PointOf(points, first + i) != expected(i);
+        }
+        return different;
+      };
+
+      // Point by point.
+      vtkIdType different = 0;
+      Worst derivatives;
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        const Point p = positions[static_cast<std::size_t>(i)];
+        different += Transformed(transform, p) != expected(i);
+        different += transform->IsInside(p.data()) != (mask->GetComponent(i, 0) != 0.0);
+        Point image;
+        Matrix derivative;
+        double rows[3][3];
+        transform->InternalTransformDerivative(p.data(), image.data(), rows);
+        for (std::size_t row = 0; row < 3; ++row)
+        {
+          derivative[row] = { rows[row][0], rows[row][1], rows[row][2] };
+        }
+        different += image != expected(i);
+        if (mask->GetComponent(i, 0) == 0.0)
+        {
+          different += !std::isnan(Norm(derivative));
+          continue;
+        }
+        const Matrix jacobian = MatrixOf(PointArray(mapped, "Jacobian"), i);
+        if (inverse)
+        {
+          // VTK inverts the forward derivative here.
+          derivatives.Take(Distance(derivative, jacobian),
+            1e-13 * Norm(jacobian) * Norm(Inverted(jacobian)) * Norm(jacobian));
+        }
+        else
+        {
+          different += derivative != jacobian;
+        }
+      }
+      EXPECT_EQ(different, 0);
+      EXPECT_LE(derivatives.OverBound, 1.0);
+
+      // All at once; VTK appends.
+      vtkNew<vtkPoints> points;
+      points->SetDataTypeToDouble();
+      points->InsertNextPoint(7.0, 8.0, 9.0);
+      transform->TransformPoints(cloud->GetPoints(), points);
+      EXPECT_EQ(countDifferent(points, 1), 0);
+      EXPECT_EQ(PointOf(points, 0), (Point{ 7.0, 8.0, 9.0 }));
+
+      vtkNew<vtkTransformFilter> transformFilter;
+      transformFilter->SetInputData(cloud);
+      transformFilter->SetTransform(transform);
+      transformFilter->Update();
+      EXPECT_EQ(countDifferent(transformFilter->GetOutput()->GetPoints(), 0), 0);
+
+      vtkNew<vtkTransformPolyDataFilter> polyDataFilter;
+      polyDataFilter->SetInputData(cloud);
+      polyDataFilter->SetTransform(transform);
+      polyDataFilter->Update();
+      EXPECT_EQ(countDifferent(polyDataFilter->GetOutput()->GetPoints(), 0), 0);
+
+      vtkNew<vtkGeneralTransform> general;
+      general->Concatenate(transform);
+      vtkNew<vtkPoints> viaGeneral;
+      viaGeneral->SetDataTypeToDouble();
+      general->TransformPoints(cloud->GetPoints(), viaGeneral);
+      EXPECT_EQ(countDifferent(viaGeneral, 0), 0);
+    }
+  }
+}
+
+TEST_P(TransformInEverySystem, InsideAChainOfTransforms)
+{
+  // Turned into the mesh's place, mapped, and turned away.
+  const MeshPair pair = MakePlanarPair(8, 510);
+  const auto transform = MakeTransform(GetParam(), pair);
+  vtkNew<vtkTransform> before;
+  before->Translate(1.0, -2.0, 0.25);
+  before->Scale(0.5, 0.5, 1.0);
+  vtkNew<vtkTransform> after;
+  after->RotateX(30.0);
+  vtkNew<vtkGeneralTransform> chain;
+  chain->PostMultiply();
+  chain->Concatenate(before);
+  chain->Concatenate(transform);
+  chain->Concatenate(after);
+  const auto undo = chain->GetInverse();
+  Random random(61);
+  Worst worst;
+  for (int i = 0; i < 1000; ++i)
+  {
+    const Point p{ random.Uniform(-1.9, 13.9), random.Uniform(4.1, 19.9), random.Uniform() };
+    const Point image = Transformed(chain, p);
+    worst.Take(
+      Distance(image, Transformed(after, Transformed(transform, Transformed(before, p)))), 1e-13);
+    worst.Take(Distance(Transformed(undo, image), p), 1e-12);
+  }
+  EXPECT_LE(worst.OverBound, 1.0);
+}
+
+TEST_P(TransformInEverySystem, FloatVersions)
+{
+  for (const MeshPair& pair : PlanarPairs(520))
+  {
+    for (const bool inverse : { false, true })
+    {
+      std::vector<Point> positions;
+      for (const Point& p : PositionsAround(inverse ? pair.Target : pair.Source, 62))
+      {
+        positions.push_back(RoundedToFloat(p));
+      }
+      const auto cloud = MakeCloud(positions, VTK_FLOAT);
+      const auto filter = MakeFilter(GetParam(), pair, cloud);
+      filter->SetInverse(inverse);
+      filter->ComputeJacobianOn();
+      vtkPointSet* mapped = Output(filter);
+      vtkDataArray* mask = PointArray(mapped, "ValidPointMask");
+      const auto transform = MakeTransform(GetParam(), pair);
+      if (inverse)
+      {
+        transform->Inverse();
+      }
+      const double outside = RoundedToFloat(transform->GetOutsideCoordinate());
+      vtkNew<vtkPoints> points;
+      points->SetDataTypeToFloat();
+      transform->TransformPoints(cloud->GetPoints(), points);
+      vtkIdType different = 0;
+      Worst derivatives;
+      for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+      {
+        const bool isInside = mask->GetComponent(i, 0) != 0.0;
+        const Point expected = isInside ? PointOf(mapped, i) : Point{ outside, outside, outside };
+        different += PointOf(points, i) != expected;
+        const Point& p = positions[static_cast<std::size_t>(i)];
+        const float in[3] = { static_cast<float>(p[0]), static_cast<float>(p[1]),
+          static_cast<float>(p[2]) };
+        float out[3];
+        transform->TransformPoint(in, out);
+        different += Point{ out[0], out[1], out[2] } != expected;
+        float derivative[3][3];
+        transform->InternalTransformDerivative(in, out, derivative);
+        different += Point{ out[0], out[1], out[2] } != expected;
+        Matrix matrix;
+        for (std::size_t row = 0; row < 3; ++row)
+        {
+          matrix[row] = { derivative[row][0], derivative[row][1], derivative[row][2] };
+        }
+        different += std::isnan(Norm(matrix)) == isInside;
+        if (isInside)
+        {
+          const Matrix j = MatrixOf(PointArray(mapped, "Jacobian"), i);
+          derivatives.Take(Distance(matrix, j), 1e-6 * Norm(j) * Norm(Inverted(j)) * Norm(j));
+        }
+      }
+      EXPECT_EQ(different, 0);
+      EXPECT_LE(derivatives.OverBound, 1.0);
+      // Points of the boundary that rounding to float moves out are inside all the same.
+      EXPECT_GE(filter->GetNumberOfOutsidePoints(), 100);
+      EXPECT_LE(filter->GetNumberOfOutsidePoints(), 1000);
+    }
+  }
+}
+
+TEST_P(TransformInEverySystem, NormalsAndVectorsAgreeWithTheFilter)
+{
+  for (const MeshPair& pair : PlanarPairs(530))
+  {
+    for (const bool inverse : { false, true })
+    {
+      const auto cloud = MakeCloud(PositionsAround(inverse ? pair.Target : pair.Source, 63));
+      const vtkIdType count = cloud->GetNumberOfPoints();
+      cloud->GetPointData()->SetNormals(RandomArray("Normals", 3, count, 64));
+      cloud->GetPointData()->SetVectors(RandomArray("Vectors", 3, count, 65));
+      cloud->GetPointData()->AddArray(RandomArray("More", 3, count, 66));
+      const auto filter = MakeFilter(GetParam(), pair, cloud);
+      filter->SetInverse(inverse);
+      filter->CarryAllVectorsOn();
+      vtkPointSet* mapped = Output(filter);
+
+      // GetInverse here, the flag elsewhere.
+      const auto transform = MakeTransform(GetParam(), pair);
+      vtkNew<vtkTransformFilter> transformFilter;
+      transformFilter->SetInputData(cloud);
+      transformFilter->SetTransform(inverse ? transform->GetInverse() : transform.Get());
+      transformFilter->TransformAllInputVectorsOn();
+      transformFilter->Update();
+      vtkPointSet* output = transformFilter->GetOutput();
+      for (const char* name : { "Normals", "Vectors", "More" })
+      {
+        EXPECT_EQ(CountDifferentValues(PointArray(output, name), PointArray(mapped, name)), 0)
+          << name;
+        EXPECT_NE(CountDifferentValues(PointArray(output, name), PointArray(cloud, name)), 0);
+      }
+    }
+  }
+}
+
+// --- Inverses and copies -------------------------------------------------------------------------
+
+TEST_P(TransformInEverySystem, Inverse)
+{
+  for (const MeshPair& pair : PlanarPairs(540))
+  {
+    const auto transform = MakeTransform(GetParam(), pair);
+    vtkAbstractTransform* inverse = transform->GetInverse();
+    EXPECT_EQ(inverse->GetInverse(), transform.Get());
+    ASSERT_TRUE(vtkHomeomorphismTransform::SafeDownCast(inverse));
+    inverse->Update();
+    EXPECT_NE(vtkHomeomorphismTransform::SafeDownCast(inverse)->GetInverseFlag(),
+      transform->GetInverseFlag());
+    const std::vector<Place> places = InnerPlaces(pair.Source, 3000, 67, 1e-3);
+    Worst points;
+    Worst derivatives;
+    for (const Place& place : places)
+    {
+      const Point p = PositionOf(pair.Source, place);
+      double forward[3][3];
+      Point image;
+      transform->Update();
+      transform->InternalTransformDerivative(p.data(), image.data(), forward);
+      inverse->Update();
+      double backward[3][3];
+      Point back;
+      inverse->InternalTransformDerivative(image.data(), back.data(), backward);
+      EXPECT_EQ(Transformed(inverse, image), back);
+      Matrix j;
+      Matrix k;
+      for (std::size_t row = 0; row < 3; ++row)
+      {
+        j[row] = { forward[row][0], forward[row][1], forward[row][2] };
+        k[row] = { backward[row][0], backward[row][1], backward[row][2] };
+      }
+      const double stretch = Norm(Inverted(j));
+      points.Take(Distance(back, p),
+        std::max(
+          1e-14 * SizeOf(pair.Source), 2.0 * stretch * Ulp * LargestCoordinate(pair.Target)));
+      derivatives.Take(Distance(k, Inverted(j)), 1e-11 * stretch * stretch * Norm(j));
+    }
+    EXPECT_LE(points.OverBound, 1.0);
+    EXPECT_LE(derivatives.OverBound, 1.0);
+
+    // The flag turned twice is nothing; turned once it is the inverse, and so is the inverse then.
+    const Point p = PositionOf(pair.Source, places[0]);
+    const Point image = Transformed(transform, p);
+    const Point back = Transformed(inverse, image);
+    transform->Inverse();
+    EXPECT_EQ(Transformed(transform, image), back);
+    EXPECT_EQ(Transformed(transform->GetInverse(), p), image);
+    transform->Inverse();
+    EXPECT_EQ(Transformed(transform, p), image);
+    EXPECT_EQ(Transformed(transform->GetInverse(), image), back);
+  }
+}
+
+TEST_P(TransformInEverySystem, CopiesAreEqual)
+{
+  const MeshPair pair = MakePlanarPair(8, 545);
+  const auto transform = MakeTransform(GetParam(), pair);
+  transform->MaskInvalidTrianglesOn();
+  transform->SetTolerance(0.03);
+  for (const bool inverse : { false, true })
+  {
+    if (inverse)
+    {
+      transform->Inverse();
+    }
+    vtkNew<vtkHomeomorphismTransform> copy;
+    copy->SetCoordinateSystemToLinear();
+    copy->DeepCopy(transform);
+    EXPECT_EQ(copy->GetSource(), pair.Source.Get());
+    EXPECT_EQ(copy->GetTarget(), pair.Target.Get());
+    EXPECT_EQ(copy->GetCoordinateSystem(), transform->GetCoordinateSystem());
+    EXPECT_EQ(copy->GetCenterPoint(), transform->GetCenterPoint());
+    EXPECT_EQ(copy->GetDiscordantTriangles(), transform->GetDiscordantTriangles());
+    EXPECT_EQ(copy->GetMaskInvalidTriangles(), true);
+    EXPECT_EQ(copy->GetTolerance(), 0.03);
+    EXPECT_EQ(copy->GetInverseFlag(), transform->GetInverseFlag());
+    vtkIdType different = 0;
+    for (const Point& p : PositionsAround(pair.Source, 68))
+    {
+      different += Transformed(copy, p) != Transformed(transform, p);
+    }
+    EXPECT_EQ(different, 0);
+    // A copy lives on by itself.
+    copy->SetSource(pair.Target);
+    EXPECT_EQ(transform->GetSource(), pair.Source.Get());
+    EXPECT_EQ(Transformed(copy, { 1.25, 2.5, 3.0 })[2], 3.0);
+  }
+  vtkAbstractTransform* made = transform->MakeTransform();
+  EXPECT_TRUE(vtkHomeomorphismTransform::SafeDownCast(made));
+  made->Delete();
+}
+
+TEST(HomeomorphismTransform, FollowsItsMeshes)
+{
+  const MeshPair pair = MakePlanarPair(8, 550);
+  const auto transform = MakeTransform(Smooth, pair);
+  vtkAbstractTransform* inverse = transform->GetInverse();
+  const Point p = PositionOf(pair.Source, { 60, { 0.3, 0.3, 0.4 } });
+  const Point image = Transformed(transform, p);
+  EXPECT_LE(Distance(Transformed(inverse, image), p), 1e-13);
+
+  vtkNew<vtkTransformFilter> pipeline;
+  pipeline->SetInputData(MakeCloud({ p }));
+  pipeline->SetTransform(transform);
+  vtkNew<vtkTransformFilter> inversePipeline;
+  inversePipeline->SetInputData(MakeCloud({ image }));
+  inversePipeline->SetTransform(inverse);
+  pipeline->Update();
+  inversePipeline->Update();
+  EXPECT_EQ(PointOf(pipeline->GetOutput(), 0), image);
+
+  for (const bool source : { true, false })
+  {
+    // A vertex of that triangle.
+    vtkPolyData* mesh = source ? pair.Source : pair.Target;
+    vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(60, ids);
+    const vtkMTimeType forwardTime = transform->GetMTime();
+    const vtkMTimeType inverseTime = inverse->GetMTime();
+    Point vertex = PointOf(mesh, ids->GetId(0));
+    vertex[0] += 0.05;
+    mesh->GetPoints()->SetPoint(ids->GetId(0), vertex.data());
+    mesh->GetPoints()->Modified();
+    EXPECT_GT(transform->GetMTime(), forwardTime);
+    EXPECT_GT(inverse->GetMTime(), inverseTime);
+    const auto fresh = MakeTransform(Smooth, pair);
+    const Point freshImage = Transformed(fresh, p);
+    EXPECT_GT(Distance(freshImage, image), 1e-4);
+    EXPECT_EQ(Transformed(transform, p), freshImage);
+    EXPECT_EQ(Transformed(inverse, image), Transformed(fresh->GetInverse(), image));
+    pipeline->Update();
+    inversePipeline->Update();
+    EXPECT_EQ(PointOf(pipeline->GetOutput(), 0), freshImage);
+    EXPECT_EQ(PointOf(inversePipeline->GetOutput(), 0), Transformed(fresh->GetInverse(), image));
+  }
+
+  // Another system, and other meshes, reach the inverse as well.
+  transform->SetCoordinateSystemToLinear();
+  const auto linear = MakeTransform(Linear, pair);
+  inversePipeline->Update();
+  EXPECT_EQ(PointOf(inversePipeline->GetOutput(), 0), Transformed(linear->GetInverse(), image));
+  const MeshPair other = MakePlanarPair(8, 552);
+  transform->SetTarget(other.Target);
+  transform->SetSource(other.Source);
+  const auto fresh = MakeTransform(Linear, other);
+  EXPECT_EQ(Transformed(transform, p), Transformed(fresh, p));
+  inversePipeline->Update();
+  EXPECT_EQ(PointOf(inversePipeline->GetOutput(), 0), Transformed(fresh->GetInverse(), image));
+}
+
+// --- Outside -------------------------------------------------------------------------------------
+
+TEST_P(TransformInEverySystem, Outside)
+{
+  const MeshPair pair = MakePlanarPair(6, 560);
+  const auto transform = MakeTransform(GetParam(), pair);
+  const double outside = transform->GetOutsideCoordinate();
+  EXPECT_GE(outside, 1e29);
+  const double nan = vtkMath::Nan();
+  for (const Point& p :
+    { Point{ -0.001, 3.0, 0.0 }, Point{ 6.001, 3.0, 5.0 }, Point{ 1e20, 0.0, 0.0 },
+      Point{ nan, 1.0, 0.0 }, Point{ 1.0, nan, 0.0 }, Point{ outside, outside, outside } })
+  {
+    EXPECT_EQ(Transformed(transform, p), (Point{ outside, outside, outside }));
+    EXPECT_EQ(Transformed(transform->GetInverse(), p), (Point{ outside, outside, outside }));
+    EXPECT_FALSE(transform->IsInside(p.data()));
+    Point image;
+    double derivative[3][3];
+    transform->InternalTransformDerivative(p.data(), image.data(), derivative);
+    EXPECT_EQ(image, (Point{ outside, outside, outside }));
+    for (const auto& row : derivative)
+    {
+      EXPECT_TRUE(std::isnan(row[0]) && std::isnan(row[1]) && std::isnan(row[2]));
+    }
+  }
+  const Point inside{ 3.0, 3.0, 100.0 };
+  EXPECT_TRUE(transform->IsInside(inside.data()));
+  transform->SetTolerance(0.01);
+  EXPECT_LE(std::abs(Transformed(transform, { -0.05, 3.0, 0.0 })[0]), 1e-14);
+  EXPECT_EQ(Transformed(transform, { -0.5, 3.0, 0.0 })[0], outside);
+
+  // Larger than any coordinate of the meshes.
+  const auto galaxy = [](const Point& p) { return 1e40 * p; };
+  const auto large =
+    MakeTransform(GetParam(), { Moved(pair.Source, galaxy), Moved(pair.Target, galaxy) });
+  EXPECT_GT(large->GetOutsideCoordinate(), 100.0 * 6e40);
+  EXPECT_TRUE(large->IsInside(galaxy(inside).data()));
+}
+
+TEST(HomeomorphismTransform, WithoutUsableMeshesEverythingIsOutside)
+{
+  const MeshPair pair = MakePlanarPair(4, 565);
+  const Point p{ 1.0, 1.0, 0.0 };
+  vtkNew<vtkHomeomorphismTransform> transform;
+  Messages messages(transform);
+  EXPECT_EQ(Transformed(transform, p)[0], 1e30);
+  EXPECT_NE(messages.Error().find("source"), std::string::npos);
+  messages.Clear();
+  transform->SetSource(pair.Source);
+  EXPECT_FALSE(transform->IsInside(p.data()));
+  EXPECT_NE(messages.Error().find("target"), std::string::npos);
+  messages.Clear();
+  // Surfaces are no map of space.
+  transform->SetTarget(MakeSheet(4, 566, 0.5));
+  EXPECT_FALSE(transform->IsInside(p.data()));
+  EXPECT_NE(messages.Error().find("plane"), std::string::npos);
+  messages.Clear();
+  transform->SetTarget(pair.Target);
+  EXPECT_TRUE(transform->IsInside(p.data()));
+  EXPECT_FALSE(messages.HasError());
+  transform->SetTarget(nullptr);
+  EXPECT_FALSE(transform->IsInside(p.data()));
+  EXPECT_TRUE(messages.HasError());
+  std::ostringstream text;
+  transform->Print(text);
+  for (const char* word : { "Source: ", "Target: ", "CoordinateSystem: 2", "CenterPoint: 0",
+         "DiscordantTriangles: 0", "MaskInvalidTriangles: 0", "Tolerance: 0" })
+  {
+    EXPECT_NE(text.str().find(word), std::string::npos) << word;
+  }
+}
+
+// --- Storage and threads -------------------------------------------------------------------------
+
+TEST_P(TransformInEverySystem, InputAndOutputMayBeTheSame)
+{
+  for (const MeshPair& pair : PlanarPairs(570))
+  {
+    for (const bool inverse : { false, true })
+    {
+      const auto transform = MakeTransform(GetParam(), pair);
+      if (inverse)
+      {
+        transform->Inverse();
+      }
+      for (const Point& p : PositionsAround(inverse ? pair.Target : pair.Source, 69))
+      {
+        const Point image = Transformed(transform, p);
+        Point same = p;
+        transform->TransformPoint(same.data(), same.data());
+        ASSERT_EQ(same, image);
+        same = p;
+        transform->InternalTransformPoint(same.data(), same.data());
+        ASSERT_EQ(same, image);
+        same = p;
+        double derivative[3][3];
+        double again[3][3];
+        Point ignored;
+        transform->InternalTransformDerivative(p.data(), ignored.data(), derivative);
+        transform->InternalTransformDerivative(same.data(), same.data(), again);
+        ASSERT_EQ(same, image);
+        for (int k = 0; k < 9; ++k)
+        {
+          ASSERT_TRUE(SameBits(derivative[k / 3][k % 3], again[k / 3][k % 3]));
+        }
+      }
+    }
+  }
+}
+
+TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
+{
+  const MeshPair pair = MakePlanarPair(12, 580);
+  std::vector<Point> positions;
+  for (const Place& place : RandomPlaces(pair.Source, 60000, 70))
+  {
+    positions.push_back(PositionOf(pair.Source, place));
+  }
+  const auto cloud = MakeCloud(positions);
+  cloud->GetPointData()->SetVectors(RandomArray("Vectors", 3, cloud->GetNumberOfPoints(), 71));
+  vtkSmartPointer<vtkPoints> first;
+  vtkSmartPointer<vtkPointSet> firstMapped;
+  const std::string previous = vtkSMPTools::GetBackend();
+  for (const char* backend : { "Sequential", "STDThread", "TBB" })
+  {
+    if (!vtkSMPTools::SetBackend(backend))
+    {
+      // Only the first two are in every VTK.
+      EXPECT_STREQ(backend, "TBB");
+      continue;
+    }
+    vtkSMPTools::SetBackend(previous.c_str());
+    for (const int threads : { 1, 2, 5 })
+    {
+      vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, backend, false },
+        [&]()
+        {
+          EXPECT_STREQ(vtkSMPTools::GetBackend(), backend);
+          // Meshes are read anew, too.
+          const auto transform = MakeTransform(GetParam(), pair);
+          const auto points = vtkSmartPointer<vtkPoints>::New();
+          points->SetDataTypeToDouble();
+          transform->TransformPoints(cloud->GetPoints(), points);
+          const auto filter = MakeFilter(GetParam(), pair, cloud);
+          filter->ComputeJacobianOn();
+          filter->ComputeTriangleIdOn();
+          vtkPointSet* mapped = Output(filter);
+          if (!first)
+          {
+            first = points;
+            firstMapped = mapped;
+            return;
+          }
+          EXPECT_EQ(CountDifferentValues(points->GetData(), first->GetData()), 0) << backend;
+          EXPECT_EQ(CountDifferentPoints(mapped, firstMapped), 0) << backend << threads;
+          for (const char* name : { "Vectors", "Jacobian", "TriangleId", "ValidPointMask" })
+          {
+            EXPECT_EQ(
+              CountDifferentValues(PointArray(mapped, name), PointArray(firstMapped, name)), 0)
+              << backend << threads << name;
+          }
+        });
+    }
+  }
+}
+
+TEST_P(TransformInEverySystem, ManyThreadsMayAskAtOnce)
+{
+  const MeshPair pair = MakePlanarPair(10, 590);
+  const std::vector<Point> positions = PositionsAround(pair.Source, 72);
+  const auto transform = MakeTransform(GetParam(), pair);
+  transform->Update();
+  vtkAbstractTransform* inverse = transform->GetInverse();
+  inverse->Update();
+  struct Answer
+  {
+    Point Image;
+    Point Back;
+    double Derivative[3][3];
+  };
+  const auto ask = [&](std::vector<Answer>& answers)
+  {
+    answers.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+    {
+      Answer& answer = answers[i];
+      transform->InternalTransformPoint(positions[i].data(), answer.Image.data());
+      inverse->InternalTransformPoint(answer.Image.data(), answer.Back.data());
+      Point ignored;
+      transform->InternalTransformDerivative(
+        positions[i].data(), ignored.data(), answer.Derivative);
+    }
+  };
+  std::vector<Answer> serial;
+  ask(serial);
+  std::vector<std::vector<Answer>> answers(4);
+  std::vector<std::thread> threads;
+  for (auto& own : answers)
+  {
+    threads.emplace_back([&ask, &own]() { ask(own); });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  for (const auto& own : answers)
+  {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+    {
+      ASSERT_EQ(own[i].Image, serial[i].Image);
+      ASSERT_EQ(own[i].Back, serial[i].Back);
+      for (int k = 0; k < 9; ++k)
+      {
+        ASSERT_TRUE(SameBits(own[i].Derivative[k / 3][k % 3], serial[i].Derivative[k / 3][k % 3]));
+      }
+    }
+  }
+}
+
+// --- Images --------------------------------------------------------------------------------------
+
+/// An image carried by vtkImageReslice, with meshes and pixels of a size.
+void TestResampling(const System& system, double size)
+{
+  // The target is no rectangle, so that the picture has outside pixels on all sides and inside its
+  // bounding box.
+  MeshPair pair = MakePlanarPair(8, 600);
+  pair.Target = Moved(pair.Target,
+    [](const Point& p) -> Point {
+      return { p[0] + 0.9 * std::sin(0.8 * p[1]), p[1] + 0.7 * std::cos(0.6 * p[0]), p[2] };
+    });
+  for (auto* mesh : { &pair.Source, &pair.Target })
+  {
+    *mesh = Moved(*mesh, [size](const Point& p) { return size * p; });
+  }
+  vtkNew<vtkImageData> image;
+  image->SetExtent(-2, 57, 3, 60, 0, 0);
+  image->SetSpacing(0.2 * size, 0.19 * size, 1.0);
+  image->SetOrigin(-1.1 * size, -1.3 * size, 0.0);
+  image->GetPointData()->SetScalars(RandomArray("Gray", 1, image->GetNumberOfPoints(), 73));
+  vtkDataArray* gray = image->GetPointData()->GetScalars();
+  constexpr double background = -1000.0; // darker than any pixel
+  const auto transform = MakeTransform(system, pair);
+
+  for (const bool linear : { false, true })
+  {
+    vtkNew<vtkImageReslice> reslice;
+    reslice->SetInputData(image);
+    // From the output's grid to the input.
+    reslice->SetResliceTransform(transform->GetInverse());
+    linear ? reslice->SetInterpolationModeToLinear()
+           : reslice->SetInterpolationModeToNearestNeighbor();
+    reslice->SetBackgroundLevel(background);
+    reslice->SetOutputDimensionality(2);
+    reslice->SetOutputExtent(0, 89, 0, 79, 0, 0);
+    reslice->SetOutputSpacing(0.13 * size, 0.14 * size, 1.0);
+    reslice->SetOutputOrigin(-1.7 * size, -1.4 * size, 0.0);
+    reslice->Update();
+    vtkImageData* output = reslice->GetOutput();
+    const auto filter = MakeFilter(system, pair, output);
+    filter->InverseOn();
+    vtkPointSet* preimages = Output(filter);
+    vtkDataArray* mask = PointArray(preimages, "ValidPointMask");
+    EXPECT_GT(filter->GetNumberOfOutsidePoints(), 1000);
+    EXPECT_LT(filter->GetNumberOfOutsidePoints(), 5000);
+
+    const auto pixel = [&](int i, int j)
+    {
+      int index[3] = { i, j, 0 };
+      return gray->GetComponent(image->ComputePointId(index), 0);
+    };
+    vtkIdType wrong = 0;
+    for (vtkIdType k = 0; k < output->GetNumberOfPoints(); ++k)
+    {
+      const double value = output->GetPointData()->GetScalars()->GetComponent(k, 0);
+      if (mask->GetComponent(k, 0) == 0.0)
+      {
+        wrong += value != background;
+        continue;
+      }
+      const Point p = PointOf(preimages, k);
+      const double x = (p[0] / size + 1.1) / 0.2;
+      const double y = (p[1] / size + 1.3) / 0.19;
+      if (linear)
+      {
+        const double i = std::floor(x);
+        const double j = std::floor(y);
+        const double expected = (1.0 - (y - j)) *
+            ((1.0 - (x - i)) * pixel(int(i), int(j)) + (x - i) * pixel(int(i) + 1, int(j))) +
+          (y - j) *
+            ((1.0 - (x - i)) * pixel(int(i), int(j) + 1) + (x - i) * pixel(int(i) + 1, int(j) + 1));
+        // VTK works out places to about 2^-17 of a pixel, and pixels differ by up to 200.
+        wrong += !(std::abs(value - expected) < 0.01);
+      }
+      else
+      {
+        const bool isTie =
+          std::abs(x - std::floor(x) - 0.5) < 2e-5 || std::abs(y - std::floor(y) - 0.5) < 2e-5;
+        wrong += !isTie && value != pixel(int(std::floor(x + 0.5)), int(std::floor(y + 0.5)));
+      }
+    }
+    EXPECT_EQ(wrong, 0) << (linear ? "linear" : "nearest");
+
+    // Source and target exchanged is the same.
+    vtkNew<vtkImageData> first;
+    first->DeepCopy(output);
+    const auto exchanged = MakeTransform(system, { pair.Target, pair.Source });
+    reslice->SetResliceTransform(exchanged);
+    reslice->Update();
+    EXPECT_EQ(CountDifferentValues(reslice->GetOutput()->GetPointData()->GetScalars(),
+                first->GetPointData()->GetScalars()),
+      0);
+  }
+}
+
+TEST_P(TransformInEverySystem, ImagesAreResampled)
+{
+  TestResampling(GetParam(), 1.0);
+}
+
+TEST_P(TransformInEverySystem, TinyImagesAreResampled)
+{
+  // Where the place of outside points, counted in pixels, is beyond what a float can hold.
+  TestResampling(GetParam(), 1e-12);
+}
+
+} // namespace

@@ -1,0 +1,728 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file TestMalformedData.cxx
+/// Data whose arrays and cells do not fit together, meshes that number their triangles differently, and
+/// requests for pieces. Some of it is wrong, some only unusual; none of it may be read past its end.
+
+#include "TestMeshes.h"
+
+#include "vtkDifferentiableHomeomorphism.h"
+#include "vtkTriangularCoordinates.h"
+
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+namespace
+{
+
+using namespace test_meshes;
+
+constexpr auto Linear = vtkDifferentiableHomeomorphism::LINEAR;
+
+/// The square [0, n] x [0, n], and the same with all coordinates doubled: J is twice the identity in the
+/// plane.
+MeshPair MakeDoublingPair(int n)
+{
+  std::vector<Point> points = GridPoints(n, 3, 0.0);
+  const auto source = MakeMesh(points, GridTriangles(n));
+  for (Point& p : points)
+  {
+    p = { 2.0 * p[0], 2.0 * p[1], 0.0 };
+  }
+  return { source, MakeMesh(points, GridTriangles(n)) };
+}
+
+/// The centroids of a mesh's triangles, in the order of the triangles.
+std::vector<Point> Centroids(vtkPolyData* mesh)
+{
+  std::vector<Point> result;
+  vtkCellArray* cells = mesh->GetPolys();
+  for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    cells->GetCellAtId(cell, count, ids);
+    Point mean{};
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      double p[3];
+      mesh->GetPoint(ids[k], p);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        mean[axis] += p[axis] / static_cast<double>(count);
+      }
+    }
+    result.push_back(mean);
+  }
+  return result;
+}
+
+/// Puts vertex and line cells before a mesh's triangles, which moves their cell ids.
+void AddVertsAndLines(vtkPolyData* mesh, int verts, int lines)
+{
+  vtkNew<vtkCellArray> vertCells;
+  for (vtkIdType i = 0; i < verts; ++i)
+  {
+    vertCells->InsertNextCell(1, &i);
+  }
+  vtkNew<vtkCellArray> lineCells;
+  for (vtkIdType i = 0; i < lines; ++i)
+  {
+    const vtkIdType ends[] = { i, i + 1 };
+    lineCells->InsertNextCell(2, ends);
+  }
+  mesh->SetVerts(vertCells);
+  mesh->SetLines(lineCells);
+}
+
+vtkSmartPointer<vtkUnsignedCharArray> MakeGhosts(vtkIdType tuples, vtkIdType hidden, int flag)
+{
+  const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(tuples);
+  ghosts->FillValue(0);
+  if (hidden >= 0)
+  {
+    ghosts->SetValue(hidden, static_cast<unsigned char>(flag));
+  }
+  return ghosts;
+}
+
+/// Numbers that tell their place: tuple i, component k is 10 i + k + 1.
+vtkSmartPointer<vtkDoubleArray> MakeNumbers(const char* name, int components, vtkIdType tuples)
+{
+  const auto numbers = vtkSmartPointer<vtkDoubleArray>::New();
+  numbers->SetName(name);
+  numbers->SetNumberOfComponents(components);
+  numbers->SetNumberOfTuples(tuples);
+  for (vtkIdType i = 0; i < tuples; ++i)
+  {
+    for (int k = 0; k < components; ++k)
+    {
+      numbers->SetComponent(i, k, static_cast<double>(10 * i + k + 1));
+    }
+  }
+  return numbers;
+}
+
+/// The filter with meshes, linear so that results are plain.
+class Doubling : public ::testing::Test
+{
+protected:
+  void SetUp() override { this->SetMeshes(this->Pair); }
+
+  void SetMeshes(const MeshPair& pair)
+  {
+    this->Filter->SetSourceData(pair.Source);
+    this->Filter->SetTargetData(pair.Target);
+    this->Filter->SetCoordinateSystem(Linear);
+  }
+
+  vtkPointSet* Run(vtkDataObject* data)
+  {
+    this->Filter->SetDataObject(data);
+    this->Filter->Update();
+    EXPECT_FALSE(this->Told.HasError()) << this->Told.Error();
+    return vtkPointSet::SafeDownCast(this->Filter->GetOutputDataObject(0));
+  }
+
+  std::vector<double> ValidOf(vtkPointSet* output)
+  {
+    std::vector<double> valid;
+    vtkDataArray* mask = output->GetPointData()->GetArray("ValidPointMask");
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      valid.push_back(mask->GetTuple1(i));
+    }
+    return valid;
+  }
+
+  MeshPair Pair = MakeDoublingPair(2);
+  vtkNew<vtkDifferentiableHomeomorphism> Filter;
+  Messages Told{ this->Filter };
+};
+
+//------------------------------------------------------------------------------------------------
+// Hidden cells of meshes that have other vertices and lines.
+
+TEST_F(Doubling, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
+{
+  for (const bool onTarget : { true, false })
+  {
+    // Vertices and lines beside the triangles of either mesh, the hidden cell always in the first.
+    for (const auto& counts : std::vector<std::array<int, 4>>{
+           { 0, 0, 1, 0 }, { 1, 0, 0, 0 }, { 0, 0, 2, 3 }, { 2, 3, 1, 1 }, { 0, 2, 0, 0 } })
+    {
+      for (vtkIdType hidden = 0; hidden < 8; ++hidden)
+      {
+        SCOPED_TRACE(hidden);
+        const MeshPair pair = MakeDoublingPair(2);
+        vtkPolyData* mesh = onTarget ? pair.Target : pair.Source;
+        vtkPolyData* other = onTarget ? pair.Source : pair.Target;
+        AddVertsAndLines(mesh, counts[0], counts[1]);
+        AddVertsAndLines(other, counts[2], counts[3]);
+        // As long as the mesh's own cells: the other's cell ids would lead past its end.
+        const vtkIdType cell = counts[0] + counts[1] + hidden;
+        mesh->GetCellData()->AddArray(MakeGhosts(
+          mesh->GetNumberOfCells(), cell, vtkDataSetAttributes::HIDDENCELL));
+        this->SetMeshes(pair);
+        std::vector<double> expected(8, 1.0);
+        expected[hidden] = 0.0;
+        EXPECT_EQ(this->ValidOf(this->Run(MakeMesh(Centroids(pair.Source), {}))), expected);
+      }
+    }
+  }
+}
+
+TEST_F(Doubling, GhostArraysOfAnotherLengthOnTheMeshesHideNothing)
+{
+  for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
+  {
+    mesh->GetCellData()->AddArray(MakeGhosts(2, 1, vtkDataSetAttributes::HIDDENCELL));
+    mesh->GetPointData()->AddArray(MakeGhosts(3, 1, vtkDataSetAttributes::HIDDENPOINT));
+  }
+  EXPECT_EQ(this->ValidOf(this->Run(MakeMesh(Centroids(this->Pair.Source), {}))),
+    std::vector<double>(8, 1.0));
+}
+
+//------------------------------------------------------------------------------------------------
+// Data.
+
+/// A mesh of two triangles, one of them outside.
+vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
+{
+  return MakeMesh({ { 0.5, 0.5, 0 }, { 1.5, 0.5, 0 }, { 0.5, 1.5, 0 }, { 5, 5, 0 }, { 6, 5, 0 },
+                    { 5, 6, 0 } },
+    { { 0, 1, 2 }, { 3, 4, 5 } });
+}
+
+TEST_F(Doubling, GhostArraysOfAnotherLengthOnTheDataAreReplaced)
+{
+  for (const vtkIdType points : { 0, 1, 3, 5, 7, 100 })
+  {
+    for (const vtkIdType cells : { 0, 1, 3, 50 })
+    {
+      const auto data = MakeDataPartlyOutside();
+      data->GetPointData()->AddArray(MakeGhosts(points, -1, 0));
+      data->GetCellData()->AddArray(MakeGhosts(cells, -1, 0));
+      vtkPointSet* output = this->Run(data);
+      vtkDataArray* pointGhosts = output->GetPointData()->GetArray("vtkGhostType");
+      vtkDataArray* cellGhosts = output->GetCellData()->GetArray("vtkGhostType");
+      ASSERT_EQ(pointGhosts->GetNumberOfTuples(), 6);
+      ASSERT_EQ(cellGhosts->GetNumberOfTuples(), 2);
+      for (vtkIdType i = 0; i < 6; ++i)
+      {
+        EXPECT_EQ(
+          pointGhosts->GetTuple1(i), i < 3 ? 0.0 : double(vtkDataSetAttributes::HIDDENPOINT));
+      }
+      EXPECT_EQ(cellGhosts->GetTuple1(0), 0.0);
+      EXPECT_EQ(cellGhosts->GetTuple1(1), double(vtkDataSetAttributes::HIDDENCELL));
+      // The data is not the filter's to change.
+      EXPECT_EQ(data->GetPointData()->GetArray("vtkGhostType")->GetNumberOfTuples(), points);
+    }
+  }
+}
+
+TEST_F(Doubling, GhostArraysThatFitAreKept)
+{
+  const auto data = MakeDataPartlyOutside();
+  data->GetPointData()->AddArray(MakeGhosts(6, 1, vtkDataSetAttributes::DUPLICATEPOINT));
+  data->GetCellData()->AddArray(MakeGhosts(2, 1, vtkDataSetAttributes::DUPLICATECELL));
+  vtkPointSet* output = this->Run(data);
+  vtkDataArray* pointGhosts = output->GetPointData()->GetArray("vtkGhostType");
+  vtkDataArray* cellGhosts = output->GetCellData()->GetArray("vtkGhostType");
+  EXPECT_EQ(pointGhosts->GetTuple1(1), double(vtkDataSetAttributes::DUPLICATEPOINT));
+  EXPECT_EQ(pointGhosts->GetTuple1(4), double(vtkDataSetAttributes::HIDDENPOINT));
+  EXPECT_EQ(cellGhosts->GetTuple1(1),
+    double(vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
+}
+
+TEST_F(Doubling, ArraysOfAnotherLengthPassUntouched)
+{
+  for (const vtkIdType tuples : { 0, 1, 2, 5, 7, 5000 })
+  {
+    SCOPED_TRACE(tuples);
+    const auto data = MakeDataPartlyOutside();
+    const auto vectors = MakeNumbers("Vectors", 3, tuples);
+    const auto normals = MakeNumbers("Normals", 3, tuples);
+    const auto tensors = MakeNumbers("Tensors", 9, tuples);
+    const auto gradients = MakeNumbers("Gradients", 3, tuples);
+    this->Filter->SetArrayTransport(
+      "Gradients", vtkDifferentiableHomeomorphism::GRADIENT_TRANSPORT);
+    // 2 tuples are right for the cells, and wrong for the points.
+    for (vtkDataSetAttributes* attributes : std::initializer_list<vtkDataSetAttributes*>{
+           data->GetPointData(), data->GetCellData() })
+    {
+      attributes->AddArray(vectors);
+      attributes->AddArray(normals);
+      attributes->AddArray(tensors);
+      attributes->AddArray(gradients);
+      attributes->SetActiveVectors("Vectors");
+      attributes->SetActiveNormals("Normals");
+      attributes->SetActiveTensors("Tensors");
+    }
+    vtkPointSet* output = this->Run(data);
+    EXPECT_EQ(output->GetNumberOfPoints(), 6);
+    EXPECT_EQ(this->ValidOf(output), (std::vector<double>{ 1, 1, 1, 0, 0, 0 }));
+    for (const auto& array : { vectors, normals, tensors, gradients })
+    {
+      EXPECT_EQ(output->GetPointData()->GetAbstractArray(array->GetName()), array);
+      if (tuples != 2)
+      {
+        EXPECT_EQ(output->GetCellData()->GetAbstractArray(array->GetName()), array);
+      }
+    }
+  }
+}
+
+TEST_F(Doubling, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
+{
+  const auto data = MakeDataPartlyOutside();
+  const auto tooLong = MakeNumbers("TooLong", 3, 7);
+  data->GetPointData()->SetVectors(MakeNumbers("Vectors", 3, 6));
+  data->GetPointData()->AddArray(tooLong);
+  this->Filter->CarryAllVectorsOn();
+  vtkPointSet* output = this->Run(data);
+  EXPECT_EQ(output->GetPointData()->GetArray("TooLong"), tooLong);
+  vtkDataArray* carried = output->GetPointData()->GetVectors();
+  ASSERT_NE(carried, nullptr);
+  EXPECT_NEAR(carried->GetComponent(2, 0), 42.0, 1e-13);
+  EXPECT_NEAR(carried->GetComponent(2, 1), 44.0, 1e-13);
+  EXPECT_NEAR(carried->GetComponent(2, 2), 23.0, 1e-13);
+}
+
+TEST_F(Doubling, ArraysOfAnotherLengthOnImagesPassUntouched)
+{
+  const vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 1);
+  for (const vtkIdType tuples : { 4, 8, 10, 4000 })
+  {
+    const auto vectors = MakeNumbers("Vectors", 3, tuples);
+    image->GetPointData()->SetVectors(vectors);
+    vtkPointSet* output = this->Run(image);
+    EXPECT_EQ(output->GetPointData()->GetAbstractArray("Vectors"), vectors);
+    EXPECT_EQ(this->ValidOf(output), std::vector<double>(9, 1.0));
+  }
+}
+
+/// Ids of points that do not exist: just past the end, negative, and so far off that reading there
+/// cannot but crash.
+const std::vector<vtkIdType> NoPoints{ 6, 7, -1, -1000, vtkIdType(1) << 44,
+  -(vtkIdType(1) << 44), std::numeric_limits<vtkIdType>::max() };
+
+void ExpectCorruptCellHandled(vtkPointSet* output)
+{
+  ASSERT_NE(output, nullptr);
+  ASSERT_EQ(output->GetNumberOfPoints(), 6);
+  ASSERT_EQ(output->GetNumberOfCells(), 3);
+  // Only whole cells inside are shown.
+  vtkDataArray* ghosts = output->GetCellData()->GetArray("vtkGhostType");
+  ASSERT_NE(ghosts, nullptr);
+  EXPECT_EQ(ghosts->GetTuple1(0), 0.0);
+  EXPECT_EQ(ghosts->GetTuple1(1), double(vtkDataSetAttributes::HIDDENCELL));
+  EXPECT_EQ(ghosts->GetTuple1(2), double(vtkDataSetAttributes::HIDDENCELL));
+  // Cell vectors are carried where the cell's middle is, and there is none.
+  vtkDataArray* vectors = output->GetCellData()->GetVectors();
+  ASSERT_NE(vectors, nullptr);
+  EXPECT_NEAR(vectors->GetComponent(0, 0), 2.0, 1e-13);
+  EXPECT_TRUE(std::isnan(vectors->GetComponent(1, 0)));
+  EXPECT_TRUE(std::isnan(vectors->GetComponent(2, 0)));
+}
+
+TEST_F(Doubling, CellsOfAGridWithPointsThatDoNotExist)
+{
+  for (const vtkIdType noPoint : NoPoints)
+  {
+    SCOPED_TRACE(noPoint);
+    const auto whole = MakeDataPartlyOutside();
+    // InsertNextCell of the grid would look at the points: the cell array by hand does not.
+    const vtkNew<vtkCellArray> cells;
+    for (const Triangle& triangle :
+      std::vector<Triangle>{ { 0, 1, 2 }, { 0, noPoint, 2 }, { 3, 4, 5 } })
+    {
+      cells->InsertNextCell(3, triangle.data());
+    }
+    const vtkNew<vtkUnstructuredGrid> grid;
+    grid->SetPoints(whole->GetPoints());
+    grid->SetCells(VTK_TRIANGLE, cells);
+    grid->GetCellData()->SetVectors(MakeNumbers("Vectors", 3, 3));
+    ExpectCorruptCellHandled(this->Run(grid));
+  }
+}
+
+TEST_F(Doubling, CellsOfPolyDataWithPointsThatDoNotExist)
+{
+  for (const vtkIdType noPoint : NoPoints)
+  {
+    SCOPED_TRACE(noPoint);
+    const auto data = MakeDataPartlyOutside();
+    const vtkNew<vtkCellArray> cells;
+    for (const Triangle& triangle :
+      std::vector<Triangle>{ { 0, 1, 2 }, { 0, noPoint, 2 }, { 3, 4, 5 } })
+    {
+      cells->InsertNextCell(3, triangle.data());
+    }
+    data->SetPolys(cells);
+    data->GetCellData()->SetVectors(MakeNumbers("Vectors", 3, 3));
+    ExpectCorruptCellHandled(this->Run(data));
+  }
+}
+
+TEST_F(Doubling, CoordinatesOfDataWithPointsThatDoNotExist)
+{
+  // Coordinates belong to points; the cells are none of that filter's business.
+  for (const vtkIdType noPoint : NoPoints)
+  {
+    const auto data = MakeDataPartlyOutside();
+    const Triangle corrupt{ 0, noPoint, 2 };
+    data->GetPolys()->InsertNextCell(3, corrupt.data());
+    const vtkNew<vtkTriangularCoordinates> coordinates;
+    coordinates->SetInputData(0, this->Pair.Source);
+    coordinates->SetDataObject(data);
+    coordinates->Update();
+    EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 3);
+  }
+}
+
+TEST_F(Doubling, MeshesWithPointsThatDoNotExistAreRefused)
+{
+  for (const vtkIdType noPoint : { vtkIdType(9), vtkIdType(-1), vtkIdType(1) << 44 })
+  {
+    // What is left of the id in 32 bits must not count.
+    const MeshPair pair = MakeDoublingPair(2);
+    const Triangle corrupt{ 0, noPoint, 4 };
+    pair.Source->GetPolys()->ReplaceCellAtId(3, 3, corrupt.data());
+    const vtkNew<vtkDifferentiableHomeomorphism> filter;
+    Messages told(filter);
+    filter->SetSourceData(pair.Source);
+    filter->SetTargetData(pair.Target);
+    filter->Update();
+    EXPECT_NE(told.Error().find("1 triangle of the source (cell 3) refers to points"),
+      std::string::npos)
+      << told.Error();
+  }
+}
+
+//------------------------------------------------------------------------------------------------
+// Arrays without a name.
+
+TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
+{
+  for (const bool onCells : { false, true })
+  {
+    const auto data = MakeDataPartlyOutside();
+    vtkDataSetAttributes* input = data->GetPointData();
+    if (onCells)
+    {
+      input = data->GetCellData();
+    }
+    const vtkIdType tuples = onCells ? 2 : 6;
+    // An unnamed array that is no attribute stays, whatever happens to the others.
+    const auto plain = MakeNumbers(nullptr, 1, tuples);
+    input->AddArray(plain);
+    input->SetVectors(MakeNumbers(nullptr, 3, tuples));
+    input->SetNormals(MakeNumbers(nullptr, 3, tuples));
+    input->SetTensors(MakeNumbers(nullptr, 9, tuples));
+    const int arrays = input->GetNumberOfArrays();
+    ASSERT_EQ(arrays, 4);
+
+    vtkPointSet* output = this->Run(data);
+    vtkDataSetAttributes* result = output->GetPointData();
+    if (onCells)
+    {
+      result = output->GetCellData();
+    }
+    int unnamed = 0;
+    int kept = 0;
+    for (int i = 0; i < result->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* array = result->GetAbstractArray(i);
+      unnamed += array->GetName() == nullptr;
+      kept += array == plain;
+      // None of the arrays that were carried is there as it was.
+      EXPECT_NE(array, input->GetVectors());
+      EXPECT_NE(array, input->GetNormals());
+      EXPECT_NE(array, input->GetTensors());
+    }
+    EXPECT_EQ(unnamed, arrays);
+    EXPECT_EQ(kept, 1);
+    ASSERT_NE(result->GetVectors(), nullptr);
+    ASSERT_NE(result->GetNormals(), nullptr);
+    ASSERT_NE(result->GetTensors(), nullptr);
+    EXPECT_NEAR(result->GetVectors()->GetComponent(0, 0), 2.0, 1e-13);
+    EXPECT_NEAR(result->GetTensors()->GetComponent(0, 0), 4.0, 1e-13);
+    EXPECT_NEAR(std::hypot(result->GetNormals()->GetComponent(0, 0),
+                  result->GetNormals()->GetComponent(0, 1),
+                  result->GetNormals()->GetComponent(0, 2)),
+      1.0, 1e-13);
+    // And the input's are as they were.
+    EXPECT_EQ(input->GetNumberOfArrays(), arrays);
+    EXPECT_EQ(input->GetVectors()->GetComponent(0, 0), 1.0);
+  }
+}
+
+TEST_F(Doubling, TwoRolesOfOneArrayStayRoles)
+{
+  // Vectors that are the active scalars as well.
+  const auto data = MakeDataPartlyOutside();
+  data->GetPointData()->SetVectors(MakeNumbers("Both", 3, 6));
+  data->GetPointData()->AddArray(MakeNumbers("Other", 1, 6));
+  data->GetPointData()->SetActiveScalars("Other");
+  vtkPointSet* output = this->Run(data);
+  ASSERT_NE(output->GetPointData()->GetVectors(), nullptr);
+  EXPECT_STREQ(output->GetPointData()->GetVectors()->GetName(), "Both");
+  ASSERT_NE(output->GetPointData()->GetScalars(), nullptr);
+  EXPECT_STREQ(output->GetPointData()->GetScalars()->GetName(), "Other");
+}
+
+//------------------------------------------------------------------------------------------------
+// Pieces.
+
+/// Asks for a piece of an output, as who reads that port does. Returns its number of cells.
+vtkIdType UpdatePort(vtkAlgorithm* filter, int port, int piece, int pieces)
+{
+  filter->UpdateInformation();
+  vtkInformation* request = filter->GetOutputInformation(port);
+  request->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), piece);
+  request->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), pieces);
+  request->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  filter->Update(port);
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells();
+}
+
+/// How many cells an output has in each of some pieces.
+std::vector<vtkIdType> CellsOfPieces(vtkAlgorithm* filter, int port, int pieces)
+{
+  std::vector<vtkIdType> cells;
+  for (int piece = 0; piece < pieces; ++piece)
+  {
+    cells.push_back(UpdatePort(filter, port, piece, pieces));
+  }
+  return cells;
+}
+
+using Counts = std::vector<vtkIdType>;
+
+TEST_F(Doubling, PiecesOfTheMeshItself)
+{
+  EXPECT_EQ(CellsOfPieces(this->Filter, 0, 1), (Counts{ 8 }));
+  EXPECT_EQ(CellsOfPieces(this->Filter, 0, 2), (Counts{ 8, 0 }));
+  EXPECT_EQ(CellsOfPieces(this->Filter, 0, 3), (Counts{ 8, 0, 0 }));
+  this->Filter->InverseOn();
+  EXPECT_EQ(CellsOfPieces(this->Filter, 0, 2), (Counts{ 8, 0 }));
+  EXPECT_EQ(this->Filter->GetNumberOfMeshBuilds(), 1);
+  // And through the shorthand, in either order.
+  this->Filter->UpdatePiece(1, 2, 0);
+  EXPECT_EQ(vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  this->Filter->UpdatePiece(0, 2, 0);
+  EXPECT_EQ(vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(0))->GetNumberOfCells(), 8);
+}
+
+TEST_F(Doubling, PiecesOfTheCoordinatesOfTheMeshItself)
+{
+  for (int port = 0; port < 3; ++port)
+  {
+    SCOPED_TRACE(port);
+    const vtkNew<vtkTriangularCoordinates> filter;
+    filter->SetInputData(0, this->Pair.Source);
+    const Counts whole = CellsOfPieces(filter, port, 1);
+    ASSERT_GT(whole[0], 0);
+    EXPECT_EQ(CellsOfPieces(filter, port, 2), (Counts{ whole[0], 0 }));
+    EXPECT_EQ(CellsOfPieces(filter, port, 3), (Counts{ whole[0], 0, 0 }));
+  }
+}
+
+TEST_F(Doubling, PiecesOfAllOutputsTogether)
+{
+  // Readers of several outputs, each asking for its piece of its port in turn, as in a program that
+  // runs in several processes.
+  const vtkNew<vtkTriangularCoordinates> filter;
+  filter->SetInputData(0, this->Pair.Source);
+  filter->Update();
+  Counts whole;
+  for (int port = 0; port < 3; ++port)
+  {
+    whole.push_back(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells());
+  }
+  Counts sums(3, 0);
+  for (int piece = 0; piece < 2; ++piece)
+  {
+    for (int port = 0; port < 3; ++port)
+    {
+      sums[port] += UpdatePort(filter, port, piece, 2);
+    }
+  }
+  EXPECT_EQ(sums, whole);
+}
+
+TEST_F(Doubling, PiecesAskedOfTheFirstOutputSettleTheOthers)
+{
+  // UpdatePiece asks for a piece of output 0. What the same execution puts into the others is marked as
+  // the same piece, so it must be that.
+  for (const bool ownData : { false, true })
+  {
+    SCOPED_TRACE(ownData);
+    const vtkNew<vtkTriangularCoordinates> filter;
+    filter->SetInputData(0, this->Pair.Source);
+    if (ownData)
+    {
+      filter->SetDataObject(MakeDataPartlyOutside());
+    }
+    filter->Update();
+    const Counts whole{ filter->GetLines()->GetNumberOfCells(),
+      filter->GetTriangulation()->GetNumberOfCells() };
+    Counts sums(2, 0);
+    for (int piece = 0; piece < 2; ++piece)
+    {
+      filter->UpdatePiece(piece, 2, 0);
+      for (int output : { 1, 2 })
+      {
+        vtkDataObject* data = filter->GetOutputDataObject(output);
+        EXPECT_EQ(data->GetInformation()->Get(vtkDataObject::DATA_PIECE_NUMBER()), piece);
+        sums[output - 1] += vtkDataSet::SafeDownCast(data)->GetNumberOfCells();
+      }
+    }
+    EXPECT_EQ(sums, whole);
+  }
+}
+
+//------------------------------------------------------------------------------------------------
+// Cell ids in messages.
+
+/// What a pair is told, where the source has 1 vertex and the target 2 vertices and 3 lines.
+std::string Message(
+  const std::function<void(const MeshPair&)>& spoil, int system = Linear, bool mask = false)
+{
+  const MeshPair pair = MakeDoublingPair(2);
+  AddVertsAndLines(pair.Source, 1, 0);
+  AddVertsAndLines(pair.Target, 2, 3);
+  spoil(pair);
+  const vtkNew<vtkDifferentiableHomeomorphism> filter;
+  Messages told(filter);
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->SetCoordinateSystem(system);
+  filter->SetMaskInvalidTriangles(mask);
+  filter->Update();
+  EXPECT_EQ(told.HasError(), !mask);
+  return mask ? told.Warning() : told.Error();
+}
+
+TEST(CellIdsInMessages, TrianglesWithoutArea)
+{
+  const auto flatten = [](vtkPolyData* mesh) {
+    // Point 2, which triangle 2 (points 1, 2, 5) has for its own, into the opposite edge.
+    double a[3];
+    double b[3];
+    mesh->GetPoint(1, a);
+    mesh->GetPoint(5, b);
+    mesh->GetPoints()->SetPoint(2, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.0);
+  };
+  for (const bool mask : { false, true })
+  {
+    EXPECT_NE(Message([&](const MeshPair& pair) { flatten(pair.Source); }, Linear, mask)
+                .find("1 triangle of the source (cell 3) has no area"),
+      std::string::npos);
+    EXPECT_NE(Message([&](const MeshPair& pair) { flatten(pair.Target); }, Linear, mask)
+                .find("1 triangle of the target (cell 7) has no area"),
+      std::string::npos);
+  }
+}
+
+TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
+{
+  const auto spoil = [](vtkPolyData* mesh) {
+    mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
+  };
+  // Point 2 is a corner of triangle 2 alone.
+  EXPECT_NE(Message([&](const MeshPair& pair) { spoil(pair.Source); })
+              .find("1 triangle of the source (cell 3) has a coordinate that is not finite"),
+    std::string::npos);
+  EXPECT_NE(Message([&](const MeshPair& pair) { spoil(pair.Target); })
+              .find("1 triangle of the target (cell 7) has a coordinate that is not finite"),
+    std::string::npos);
+}
+
+/// What is said of three triangles that have no point in common, the last two of which lie on top of each
+/// other in one of the meshes.
+std::string OverlapMessage(bool inTarget)
+{
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 3, 4, 5 }, { 6, 7, 8 } };
+  const std::vector<Point> apart{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 2, 0, 0 }, { 3, 0, 0 },
+    { 2, 1, 0 }, { 4, 0, 0 }, { 5, 0, 0 }, { 4, 1, 0 } };
+  std::vector<Point> overlapping = apart;
+  for (int i = 6; i < 9; ++i)
+  {
+    overlapping[i][0] -= 1.8;
+  }
+  const MeshPair pair{ MakeMesh(inTarget ? apart : overlapping, triangles),
+    MakeMesh(inTarget ? overlapping : apart, triangles) };
+  AddVertsAndLines(pair.Source, 1, 0);
+  AddVertsAndLines(pair.Target, 2, 3);
+  const vtkNew<vtkDifferentiableHomeomorphism> filter;
+  Messages told(filter);
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->Update();
+  return told.Error();
+}
+
+TEST(CellIdsInMessages, TrianglesThatOverlap)
+{
+  EXPECT_NE(OverlapMessage(false).find("2 triangles of the source (cells 2, 3) overlap"),
+    std::string::npos)
+    << OverlapMessage(false);
+  EXPECT_NE(OverlapMessage(true).find("2 triangles of the target (cells 6, 7) overlap"),
+    std::string::npos)
+    << OverlapMessage(true);
+}
+
+TEST(CellIdsInMessages, DiscordantTriangles)
+{
+  // Corner 2, of triangle 2 alone, pulled far out: its foot on the opposite edge leaves that edge.
+  const auto pull = [](vtkPolyData* mesh) {
+    double p[3];
+    mesh->GetPoint(2, p);
+    mesh->GetPoints()->SetPoint(2, 4.0 * p[0], p[1], 0.0);
+  };
+  const auto contour = vtkDifferentiableHomeomorphism::CONTOUR;
+  const std::string source = Message([&](const MeshPair& pair) { pull(pair.Source); }, contour);
+  EXPECT_NE(source.find("1 triangle of the source (cell 3) is discordant"), std::string::npos)
+    << source;
+  const std::string target = Message([&](const MeshPair& pair) { pull(pair.Target); }, contour);
+  EXPECT_NE(target.find("1 triangle of the target (cell 7) is discordant"), std::string::npos)
+    << target;
+}
+
+TEST(CellIdsInMessages, CellsThatAreNotTriangles)
+{
+  const auto add = [](vtkPolyData* mesh) {
+    const vtkIdType square[] = { 0, 1, 4, 3 };
+    mesh->GetPolys()->InsertNextCell(4, square);
+  };
+  EXPECT_NE(Message([&](const MeshPair& pair) { add(pair.Target); })
+              .find("1 cell of the target (cell 13) is not a triangle"),
+    std::string::npos);
+  EXPECT_NE(Message([&](const MeshPair& pair) { add(pair.Source); })
+              .find("1 cell of the source (cell 9) is not a triangle"),
+    std::string::npos);
+}
+
+} // namespace
