@@ -11,6 +11,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
+#include "vtkErrorCode.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
@@ -205,6 +206,12 @@ private:
     }
 
     const double reach = this->GetReach();
+    auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+      this->Input->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    if (ghosts && ghosts->GetNumberOfValues() != this->NumberOfPoints)
+    {
+      ghosts = nullptr;
+    }
     const vtkIdType done = RunInBlocks(
       this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
         TriangleIndex hint = -1;
@@ -212,7 +219,11 @@ private:
         {
           double point[3];
           this->Input->GetPoint(i, point);
-          const Location place = this->Map.Locate(this->From, point, reach, hint);
+          // What is hidden in the input is not there: above all what an earlier map found outside.
+          const bool hidden =
+            ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0;
+          const Location place =
+            hidden ? Location{} : this->Map.Locate(this->From, point, reach, hint);
           hint = place.Triangle;
           if (place.Triangle >= 0)
           {
@@ -339,8 +350,10 @@ private:
       return TransportRule::Tangent;
     }
     const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-    return this->Self->CarryAllVectors && real && array != attributes->GetTCoords() &&
-        array != attributes->GetScalars()
+    // An earlier map's derivative is no tensor of this one's domain.
+    const bool derivative = array->GetName() && std::string(array->GetName()) == "Jacobian";
+    return this->Self->CarryAllVectors && real && !derivative &&
+        array != attributes->GetTCoords() && array != attributes->GetScalars()
       ? TransportRule::Tangent
       : TransportRule::None;
   }
@@ -573,16 +586,19 @@ int vtkDifferentiableHomeomorphism::RequestData(
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
   vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-  this->NumberOfOutsidePoints = 0;
+  this->NumberOfOutsidePoints = -1;
   this->NumberOfDiscordantTriangles = 0;
+  this->SetErrorCode(vtkErrorCode::NoError);
 
   const std::shared_ptr<const Homeomorphism> map =
     this->Internal->Cache.Get(source, target, GetOptions(this));
   ReportProblems(this, this->Internal->Cache.GetProblems());
   if (!map)
   {
+    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
+  this->NumberOfOutsidePoints = 0;
 
   const ChartedTriangulation& charts = map->GetCharts(Side::Source);
   for (TriangleIndex t = 0; t < map->GetPair().GetTriangulation().GetNumberOfTriangles(); ++t)
@@ -629,6 +645,7 @@ int vtkDifferentiableHomeomorphism::RequestData(
     vtkErrorMacro(<< "Data of type " << data->GetClassName()
                   << " has no points that can be moved: give a point set, an image, a rectilinear "
                      "grid, or a tree of those.");
+    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
   this->UpdateProgress(1.0);

@@ -52,7 +52,8 @@
  * Outside points are given no image. They stay where they are, marked by ValidPointMask, with NaN in
  * arrays that would have been carried; GetNumberOfOutsidePoints counts them; and they, with the cells
  * that use them, are blanked (vtkGhostType), so that no later filter or view takes them for mapped
- * ones; see BlankOutside.
+ * ones; see BlankOutside. Points that are blanked in the input count as outside, so that a map back
+ * does not take them for mapped ones either.
  *
  * If both meshes are planar (in any planes), points off P's plane are mapped along with their foot,
  * and their distance from the plane is kept, so that heights pass through a map of the plane. The
@@ -171,7 +172,7 @@ public:
   ///@{
   /// Whether triangles that are invalid by themselves (no area, not finite, flipped, overlapping, at
   /// an edge of more than two) are left out with a warning, as if there were holes, instead of
-  /// refusing the meshes. Off by default.
+  /// refusing the meshes. Of triangles that overlap each other, all are. Off by default.
   vtkSetMacro(MaskInvalidTriangles, bool);
   vtkGetMacro(MaskInvalidTriangles, bool);
   vtkBooleanMacro(MaskInvalidTriangles, bool);
@@ -208,7 +209,8 @@ public:
 
   ///@{
   /// Whether all other floating-point arrays of 3, 6 and 9 components are carried too, as tangent
-  /// vectors and tensors; texture coordinates and active scalars are not. Off by default.
+  /// vectors and tensors; texture coordinates, active scalars and arrays named `Jacobian` are not. Off
+  /// by default.
   vtkSetMacro(CarryAllVectors, bool);
   vtkGetMacro(CarryAllVectors, bool);
   vtkBooleanMacro(CarryAllVectors, bool);
@@ -237,7 +239,8 @@ public:
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}
 
-  /// Number of points of the data that the last execution found outside.
+  /// Number of points of the data that the last execution found outside; -1 if the meshes or the data
+  /// were refused, in which case GetErrorCode() is not 0 either.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
   /// Number of triangles that are discordant in P or Q and are carried by the Linear system.

@@ -18,11 +18,11 @@
  * points along the axis it is closest to, the target's is less than a right angle from it), so a map of
  * the xy plane leaves z alone, and the derivative takes normal to normal.
  *
- * A transform has no way to mark a point as outside. Points outside the domain go to a place that
- * is in no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is more, a
- * thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its background colour (do not combine
- * with its Wrap or Mirror modes). Derivatives there are NaN. IsInside tells, too. Before both meshes
- * are set, and if they are refused (an error says why), every point is outside.
+ * A transform has no way to mark a point as outside. Points outside the domain go to a place that is in
+ * no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is more, a
+ * thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its background
+ * colour (do not combine with its Wrap or Mirror modes). Derivatives there are NaN. IsInside tells, too.
+ * Before both meshes are set, and if they are refused (an error says why), every point is outside.
  *
  * Once updated, the transform may be used by any number of threads; TransformPoints and
  * TransformPointsNormalsVectors use vtkSMPTools themselves, with the same result for any number of

@@ -8,6 +8,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkErrorCode.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -250,16 +251,19 @@ int vtkTriangularCoordinates::RequestData(
   vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
   vtkPolyData* lines = vtkPolyData::GetData(outputs, 1);
   vtkPolyData* described = vtkPolyData::GetData(outputs, 2);
-  this->NumberOfOutsidePoints = 0;
+  this->NumberOfOutsidePoints = -1;
   this->NumberOfDiscordantTriangles = 0;
+  this->SetErrorCode(vtkErrorCode::NoError);
 
   const std::shared_ptr<const Homeomorphism> map =
     this->Internal->Cache.Get(triangulation, nullptr, GetOptions(this));
   ReportProblems(this, this->Internal->Cache.GetProblems());
   if (!map)
   {
+    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
+  this->NumberOfOutsidePoints = 0;
 
   const vtkNew<vtkPolyData> triangles;
   triangles->ShallowCopy(triangulation);

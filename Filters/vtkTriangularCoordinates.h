@@ -172,7 +172,8 @@ public:
   vtkGetMacro(LineResolution, int);
   ///@}
 
-  /// Number of points of the data that the last execution found outside.
+  /// Number of points of the data that the last execution found outside; -1 if the triangulation was
+  /// refused, in which case GetErrorCode() is not 0 either.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
   /// Number of triangles that the last execution found discordant, masked ones excepted.

@@ -46,6 +46,8 @@ const std::array<std::string, 3> systemNames{ "Linear", "Contour", "Smooth" };
 struct Task
 {
   vtkSmartPointer<vtkImageData> SourceImage;
+  /// What lies under the target mesh, if anything.
+  vtkSmartPointer<vtkImageData> TargetImage;
   std::array<int, 2> TargetSize;
   vtkSmartPointer<vtkPolyData> Source;
   vtkSmartPointer<vtkPolyData> Target;
@@ -75,20 +77,20 @@ Task MakeFaces()
 {
   Task task;
   task.SourceImage = ReadPhotograph(photographs + "image1.png");
-  const auto targetImage = ReadPhotograph(photographs + "image2.png");
+  task.TargetImage = ReadPhotograph(photographs + "image2.png");
   int size[3];
   task.SourceImage->GetDimensions(size);
   XmorphMesh first = ReadXmorphMesh(photographs + "image1.png.mesh");
   FitToPicture(first, size[0], size[1]);
-  targetImage->GetDimensions(size);
+  task.TargetImage->GetDimensions(size);
   XmorphMesh second = ReadXmorphMesh(photographs + "image2.png.mesh");
   FitToPicture(second, size[0], size[1]);
   const auto meshes = CutIntoTriangles(first, second);
   task.Source = meshes[0];
   task.Target = meshes[1];
   task.TargetSize = { size[0], size[1] };
-  task.CloseUp = { 105.0, 145.0, 42.0 };
-  task.MeshColor = { 0.4, 0.8, 1.0 };
+  task.CloseUp = { 127.0, 143.0, 24.0 };
+  task.MeshColor = { 0.1, 0.2, 0.6 };
   task.LineColor = { 1.0, 0.85, 0.1 };
   return task;
 }
@@ -269,6 +271,11 @@ void Run(const Task& task, const std::string& folder)
     panels.push_back({ systemNames[system], image, task.Target, carriedGrid,
       task.MeshColor, task.LineColor, task.CloseUp });
     measurements[system] = Measure(task.Source, task.Target, system);
+  }
+  if (task.TargetImage)
+  {
+    panels.push_back({ "Target", task.TargetImage, task.Target, vtkSmartPointer<vtkPolyData>::New(),
+      task.MeshColor, task.LineColor, task.CloseUp });
   }
   WritePicture(panels, folder + "/three-systems.png");
   std::cout << "wrote " << folder << "/three-systems.png\n" << std::endl;

@@ -23,7 +23,7 @@ namespace
 
 // Drawn twice as large and averaged, which smooths lines on any renderer.
 constexpr int oversampling = 2;
-constexpr int panelWidth = 400 * oversampling;
+constexpr int panelWidth = 360 * oversampling;
 constexpr int titleHeight = 40 * oversampling;
 
 void AddLines(vtkRenderer* renderer, vtkPolyData* lines, const std::array<double, 3>& color,
@@ -53,7 +53,7 @@ void AddView(vtkRenderWindow* window, const Panel& panel, const std::array<doubl
   image->GetMapper()->SetInputData(panel.Image);
   image->InterpolateOn();
   renderer->AddActor(image);
-  AddLines(renderer, panel.Mesh, panel.MeshColor, 0.4, 0.5f * lineWidth, 0.5);
+  AddLines(renderer, panel.Mesh, panel.MeshColor, 0.5, 0.5f * lineWidth, 0.5);
   AddLines(renderer, panel.Lines, panel.LineColor, 1.0, lineWidth, 1.0);
   vtkCamera* camera = renderer->GetActiveCamera();
   camera->ParallelProjectionOn();
@@ -101,7 +101,7 @@ void WritePicture(const std::vector<Panel>& panels, const std::string& fileName)
       { 0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]) },
       0.5 * highest * (bounds[1] - bounds[0]), 1.2f);
     AddView(window, panel, { left, gap, right, closeUpTop - gap },
-      { panel.CloseUp[0], panel.CloseUp[1] }, panel.CloseUp[2], 2.4f);
+      { panel.CloseUp[0], panel.CloseUp[1] }, panel.CloseUp[2], 3.2f);
 
     vtkNew<vtkTextActor> title;
     title->SetInput(panel.Title.c_str());

@@ -521,6 +521,52 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
   EXPECT_GT(turnedOver, 0);
 }
 
+TEST_P(FilterInEverySystem, HeightsAreLengths)
+{
+  // Whatever the sizes of the two meshes, in planes at any height.
+  const MeshPair pair = MakePlanarPair(6, 210);
+  for (const double factor : { 1000.0, 0.001 })
+  {
+    const auto target = Moved(pair.Target,
+      [factor](const Point& p) -> Point {
+        return { factor * p[0], factor * p[1], 0.0 };
+      });
+    Random random(13);
+    std::vector<Point> positions;
+    for (const Place& place : RandomPlaces(pair.Source, 2000, 14))
+    {
+      positions.push_back(PositionOf(pair.Source, place));
+      positions.back()[2] = random.Uniform(-20.0, 20.0);
+    }
+    const auto cloud = MakeCloud(positions);
+    const auto filter = MakeFilter(GetParam(), { pair.Source, target }, cloud);
+    filter->ComputeJacobianOn();
+    vtkPointSet* output = Output(filter);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+    vtkIdType wrong = 0;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      wrong += PointOf(output, i)[2] != PointOf(cloud, i)[2];
+      const Matrix j = MatrixOf(PointArray(output, "Jacobian"), i);
+      wrong += j[2] != Point{ 0.0, 0.0, 1.0 } || j[0][2] != 0.0 || j[1][2] != 0.0;
+    }
+    EXPECT_EQ(wrong, 0);
+
+    const auto lifted = Moved(target,
+      [](const Point& p) -> Point {
+        return { p[0], p[1], p[2] - 7.0 };
+      });
+    const auto lift = MakeFilter(GetParam(), { pair.Source, lifted }, cloud);
+    output = Output(lift);
+    Worst worst;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      worst.Take(std::abs(PointOf(output, i)[2] - (PointOf(cloud, i)[2] - 7.0)), 1e-14);
+    }
+    EXPECT_LE(worst.OverBound, 1.0);
+  }
+}
+
 // --- Kinds of data -------------------------------------------------------------------------------
 
 class KindsOfData : public ::testing::Test

@@ -478,18 +478,39 @@ TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
   }
 }
 
-TEST_F(Doubling, TwoRolesOfOneArrayStayRoles)
+TEST_F(Doubling, UnnamedArraysWithoutARoleAreReplacedToo)
 {
-  // Vectors that are the active scalars as well.
   const auto data = MakeDataPartlyOutside();
-  data->GetPointData()->SetVectors(MakeNumbers("Both", 3, 6));
-  data->GetPointData()->AddArray(MakeNumbers("Other", 1, 6));
-  data->GetPointData()->SetActiveScalars("Other");
-  vtkPointSet* output = this->Run(data);
-  ASSERT_NE(output->GetPointData()->GetVectors(), nullptr);
-  EXPECT_STREQ(output->GetPointData()->GetVectors()->GetName(), "Both");
-  ASSERT_NE(output->GetPointData()->GetScalars(), nullptr);
-  EXPECT_STREQ(output->GetPointData()->GetScalars()->GetName(), "Other");
+  const auto vectors = MakeNumbers(nullptr, 3, 6);
+  data->GetPointData()->AddArray(vectors);
+  this->Filter->CarryAllVectorsOn();
+  vtkPointData* result = this->Run(data)->GetPointData();
+  std::vector<vtkDataArray*> unnamed;
+  for (int i = 0; i < result->GetNumberOfArrays(); ++i)
+  {
+    if (!result->GetAbstractArray(i)->GetName())
+    {
+      unnamed.push_back(result->GetArray(i));
+    }
+  }
+  ASSERT_EQ(unnamed.size(), 1u);
+  EXPECT_NE(unnamed[0], vectors);
+  EXPECT_NEAR(unnamed[0]->GetComponent(1, 0), 22.0, 1e-13);
+}
+
+TEST_F(Doubling, AnArrayKeepsAllItsRoles)
+{
+  // Velocities are often the active vectors, and the active scalars as well, to be coloured by.
+  const auto data = MakeDataPartlyOutside();
+  const auto velocities = MakeNumbers("Velocities", 3, 6);
+  data->GetPointData()->SetScalars(velocities);
+  data->GetPointData()->SetActiveVectors("Velocities");
+  ASSERT_EQ(data->GetPointData()->GetScalars(), velocities);
+  ASSERT_EQ(data->GetPointData()->GetVectors(), velocities);
+  vtkPointData* result = this->Run(data)->GetPointData();
+  ASSERT_NE(result->GetVectors(), nullptr);
+  EXPECT_NEAR(result->GetVectors()->GetComponent(1, 0), 22.0, 1e-13);
+  EXPECT_EQ(result->GetScalars(), result->GetVectors());
 }
 
 //------------------------------------------------------------------------------------------------
