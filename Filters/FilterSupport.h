@@ -56,6 +56,8 @@ inline void ReportProblems(vtkObject* self, const MeshProblems& problems)
   {
     vtkWarningWithObjectMacro(self, << warnings);
   }
+  vtkDebugWithObjectMacro(
+    self, << DescribeProblems(problems, MeshProblem::Outcome::CarriedByLinear));
 }
 
 /// The relative rounding error of coordinates of a VTK type.

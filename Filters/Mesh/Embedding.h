@@ -93,7 +93,7 @@ public:
   /// corners run anticlockwise, -1 if clockwise, 0 if it has no area.
   int GetOrientation(const Triangulation::Corners& corners) const;
   /// Whether the triangle has no area: exactly none in a plane parallel to two axes, none to the
-  /// rounding of its coordinates otherwise.
+  /// rounding of coordinates as doubles otherwise.
   bool HasNoArea(const Triangulation::Corners& corners) const;
   /// Whether the coordinates of all corners are finite.
   bool IsFinite(const Triangulation::Corners& corners) const;

@@ -163,40 +163,6 @@ bool HasFold(const Triangulation& triangulation, const Embedding& embedding, Tri
   return false;
 }
 
-/// Whether at some vertex the triangles around it go round more than once. Each goes round from its
-/// first to its second edge anticlockwise by less than half a turn, so a full turn is complete where
-/// one leads from the lower half plane to the upper.
-bool GoesRoundTwice(
-  const Triangulation& triangulation, const Embedding& embedding, vtkIdType numberOfPoints)
-{
-  std::vector<std::uint8_t> turns(numberOfPoints, 0);
-  const auto isUpper = [](const Vector2& from, const Vector2& to) {
-    return to.y > from.y || (to.y == from.y && to.x > from.x);
-  };
-  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
-  {
-    if (triangulation.IsMasked(t))
-    {
-      continue;
-    }
-    const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    const bool anticlockwise = embedding.GetOrientation(corners) > 0;
-    for (int k = 0; k < 3; ++k)
-    {
-      const Vector2& vertex = embedding.GetPlanePoint(corners[k]);
-      const Vector2& next = embedding.GetPlanePoint(corners[NextCorner(k)]);
-      const Vector2& previous = embedding.GetPlanePoint(corners[PreviousCorner(k)]);
-      const bool firstUpper = isUpper(vertex, anticlockwise ? next : previous);
-      const bool secondUpper = isUpper(vertex, anticlockwise ? previous : next);
-      if (!firstUpper && secondUpper && ++turns[corners[k]] > 1)
-      {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 /// Whether a triangle's interior meets that of one that is near a box.
 bool OverlapsNear(const Triangulation& triangulation, const Embedding& embedding,
   const PointLocation& location, TriangleIndex t, const Box<2>& box)
@@ -374,25 +340,13 @@ TriangleList FindFlipped(
 TriangleList FindOverlapping(
   const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location)
 {
-  const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  vtkIdType numberOfPoints = 0;
-  for (TriangleIndex t = 0; t < count; ++t)
-  {
-    for (const std::int32_t corner : triangulation.GetCorners(t))
-    {
-      numberOfPoints = std::max<vtkIdType>(numberOfPoints, corner + vtkIdType(1));
-    }
-  }
-  // Without folds across edges and with one turn at most around each vertex the mesh is an immersed
-  // surface: how often a point of the plane is covered changes only across boundary edges. Beside a
-  // region that is covered twice there then is a boundary edge whose triangle is on the side that is
+  // Without folds, how often a point of the plane is covered changes only across boundary edges. Beside
+  // a region that is covered twice there then is a boundary edge whose triangle is on the side that is
   // covered twice: there it overlaps a triangle that touches the edge. So only what is near boundary
   // edges has to be compared.
-  const bool immersed =
-    FindTriangles(triangulation, [&](TriangleIndex t) {
-      return HasFold(triangulation, embedding, t);
-    }).empty() &&
-    !GoesRoundTwice(triangulation, embedding, numberOfPoints);
+  const bool folded = !FindTriangles(triangulation, [&](TriangleIndex t) {
+    return HasFold(triangulation, embedding, t);
+  }).empty();
   const auto overlapsAtBoundary = [&](TriangleIndex t) {
     const Triangulation::Corners& corners = triangulation.GetCorners(t);
     for (int k = 0; k < 3; ++k)
@@ -406,7 +360,7 @@ TriangleList FindOverlapping(
     }
     return false;
   };
-  if (immersed && FindTriangles(triangulation, overlapsAtBoundary).empty())
+  if (!folded && FindTriangles(triangulation, overlapsAtBoundary).empty())
   {
     return {};
   }
