@@ -15,7 +15,9 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
+#include "vtkExecutive.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkObject.h"
 #include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
@@ -69,13 +71,12 @@ inline double PrecisionOfType(int dataType)
 }
 
 /// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
-/// and a request to abort is honoured. Returns the number of items done: less than count only if
-/// aborted.
+/// and a request to abort is honoured; a block should take a fraction of a second. Returns the number
+/// of items done: less than count only if aborted.
 template <typename Work>
 vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
-  double progressEnd, Work&& work)
+  double progressEnd, Work&& work, vtkIdType blockSize = 1 << 17)
 {
-  constexpr vtkIdType blockSize = 1 << 17;
   for (vtkIdType begin = 0; begin < count; begin += blockSize)
   {
     self->UpdateProgress(progressBegin +
@@ -152,11 +153,15 @@ inline void MakeOutputLike(vtkDataObject* data, vtkInformation* outInfo)
   }
 }
 
-/// Whether an output that is made from the meshes alone belongs to this request: they are read whole
-/// for every piece, and only the first piece gets what they make.
-inline bool IsFirstPiece(vtkInformation* outInfo)
+/// Whether what is made from the meshes alone belongs to a request: they are read whole for every
+/// piece, and only the first piece gets what they make.
+inline bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs)
 {
-  return outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) <= 0;
+  const int port = request->Has(vtkExecutive::FROM_OUTPUT_PORT())
+    ? std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()))
+    : 0;
+  return outputs->GetInformationObject(port)->Get(
+           vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) <= 0;
 }
 
 /// How a filter or transform wants its meshes understood.

@@ -15,6 +15,7 @@ set(kernel_headers
   Kernel/ExactSign.h
   Kernel/Geometry.h
   Kernel/LinearChart.h
+  Kernel/OneSidedDerivative.h
   Kernel/RootFinding.h
   Kernel/SmoothChart.h)
 
@@ -24,6 +25,7 @@ set(mesh_sources
   Mesh/Embedding.cxx
   Mesh/Homeomorphism.cxx
   Mesh/HomeomorphismCache.cxx
+  Mesh/JacobianJump.cxx
   Mesh/MeshProblem.cxx
   Mesh/MeshValidation.cxx
   Mesh/PointLocation.cxx
@@ -35,6 +37,7 @@ set(mesh_headers
   Mesh/Embedding.h
   Mesh/Homeomorphism.h
   Mesh/HomeomorphismCache.h
+  Mesh/JacobianJump.h
   Mesh/MeshProblem.h
   Mesh/MeshValidation.h
   Mesh/PointLocation.h
@@ -44,10 +47,12 @@ set(mesh_headers
 # What the VTK classes share.
 set(support_sources
   AttributeTransport.cxx
-  CoordinateLines.cxx)
+  CoordinateLines.cxx
+  EdgeCrossings.cxx)
 set(support_headers
   AttributeTransport.h
   CoordinateLines.h
+  EdgeCrossings.h
   FilterSupport.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results

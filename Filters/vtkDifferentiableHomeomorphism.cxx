@@ -34,6 +34,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <vector>
 
 using namespace homeomorphism;
 
@@ -383,8 +384,15 @@ private:
       {
         continue;
       }
-      // Takes the place of the array passed, and its role.
-      const int role = input->IsArrayAnAttribute(i);
+      // Takes the place of the array passed, and its roles.
+      std::vector<int> roles;
+      for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+      {
+        if (input->GetAbstractAttribute(role) == array)
+        {
+          roles.push_back(role);
+        }
+      }
       for (int passed = output->GetNumberOfArrays() - 1; passed >= 0; --passed)
       {
         if (output->GetAbstractArray(passed) == array)
@@ -392,10 +400,10 @@ private:
           output->RemoveArray(passed);
         }
       }
-      output->AddArray(carried);
-      if (role >= 0)
+      const int index = output->AddArray(carried);
+      for (const int role : roles)
       {
-        output->SetAttribute(carried, role);
+        output->SetActiveAttribute(index, role);
       }
     }
   }
@@ -580,7 +588,7 @@ int vtkDifferentiableHomeomorphism::RequestUpdateExtent(
 }
 
 int vtkDifferentiableHomeomorphism::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
@@ -606,7 +614,7 @@ int vtkDifferentiableHomeomorphism::RequestData(
     this->NumberOfDiscordantTriangles += charts.GetSystemOf(t) != charts.GetSystem();
   }
 
-  if (!data && !IsFirstPiece(outputs->GetInformationObject(0)))
+  if (!data && !IsFirstPiece(request, outputs))
   {
     return 1;
   }

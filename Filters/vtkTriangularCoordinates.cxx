@@ -244,7 +244,7 @@ int vtkTriangularCoordinates::RequestUpdateExtent(
 }
 
 int vtkTriangularCoordinates::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* triangulation = vtkPolyData::GetData(inputs[0]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[1]);
@@ -265,14 +265,15 @@ int vtkTriangularCoordinates::RequestData(
   }
   this->NumberOfOutsidePoints = 0;
 
+  const bool isFirstPiece = IsFirstPiece(request, outputs);
   const vtkNew<vtkPolyData> triangles;
   triangles->ShallowCopy(triangulation);
   this->NumberOfDiscordantTriangles = DescribeTriangles(*map, triangles);
-  if (IsFirstPiece(outputs->GetInformationObject(2)))
+  if (isFirstPiece)
   {
     described->ShallowCopy(triangles);
   }
-  if (this->GenerateLines && IsFirstPiece(outputs->GetInformationObject(1)))
+  if (this->GenerateLines && isFirstPiece)
   {
     MakeCoordinateLines(
       this, *map, { this->NumberOfContours, this->NumberOfRings, this->LineResolution }, lines);
@@ -317,7 +318,7 @@ int vtkTriangularCoordinates::RequestData(
   {
     addCoordinates(vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(output));
   }
-  else if (IsFirstPiece(outputs->GetInformationObject(0)))
+  else if (isFirstPiece)
   {
     // Without data of its own, the triangulation gets the coordinates on top of its cell arrays.
     addCoordinates(triangles, vtkDataSet::SafeDownCast(output));

@@ -137,7 +137,8 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
 
 ContourChart::ContourChart(
   const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
-  : Shape(shape)
+  : Unit(PowerOfTwoNear(shape.Base))
+  , Shape{ shape.Base / Unit, shape.ApexX / Unit, shape.Height / Unit, shape.Apex }
 {
   if (center == CenterPoint::Centroid)
   {
@@ -158,9 +159,10 @@ ContourChart::ContourChart(
   }
   for (int k = 0; k < 3; ++k)
   {
-    const EdgeView& view = views[k];
+    const EdgeView view{ views[k].Length / this->Unit, views[k].Foot,
+      views[k].Height / this->Unit };
     Edge& edge = this->Edges[k];
-    edge.Start = shape.Corner(NextCorner(k));
+    edge.Start = this->Shape.Corner(NextCorner(k));
     edge.Length = view.Length;
     // The tangent of an edge other than the base follows from how it sees the base's far end; the
     // difference of its own ends would be useless where it is short.
@@ -170,11 +172,13 @@ ContourChart::ContourChart(
     }
     else if (k == NextCorner(shape.Apex))
     {
-      edge.Tangent = { -view.Foot * view.Length / shape.Base, view.Height / shape.Base };
+      edge.Tangent = { -view.Foot * view.Length / this->Shape.Base,
+        view.Height / this->Shape.Base };
     }
     else
     {
-      edge.Tangent = { (view.Foot - 1.0) * view.Length / shape.Base, -view.Height / shape.Base };
+      edge.Tangent = { (view.Foot - 1.0) * view.Length / this->Shape.Base,
+        -view.Height / this->Shape.Base };
     }
     edge.CenterHeight = this->CenterWeights[k] * view.Height;
     // The foot of a weighted mean of the corners is the weighted mean of their feet: 0 and Length
@@ -197,8 +201,9 @@ ContourChart::Half ContourChart::HalfAt(const Edge& edge, double p) const
   return half;
 }
 
-ContourChart::Reference ContourChart::ToReference(const Vector2& point) const
+ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) const
 {
+  const Vector2 point = (1.0 / this->Unit) * pointInFrame;
   const Barycentric l = this->Shape.ToBarycentric(point);
   int k = 0;
   for (int other = 1; other < 3; ++other)
@@ -282,8 +287,9 @@ Vector2 ContourChart::ToPoint(const Reference& coordinates) const
     y = remaining * SineRatio(angle);
   }
   const double along = edge.FootDistance + half.Side * x;
-  return { edge.Start.x + along * edge.Tangent.x - y * edge.Tangent.y,
-    edge.Start.y + along * edge.Tangent.y + y * edge.Tangent.x };
+  return this->Unit *
+    Vector2{ edge.Start.x + along * edge.Tangent.x - y * edge.Tangent.y,
+      edge.Start.y + along * edge.Tangent.y + y * edge.Tangent.x };
 }
 
 /// The images of the two unit directions of the reference.
@@ -342,12 +348,13 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
 Vector2 ContourChart::Push(const Reference& coordinates, const Direction& direction) const
 {
   const Matrix2 columns = this->Columns(coordinates);
-  return direction.x * columns.ImageOfX + direction.y * columns.ImageOfY;
+  return this->Unit * (direction.x * columns.ImageOfX + direction.y * columns.ImageOfY);
 }
 
 ContourChart::Direction ContourChart::Pull(
-  const Reference& coordinates, const Vector2& vector) const
+  const Reference& coordinates, const Vector2& vectorInFrame) const
 {
+  const Vector2 vector = (1.0 / this->Unit) * vectorInFrame;
   const Matrix2 columns = this->Columns(coordinates);
   const double determinant = columns.Determinant();
   return { Cross(vector, columns.ImageOfY) / determinant,
@@ -360,7 +367,7 @@ double ContourChart::ContourLength(int edgeLabel, double p) const
   const Half half = this->HalfAt(edge, p);
   const double s =
     ContourEndingAt(edge.CenterHeight, half.Length, Clamp01(half.EdgePoint / half.Length));
-  return ContourOfHalf(edge.CenterHeight, half.Length, s).Length;
+  return this->Unit * ContourOfHalf(edge.CenterHeight, half.Length, s).Length;
 }
 
 double ContourChart::ContourLengthDerivative(int edgeLabel, double p) const
@@ -371,18 +378,18 @@ double ContourChart::ContourLengthDerivative(int edgeLabel, double p) const
     ContourEndingAt(edge.CenterHeight, half.Length, Clamp01(half.EdgePoint / half.Length));
   const ContourOfHalf contour(edge.CenterHeight, half.Length, s);
   const ContourOfHalfDerivative derivative(edge.CenterHeight, half.Length, s, contour);
-  return derivative.Length * half.Side * edge.Length / derivative.EdgePoint;
+  return this->Unit * derivative.Length * half.Side * edge.Length / derivative.EdgePoint;
 }
 
 Vector2 ContourChart::Center() const
 {
-  return this->Shape.FromBarycentric(this->CenterWeights);
+  return this->Unit * this->Shape.FromBarycentric(this->CenterWeights);
 }
 
 Vector2 ContourChart::Foot(int edgeLabel) const
 {
   const Edge& edge = this->Edges[edgeLabel - 1];
-  return edge.Start + edge.FootDistance * edge.Tangent;
+  return this->Unit * (edge.Start + edge.FootDistance * edge.Tangent);
 }
 
 const TriangleShape& ContourChart::EquilateralShape()

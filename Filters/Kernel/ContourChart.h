@@ -130,6 +130,9 @@ private:
   Half HalfAt(const Edge& edge, double p) const;
   Matrix2 Columns(const Reference& coordinates) const;
 
+  /// A power of two near the triangle's size, in which all lengths below are measured, so that their
+  /// products neither underflow nor overflow.
+  double Unit;
   TriangleShape Shape;
   Barycentric CenterWeights;
   std::array<Edge, 3> Edges;

@@ -3,6 +3,8 @@
 
 #include "Homeomorphism.h"
 
+#include "MeshValidation.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -50,7 +52,8 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
         carriedByLinear[t] = 1;
         if (problem.FirstCells.size() < MeshProblem::MaximumIds)
         {
-          problem.FirstCells.push_back(topology.GetCellId(t));
+          problem.FirstCells.push_back(
+            FirstPolygon(side == Side::Source ? source : target) + t);
         }
       }
       problems.push_back(problem);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestChangedMeshes.cxx
-/// Meshes that are changed in place after a first update: what was computed from them must not outlive
-/// the change, and must not be computed again without one.
+/// Meshes that are changed in place after a first update: what was computed from them must not
+/// outlive the change, and must not be computed again without one.
 
 #include "TestMeshes.h"
 
@@ -27,19 +27,20 @@ namespace
 
 using namespace test_meshes;
 
-/// Two squares side by side, the diagonals of which can be changed. The target is no affine image of the
-/// source, so that the map shows which diagonals it was made with.
+/// Two squares side by side, the diagonals of which can be changed. The target is no affine image
+/// of the source, so that the map shows which diagonals it was made with.
 MeshPair MakeTwoSquares()
 {
   const std::vector<Triangle> triangles{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 } };
-  return { MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 },
-                      { 2, 1, 0 } },
+  return { MakeMesh(
+             { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 } },
              triangles),
     MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1.5, 2, 0 }, { 3, 1.5, 0 } },
       triangles) };
 }
 
-/// Gives the first square its other diagonal, in place. The cell array's own time alone tells of it.
+/// Gives the first square its other diagonal, in place. The cell array's own time alone tells of
+/// it.
 void FlipDiagonal(vtkPolyData* mesh)
 {
   const Triangle first{ 0, 1, 3 };
@@ -62,8 +63,8 @@ void KeepSecondSquare(vtkPolyData* mesh)
 const std::vector<Point> Places{ { 0.3, 0.4, 0 }, { 0.75, 0.25, 0 }, { 0.5, 0.5, 0 },
   { 0.4, 0.1, 0 }, { 1.2, 0.7, 0 }, { 1.7, 0.4, 0 } };
 
-/// A user of a pair of meshes that can be asked, again and again, what becomes of the places. An empty
-/// answer is a refusal.
+/// A user of a pair of meshes that can be asked, again and again, what becomes of the places. An
+/// empty answer is a refusal.
 class User
 {
 public:
@@ -200,7 +201,8 @@ std::unique_ptr<User> MakeUser(Kind kind, const MeshPair& pair)
 
 const char* NameOf(Kind kind)
 {
-  return kind == Kind::Filter ? "filter" : (kind == Kind::Coordinates ? "coordinates" : "transform");
+  return kind == Kind::Filter ? "filter"
+                              : (kind == Kind::Coordinates ? "coordinates" : "transform");
 }
 
 /// The meshes anew, in objects that nobody has seen before.
@@ -215,10 +217,10 @@ MeshPair Anew(const MeshPair& pair)
   return copy;
 }
 
-/// Changes meshes under a user who has used them, who must then say the same as one who sees them for
-/// the first time.
-void ExpectNoticed(const std::function<void(const MeshPair&)>& change, bool touch = false,
-  bool changesSource = true)
+/// Changes meshes under a user who has used them, who must then say the same as one who sees them
+/// for the first time.
+void ExpectNoticed(
+  const std::function<void(const MeshPair&)>& change, bool touch = false, bool changesSource = true)
 {
   for (const Kind kind : Kinds)
   {
@@ -249,10 +251,12 @@ void ExpectNoticed(const std::function<void(const MeshPair&)>& change, bool touc
 
 TEST(ChangedMeshes, CellsReplacedInPlace)
 {
-  ExpectNoticed([](const MeshPair& pair) {
-    FlipDiagonal(pair.Source);
-    FlipDiagonal(pair.Target);
-  });
+  ExpectNoticed(
+    [](const MeshPair& pair)
+    {
+      FlipDiagonal(pair.Source);
+      FlipDiagonal(pair.Target);
+    });
 }
 
 TEST(ChangedMeshes, CellsReplacedInOneMeshAreRefused)
@@ -274,33 +278,38 @@ TEST(ChangedMeshes, CellsReplacedInOneMeshAreRefused)
 
 TEST(ChangedMeshes, CellsMadeInvalidInPlaceAreRefused)
 {
-  ExpectNoticed([](const MeshPair& pair) {
-    for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+  ExpectNoticed(
+    [](const MeshPair& pair)
     {
-      // A point twice.
-      const Triangle triangle{ 0, 4, 4 };
-      mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
-      mesh->GetPolys()->Modified();
-    }
-  });
+      for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+      {
+        // A point twice.
+        const Triangle triangle{ 0, 4, 4 };
+        mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
+        mesh->GetPolys()->Modified();
+      }
+    });
 }
 
 TEST(ChangedMeshes, FewerCellsAfterReset)
 {
-  ExpectNoticed([](const MeshPair& pair) {
-    for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+  ExpectNoticed(
+    [](const MeshPair& pair)
     {
-      KeepSecondSquare(mesh);
-      mesh->GetPolys()->Modified();
-    }
-  });
+      for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+      {
+        KeepSecondSquare(mesh);
+        mesh->GetPolys()->Modified();
+      }
+    });
 }
 
 TEST(ChangedMeshes, FewerCellsAfterResetWithoutTimeOfTheirOwn)
 {
   // Nothing but the number of cells tells of the change, once the user is made to look.
   ExpectNoticed(
-    [](const MeshPair& pair) {
+    [](const MeshPair& pair)
+    {
       for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
       {
         KeepSecondSquare(mesh);
@@ -370,30 +379,37 @@ TEST(ChangedMeshes, ARefusedMeshMendedInPlaceIsTaken)
 
 TEST(ChangedMeshes, PointsMovedInPlace)
 {
-  ExpectNoticed([](const MeshPair& pair) {
-    pair.Source->GetPoints()->SetPoint(4, 1.1, 0.9, 0.0);
-    pair.Source->GetPoints()->Modified();
-  });
   ExpectNoticed(
-    [](const MeshPair& pair) {
+    [](const MeshPair& pair)
+    {
+      pair.Source->GetPoints()->SetPoint(4, 1.1, 0.9, 0.0);
+      pair.Source->GetPoints()->Modified();
+    });
+  ExpectNoticed(
+    [](const MeshPair& pair)
+    {
       pair.Target->GetPoints()->SetPoint(4, 1.1, 0.9, 0.0);
       pair.Target->GetPoints()->Modified();
     },
     false, false);
   // Through the array behind the points.
-  ExpectNoticed([](const MeshPair& pair) {
-    vtkDataArray* coordinates = pair.Source->GetPoints()->GetData();
-    coordinates->SetComponent(4, 0, 1.1);
-    coordinates->Modified();
-  });
+  ExpectNoticed(
+    [](const MeshPair& pair)
+    {
+      vtkDataArray* coordinates = pair.Source->GetPoints()->GetData();
+      coordinates->SetComponent(4, 0, 1.1);
+      coordinates->Modified();
+    });
 }
 
 TEST(ChangedMeshes, CellsHiddenInPlace)
 {
-  ExpectNoticed([](const MeshPair& pair) {
-    pair.Source->AllocateCellGhostArray()->SetValue(0, vtkDataSetAttributes::HIDDENCELL);
-    pair.Source->GetCellGhostArray()->Modified();
-  });
+  ExpectNoticed(
+    [](const MeshPair& pair)
+    {
+      pair.Source->AllocateCellGhostArray()->SetValue(0, vtkDataSetAttributes::HIDDENCELL);
+      pair.Source->GetCellGhostArray()->Modified();
+    });
 }
 
 /// Edits of one filter's meshes and settings, and whether the meshes are read again for them.

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestExtremeScales.cxx
-/// Very large, very small and very many: coordinates near the ends of the numbers' range, overlaps that
-/// show only once others are left out, and meshes that could take quadratic time.
+/// Very large, very small and very many: coordinates near the ends of the numbers' range, overlaps
+/// that show only once others are left out, and meshes that could take quadratic time.
 
 #include "TestMeshes.h"
 
@@ -92,8 +92,8 @@ struct Mapped
 
   bool AllValid() const
   {
-    return !this->Valid.empty() && std::all_of(this->Valid.begin(), this->Valid.end(),
-             [](bool valid) { return valid; });
+    return !this->Valid.empty() &&
+      std::all_of(this->Valid.begin(), this->Valid.end(), [](bool valid) { return valid; });
   }
 };
 
@@ -153,8 +153,7 @@ void ExpectSameAtAnyScale(const MeshPair& pair, int sourceExponent, int targetEx
     for (const bool inverse : { false, true })
     {
       SCOPED_TRACE("system " + std::to_string(system) + (inverse ? ", inverse" : ""));
-      const std::vector<Point> places =
-        RandomPointsOf(inverse ? pair.Target : pair.Source, 3, 99);
+      const std::vector<Point> places = RandomPointsOf(inverse ? pair.Target : pair.Source, 3, 99);
       std::vector<Point> scaledPlaces = places;
       for (Point& p : scaledPlaces)
       {
@@ -169,8 +168,7 @@ void ExpectSameAtAnyScale(const MeshPair& pair, int sourceExponent, int targetEx
       ASSERT_TRUE(mapped.AllValid());
       for (std::size_t i = 0; i < places.size(); ++i)
       {
-        ASSERT_EQ(
-          mapped.Points[i], Times(expected.Points[i], inverse ? sourceScale : targetScale));
+        ASSERT_EQ(mapped.Points[i], Times(expected.Points[i], inverse ? sourceScale : targetScale));
       }
     }
   }
@@ -204,7 +202,8 @@ TEST(ExtremeScales, APlaneAndASurfaceOfVeryDifferentSizes)
 
 TEST(ExtremeScales, FromTwoHundredZerosBeforeThePointToTwoHundredBehind)
 {
-  // Sizes as people write them. Similar meshes: the map is the similarity, whose factor is no number.
+  // Sizes as people write them. Similar meshes: the map is the similarity, whose factor is no
+  // number.
   const MeshPair flat = MakePlanarPair(3, 71);
   const auto sheet = MakeSheet(3, 72, 0.7);
   for (const auto& mesh : { flat.Source, sheet })
@@ -241,8 +240,8 @@ TEST(ExtremeScales, HeightsAreExactWhateverTheScales)
 {
   // Heights over a plane are lengths of space: no mesh's size enters them, and none may spoil them.
   const MeshPair flat = MakePlanarPair(3, 74);
-  for (const auto& scales : std::vector<std::array<double, 2>>{
-         { 1e200, 1e-200 }, { 1e-200, 1e200 }, { 1e200, 1e200 }, { 1e-200, 1e-200 }, { 1.0, 1e-200 } })
+  for (const auto& scales : std::vector<std::array<double, 2>>{ { 1e200, 1e-200 },
+         { 1e-200, 1e200 }, { 1e200, 1e200 }, { 1e-200, 1e-200 }, { 1.0, 1e-200 } })
   {
     const MeshPair pair{ Scaled(flat.Source, scales[0]), Scaled(flat.Target, scales[1]) };
     std::vector<Point> places = RandomPointsOf(pair.Source, 5, 75);
@@ -422,9 +421,9 @@ struct WoundStrip
   vtkIdType BoundaryTriangles = 0;
 };
 
-/// The source is a straight strip, and beside it, that is on top of each triangle at its boundary, a
-/// small triangle by itself. In the target the small triangles are out of the way, but the strip is wound
-/// round by more than a turn, so that its end lies on its beginning.
+/// The source is a straight strip, and beside it, that is on top of each triangle at its boundary,
+/// a small triangle by itself. In the target the small triangles are out of the way, but the strip
+/// is wound round by more than a turn, so that its end lies on its beginning.
 WoundStrip MakeWoundStrip(double turns)
 {
   const int length = 60;
@@ -487,11 +486,10 @@ WoundStrip MakeWoundStrip(double turns)
 
 TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
 {
-  // What overlaps in the source is left out: exactly the strip's boundary, beside which an overlap in the
-  // target would be looked for. The new boundary must be looked at.
+  // What overlaps in the source is left out: exactly the strip's boundary, beside which an overlap
+  // in the target would be looked for. The new boundary must be looked at.
   const WoundStrip strip = MakeWoundStrip(1.3);
-  for (const MeshPair& pair :
-    { strip.Pair, MeshPair{ strip.Pair.Target, strip.Pair.Source } })
+  for (const MeshPair& pair : { strip.Pair, MeshPair{ strip.Pair.Target, strip.Pair.Source } })
   {
     const bool exchanged = pair.Source == strip.Pair.Target;
     SCOPED_TRACE(exchanged ? "exchanged" : "as described");
@@ -515,8 +513,8 @@ TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
     if (!exchanged)
     {
       // About 0.3 of 1.3 turns lie twofold: those are named beside the 2 x BoundaryTriangles.
-      EXPECT_NE(mapped.Warning.find(std::to_string(2 * strip.BoundaryTriangles) +
-                  " triangles of the source"),
+      EXPECT_NE(mapped.Warning.find(
+                  std::to_string(2 * strip.BoundaryTriangles) + " triangles of the source"),
         std::string::npos)
         << mapped.Warning;
       EXPECT_NE(mapped.Warning.find("triangles of the target"), std::string::npos)
@@ -570,16 +568,16 @@ TEST(ExtremeScales, AStripWoundLessThanATurnOverlapsNothing)
     MapPoints(strip.Pair, RandomPointsOf(strip.Pair.Source, 1, 82), { Systems[0], true });
   ASSERT_EQ(mapped.Error, "");
   EXPECT_EQ(mapped.Warning.find("of the target"), std::string::npos) << mapped.Warning;
-  const auto valid = std::count(
-    mapped.Valid.begin(), mapped.Valid.begin() + strip.StripTriangles, true);
+  const auto valid =
+    std::count(mapped.Valid.begin(), mapped.Valid.begin() + strip.StripTriangles, true);
   EXPECT_EQ(valid, strip.StripTriangles - strip.BoundaryTriangles);
 }
 
 //------------------------------------------------------------------------------------------------
 // Time.
 
-/// Seconds of processor time that a run took, of all its threads: what else the machine does does not
-/// count. Sanitizers slow everything down.
+/// Seconds of processor time that a run took, of all its threads: what else the machine does does
+/// not count. Sanitizers slow everything down.
 template <typename Run>
 double SecondsOf(Run&& run)
 {

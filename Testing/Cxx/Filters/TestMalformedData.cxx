@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestMalformedData.cxx
-/// Data whose arrays and cells do not fit together, meshes that number their triangles differently, and
-/// requests for pieces. Some of it is wrong, some only unusual; none of it may be read past its end.
+/// Data whose arrays and cells do not fit together, meshes that number their triangles differently,
+/// and requests for pieces. Some of it is wrong, some only unusual; none of it may be read past its
+/// end.
 
 #include "TestMeshes.h"
 
@@ -36,8 +37,8 @@ using namespace test_meshes;
 
 constexpr auto Linear = vtkDifferentiableHomeomorphism::LINEAR;
 
-/// The square [0, n] x [0, n], and the same with all coordinates doubled: J is twice the identity in the
-/// plane.
+/// The square [0, n] x [0, n], and the same with all coordinates doubled: J is twice the identity
+/// in the plane.
 MeshPair MakeDoublingPair(int n)
 {
   std::vector<Point> points = GridPoints(n, 3, 0.0);
@@ -180,8 +181,8 @@ TEST_F(Doubling, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
         AddVertsAndLines(other, counts[2], counts[3]);
         // As long as the mesh's own cells: the other's cell ids would lead past its end.
         const vtkIdType cell = counts[0] + counts[1] + hidden;
-        mesh->GetCellData()->AddArray(MakeGhosts(
-          mesh->GetNumberOfCells(), cell, vtkDataSetAttributes::HIDDENCELL));
+        mesh->GetCellData()->AddArray(
+          MakeGhosts(mesh->GetNumberOfCells(), cell, vtkDataSetAttributes::HIDDENCELL));
         this->SetMeshes(pair);
         std::vector<double> expected(8, 1.0);
         expected[hidden] = 0.0;
@@ -208,8 +209,8 @@ TEST_F(Doubling, GhostArraysOfAnotherLengthOnTheMeshesHideNothing)
 /// A mesh of two triangles, one of them outside.
 vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
 {
-  return MakeMesh({ { 0.5, 0.5, 0 }, { 1.5, 0.5, 0 }, { 0.5, 1.5, 0 }, { 5, 5, 0 }, { 6, 5, 0 },
-                    { 5, 6, 0 } },
+  return MakeMesh(
+    { { 0.5, 0.5, 0 }, { 1.5, 0.5, 0 }, { 0.5, 1.5, 0 }, { 5, 5, 0 }, { 6, 5, 0 }, { 5, 6, 0 } },
     { { 0, 1, 2 }, { 3, 4, 5 } });
 }
 
@@ -267,8 +268,8 @@ TEST_F(Doubling, ArraysOfAnotherLengthPassUntouched)
     this->Filter->SetArrayTransport(
       "Gradients", vtkDifferentiableHomeomorphism::GRADIENT_TRANSPORT);
     // 2 tuples are right for the cells, and wrong for the points.
-    for (vtkDataSetAttributes* attributes : std::initializer_list<vtkDataSetAttributes*>{
-           data->GetPointData(), data->GetCellData() })
+    for (vtkDataSetAttributes* attributes :
+      std::initializer_list<vtkDataSetAttributes*>{ data->GetPointData(), data->GetCellData() })
     {
       attributes->AddArray(vectors);
       attributes->AddArray(normals);
@@ -324,8 +325,8 @@ TEST_F(Doubling, ArraysOfAnotherLengthOnImagesPassUntouched)
 
 /// Ids of points that do not exist: just past the end, negative, and so far off that reading there
 /// cannot but crash.
-const std::vector<vtkIdType> NoPoints{ 6, 7, -1, -1000, vtkIdType(1) << 44,
-  -(vtkIdType(1) << 44), std::numeric_limits<vtkIdType>::max() };
+const std::vector<vtkIdType> NoPoints{ 6, 7, -1, -1000, vtkIdType(1) << 44, -(vtkIdType(1) << 44),
+  std::numeric_limits<vtkIdType>::max() };
 
 void ExpectCorruptCellHandled(vtkPointSet* output)
 {
@@ -414,8 +415,8 @@ TEST_F(Doubling, MeshesWithPointsThatDoNotExistAreRefused)
     filter->SetSourceData(pair.Source);
     filter->SetTargetData(pair.Target);
     filter->Update();
-    EXPECT_NE(told.Error().find("1 triangle of the source (cell 3) refers to points"),
-      std::string::npos)
+    EXPECT_NE(
+      told.Error().find("1 triangle of the source (cell 3) refers to points"), std::string::npos)
       << told.Error();
   }
 }
@@ -468,9 +469,9 @@ TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
     ASSERT_NE(result->GetTensors(), nullptr);
     EXPECT_NEAR(result->GetVectors()->GetComponent(0, 0), 2.0, 1e-13);
     EXPECT_NEAR(result->GetTensors()->GetComponent(0, 0), 4.0, 1e-13);
-    EXPECT_NEAR(std::hypot(result->GetNormals()->GetComponent(0, 0),
-                  result->GetNormals()->GetComponent(0, 1),
-                  result->GetNormals()->GetComponent(0, 2)),
+    EXPECT_NEAR(
+      std::hypot(result->GetNormals()->GetComponent(0, 0), result->GetNormals()->GetComponent(0, 1),
+        result->GetNormals()->GetComponent(0, 2)),
       1.0, 1e-13);
     // And the input's are as they were.
     EXPECT_EQ(input->GetNumberOfArrays(), arrays);
@@ -580,7 +581,8 @@ TEST_F(Doubling, PiecesOfAllOutputsTogether)
   Counts whole;
   for (int port = 0; port < 3; ++port)
   {
-    whole.push_back(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells());
+    whole.push_back(
+      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells());
   }
   Counts sums(3, 0);
   for (int piece = 0; piece < 2; ++piece)
@@ -595,8 +597,8 @@ TEST_F(Doubling, PiecesOfAllOutputsTogether)
 
 TEST_F(Doubling, PiecesAskedOfTheFirstOutputSettleTheOthers)
 {
-  // UpdatePiece asks for a piece of output 0. What the same execution puts into the others is marked as
-  // the same piece, so it must be that.
+  // UpdatePiece asks for a piece of output 0. What the same execution puts into the others is
+  // marked as the same piece, so it must be that.
   for (const bool ownData : { false, true })
   {
     SCOPED_TRACE(ownData);
@@ -648,7 +650,8 @@ std::string Message(
 
 TEST(CellIdsInMessages, TrianglesWithoutArea)
 {
-  const auto flatten = [](vtkPolyData* mesh) {
+  const auto flatten = [](vtkPolyData* mesh)
+  {
     // Point 2, which triangle 2 (points 1, 2, 5) has for its own, into the opposite edge.
     double a[3];
     double b[3];
@@ -669,9 +672,8 @@ TEST(CellIdsInMessages, TrianglesWithoutArea)
 
 TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
 {
-  const auto spoil = [](vtkPolyData* mesh) {
-    mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
-  };
+  const auto spoil = [](vtkPolyData* mesh)
+  { mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0); };
   // Point 2 is a corner of triangle 2 alone.
   EXPECT_NE(Message([&](const MeshPair& pair) { spoil(pair.Source); })
               .find("1 triangle of the source (cell 3) has a coordinate that is not finite"),
@@ -681,8 +683,8 @@ TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
     std::string::npos);
 }
 
-/// What is said of three triangles that have no point in common, the last two of which lie on top of each
-/// other in one of the meshes.
+/// What is said of three triangles that have no point in common, the last two of which lie on top
+/// of each other in one of the meshes.
 std::string OverlapMessage(bool inTarget)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 3, 4, 5 }, { 6, 7, 8 } };
@@ -707,18 +709,19 @@ std::string OverlapMessage(bool inTarget)
 
 TEST(CellIdsInMessages, TrianglesThatOverlap)
 {
-  EXPECT_NE(OverlapMessage(false).find("2 triangles of the source (cells 2, 3) overlap"),
-    std::string::npos)
+  EXPECT_NE(
+    OverlapMessage(false).find("2 triangles of the source (cells 2, 3) overlap"), std::string::npos)
     << OverlapMessage(false);
-  EXPECT_NE(OverlapMessage(true).find("2 triangles of the target (cells 6, 7) overlap"),
-    std::string::npos)
+  EXPECT_NE(
+    OverlapMessage(true).find("2 triangles of the target (cells 6, 7) overlap"), std::string::npos)
     << OverlapMessage(true);
 }
 
 TEST(CellIdsInMessages, DiscordantTriangles)
 {
   // Corner 2, of triangle 2 alone, pulled far out: its foot on the opposite edge leaves that edge.
-  const auto pull = [](vtkPolyData* mesh) {
+  const auto pull = [](vtkPolyData* mesh)
+  {
     double p[3];
     mesh->GetPoint(2, p);
     mesh->GetPoints()->SetPoint(2, 4.0 * p[0], p[1], 0.0);
@@ -734,7 +737,8 @@ TEST(CellIdsInMessages, DiscordantTriangles)
 
 TEST(CellIdsInMessages, CellsThatAreNotTriangles)
 {
-  const auto add = [](vtkPolyData* mesh) {
+  const auto add = [](vtkPolyData* mesh)
+  {
     const vtkIdType square[] = { 0, 1, 4, 3 };
     mesh->GetPolys()->InsertNextCell(4, square);
   };

@@ -29,8 +29,8 @@ constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 constexpr int Systems[] = { vtkDifferentiableHomeomorphism::LINEAR,
   vtkDifferentiableHomeomorphism::CONTOUR, vtkDifferentiableHomeomorphism::SMOOTH };
 
-Point Combine(const Point& origin, double x, const Point& along, double y = 0.0,
-  const Point& across = {})
+Point Combine(
+  const Point& origin, double x, const Point& along, double y = 0.0, const Point& across = {})
 {
   Point result;
   for (int k = 0; k < 3; ++k)
@@ -111,8 +111,7 @@ vtkSmartPointer<vtkPolyData> InPlane(vtkPolyData* mesh, const Plane& plane)
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
   {
     const Point p = PointOf(mesh, i);
-    result->GetPoints()->SetPoint(
-      i, Combine(plane.Origin, p[0], plane.U, p[1], plane.V).data());
+    result->GetPoints()->SetPoint(i, Combine(plane.Origin, p[0], plane.U, p[1], plane.V).data());
   }
   return result;
 }
@@ -168,8 +167,8 @@ struct Mapped
 
   bool AllValid() const
   {
-    return !this->Valid.empty() && std::all_of(this->Valid.begin(), this->Valid.end(),
-             [](bool valid) { return valid; });
+    return !this->Valid.empty() &&
+      std::all_of(this->Valid.begin(), this->Valid.end(), [](bool valid) { return valid; });
   }
 };
 
@@ -239,8 +238,8 @@ vtkSmartPointer<vtkPolyData> MakeHalfTube(double radius)
 
 TEST(ThinSurfaces, AHalfTubeIsNoPlane)
 {
-  // Flattened, its height would pass unchanged and the ratio of areas would be about 2 only where it is
-  // steep. The tolerance is what a float's last place is to the smallest edge.
+  // Flattened, its height would pass unchanged and the ratio of areas would be about 2 only where
+  // it is steep. The tolerance is what a float's last place is to the smallest edge.
   for (const double radius : { 2e-4, 3e-4, 4.5e-4, 6e-4 })
   {
     const MeshPair pair{ MakeHalfTube(radius), MakeHalfTube(2.0 * radius) };
@@ -250,8 +249,7 @@ TEST(ThinSurfaces, AHalfTubeIsNoPlane)
       std::vector<Point> places = PointsOf(pair.Source);
       const std::vector<Point> inside = PointsInTriangles(pair.Source, InsideWeights);
       places.insert(places.end(), inside.begin(), inside.end());
-      const Mapped mapped =
-        MapData(pair, AsFloats(MakeMesh(places, {})), { system });
+      const Mapped mapped = MapData(pair, AsFloats(MakeMesh(places, {})), { system });
       ASSERT_TRUE(mapped.AllValid()) << "radius " << radius;
       for (std::size_t i = 0; i < places.size(); ++i)
       {
@@ -289,8 +287,8 @@ TEST(ThinSurfaces, RoundedPlanesStayPlanes)
 // Which side is up.
 
 /// Maps points at heights over one plane, and expects them at the same heights over the other.
-void ExpectHeightsKept(const MeshPair& pair, const Plane& from, const Plane& to, int system,
-  bool inverse)
+void ExpectHeightsKept(
+  const MeshPair& pair, const Plane& from, const Plane& to, int system, bool inverse)
 {
   const std::vector<double> heights{ 0.0, 0.25, -0.25, 3.0, -7.5 };
   std::vector<Point> places;
@@ -308,10 +306,9 @@ void ExpectHeightsKept(const MeshPair& pair, const Plane& from, const Plane& to,
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     const double height = heights[i % heights.size()];
-    ASSERT_NEAR(
-      Dot(Combine(mapped.Points[i], -1.0, to.Origin), to.Normal), height, rounding);
-    // The image is above its foot's image, which is the first of these heights. The foot itself is known
-    // to rounding, and what is made of it depends on where it is.
+    ASSERT_NEAR(Dot(Combine(mapped.Points[i], -1.0, to.Origin), to.Normal), height, rounding);
+    // The image is above its foot's image, which is the first of these heights. The foot itself is
+    // known to rounding, and what is made of it depends on where it is.
     const Point& foot = mapped.Points[i - i % heights.size()];
     ASSERT_LT(Distance(mapped.Points[i], Combine(foot, height, to.Normal)), 1e3 * rounding);
     ASSERT_GT(mapped.Determinants[i], 0.0);
@@ -325,15 +322,14 @@ void ExpectHeightsKept(const MeshPair& pair, const Plane& from, const Plane& to,
   }
 }
 
-void ExpectHeightsKept(
-  const MeshPair& pair, const Plane& source, const Plane& target, int system)
+void ExpectHeightsKept(const MeshPair& pair, const Plane& source, const Plane& target, int system)
 {
   ExpectHeightsKept(pair, source, target, system, false);
   ExpectHeightsKept(pair, target, source, system, true);
 }
 
-/// A pair in the xy plane, each mesh turned, scaled and moved at random, so that the points that tell
-/// the plane are nowhere the same. All triangles keep their orientation.
+/// A pair in the xy plane, each mesh turned, scaled and moved at random, so that the points that
+/// tell the plane are nowhere the same. All triangles keep their orientation.
 MeshPair MakeScatteredPair(int n, std::mt19937_64& generator)
 {
   std::uniform_real_distribution<double> random(-1.0, 1.0);
@@ -367,8 +363,8 @@ TEST(TiltedPlanes, TiesBetweenAxesDoNotFlipHeights)
     SCOPED_TRACE(round);
     // The plane y = x + 0.3 every other time.
     const Point normal = round % 2 == 0 ? normals[0] : normals[round / 2 % normals.size()];
-    const Plane plane = PlaneWithNormal({ 0.0, 0.3, 0.0 }, normal,
-      { random(generator), random(generator), random(generator) });
+    const Plane plane = PlaneWithNormal(
+      { 0.0, 0.3, 0.0 }, normal, { random(generator), random(generator), random(generator) });
     const MeshPair flat = MakeScatteredPair(2, generator);
     const MeshPair pair{ InPlane(flat.Source, plane), InPlane(flat.Target, plane) };
     ExpectHeightsKept(pair, plane, plane, Systems[round % 3]);
@@ -407,8 +403,8 @@ TEST(TiltedPlanes, ThePlaneWhereYIsXPlusThreeTenths)
     ASSERT_TRUE(mapped.AllValid()) << round;
     for (std::size_t i = 0; i < places.size(); ++i)
     {
-      ASSERT_NEAR(Dot(Combine(mapped.Points[i], -1.0, { 0.0, 0.3, 0.0 }), normal), heights[i],
-        64.0 * Epsilon)
+      ASSERT_NEAR(
+        Dot(Combine(mapped.Points[i], -1.0, { 0.0, 0.3, 0.0 }), normal), heights[i], 64.0 * Epsilon)
         << round;
       ASSERT_GT(mapped.Determinants[i], 0.0) << round;
     }
@@ -428,8 +424,8 @@ TEST(TiltedPlanes, ThePlaneWhereYIsXPlusThreeTenths)
 
 TEST(TiltedPlanes, ARotatedTargetKeepsSidesUpToARightAngle)
 {
-  // The rotated normal's largest component often has another sign or axis: the target's side must come
-  // from the source's.
+  // The rotated normal's largest component often has another sign or axis: the target's side must
+  // come from the source's.
   std::mt19937_64 generator(19);
   std::uniform_real_distribution<double> angle(0.0, vtkMath::RadiansFromDegrees(89.0));
   for (int round = 0; round < 200; ++round)
@@ -532,8 +528,8 @@ TEST(TiltedPlanes, TheTransformKeepsSidesToo)
       : PlaneWithNormal({ 0.1, 0.2, -0.3 }, RandomUnit(generator), RandomUnit(generator));
     const Point axis = RandomUnit(generator);
     const double turn = round % 2 == 0 ? 0.0 : angle(generator);
-    const Plane target{ source.Origin, Turned(source.U, axis, turn),
-      Turned(source.V, axis, turn), Turned(source.Normal, axis, turn) };
+    const Plane target{ source.Origin, Turned(source.U, axis, turn), Turned(source.V, axis, turn),
+      Turned(source.Normal, axis, turn) };
     const auto sourceMesh = InPlane(flat.Source, source);
     const auto targetMesh = InPlane(flat.Target, target);
     const vtkNew<vtkHomeomorphismTransform> transform;
@@ -589,8 +585,7 @@ TEST(TiltedPlanes, CornersGoToTheStoredCorners)
     const MeshPair pair{ InPlane(flat.Source, source), InPlane(flat.Target, target) };
     const Options forward{ Systems[round % 3] };
     const Options backward{ Systems[round % 3], 0.0, true };
-    ASSERT_EQ(
-      CountDifferent(MapData(pair, pair.Source, forward).Points, PointsOf(pair.Target)), 0);
+    ASSERT_EQ(CountDifferent(MapData(pair, pair.Source, forward).Points, PointsOf(pair.Target)), 0);
     ASSERT_EQ(
       CountDifferent(MapData(pair, pair.Target, backward).Points, PointsOf(pair.Source)), 0);
   }
@@ -659,8 +654,8 @@ double DistanceFromMesh(vtkPolyData* mesh, const Point& p)
   return least;
 }
 
-void ExpectLandingOn(const MeshPair& pair, const std::vector<Point>& places, double tolerance,
-  bool inverse = false)
+void ExpectLandingOn(
+  const MeshPair& pair, const std::vector<Point>& places, double tolerance, bool inverse = false)
 {
   vtkPolyData* goal = inverse ? pair.Source : pair.Target;
   for (const int system : Systems)
@@ -692,8 +687,7 @@ TEST(BesideSurfaces, PointsWithinTheToleranceLandOnTheOtherSurface)
   for (const double height : { 0.05, -0.05 })
   {
     ExpectLandingOn(pair, Raised(PointsInTriangles(pair.Source, InsideWeights), height), 0.1);
-    ExpectLandingOn(
-      pair, Raised(PointsInTriangles(pair.Target, InsideWeights), height), 0.1, true);
+    ExpectLandingOn(pair, Raised(PointsInTriangles(pair.Target, InsideWeights), height), 0.1, true);
   }
 }
 
@@ -704,8 +698,7 @@ TEST(BesideSurfaces, PointsBesideAPlaneLandOnTheSurface)
   for (const double height : { 0.05, -0.05 })
   {
     ExpectLandingOn(pair, Raised(PointsInTriangles(pair.Source, InsideWeights), height), 0.1);
-    ExpectLandingOn(
-      pair, Raised(PointsInTriangles(pair.Target, InsideWeights), height), 0.1, true);
+    ExpectLandingOn(pair, Raised(PointsInTriangles(pair.Target, InsideWeights), height), 0.1, true);
   }
 }
 

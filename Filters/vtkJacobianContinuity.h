@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkJacobianContinuity
+ * @brief   measure whether a map is differentiable across the edges of a triangulation
+ *
+ * vtkJacobianContinuity takes a triangulation (input port 0) and a map of its domain, and tells for
+ * each interior edge whether the map's Jacobian is the same on both sides. The map is either any
+ * vtkAbstractTransform (SetTransform; the triangulation must then be planar), or the homeomorphism onto
+ * a second triangulation with the same triangles (input port 1), planar or a surface in 3-space; on
+ * surfaces the two sides are compared after unfolding them about the edge.
+ *
+ * The map is only evaluated, never looked into: derivatives are one-sided differences over halving
+ * steps, extrapolated to step 0 (Richardson), with a bound on their error from how the extrapolations
+ * disagree and from the rounding of the map's values. Steps are proportions of the triangles, so
+ * nothing depends on the units.
+ *
+ * Output port 0 has a polyline through the sample points of each interior edge, from one of its
+ * vertices to the other, with these cell arrays (double unless it says otherwise):
+ *
+ * - `JacobianJump`: norm of the difference of the two Jacobians over the norm of the Jacobian, the
+ *   largest over the edge's samples; the arrays below are for the sample where it is largest;
+ * - `JacobianJumpError`: bound on the error of the estimate, the largest over the samples;
+ * - `JacobianJumpExact`: the same jump in closed form, if the map is the homeomorphism onto the target,
+ *   or a vtkHomeomorphismTransform whose source has the triangulation's own vtkPoints; else NaN;
+ * - `NormalJump`, `TangentialJump`: the jump's parts across the edge's image and along it;
+ * - `AngleJump` (degrees) and `StretchJump`: the angle between the images of the direction across the
+ *   edge on the two sides, and the ratio of the longer to the shorter, less 1;
+ * - `ConvergenceOrder`: the exponent with which the difference of the plain quotients on the two sides
+ *   shrinks with the step, 1 for a differentiable map, 0 for a kink; NaN where it is all rounding;
+ * - `Verdict` (int): DIFFERENTIABLE, KINK or UNDECIDED. A kink is a jump larger than Resolution that
+ *   stands out from its error bound; a map is called differentiable where the jump, its error bound
+ *   added, is below Resolution;
+ * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles;
+ * - with SecondDerivatives, `SecondDerivativeJump`, `SecondDerivativeJumpError` (times the reach of the
+ *   steps over the norm of the Jacobian) and `SecondDerivativeVerdict` (int): the same for the second
+ *   derivative across the edge.
+ *
+ * The point arrays `JacobianJump`, `JacobianJumpError` and `JacobianJumpExact` have the values at the
+ * samples (NaN at the vertices). Boundary edges have no other side, so no jump, and are not part of the
+ * output; GetNumberOfBoundaryEdges counts them.
+ *
+ * Output port 1 is the triangulation with a cell array and a point array `JacobianJump`: the largest of
+ * the triangle's interior edges, and of the edges at the point; 0 where there is none.
+ *
+ * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The
+ * transform must allow concurrent calls once updated, as VTK's do.
+ *
+ * @sa vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform
+ */
+
+#ifndef vtkJacobianContinuity_h
+#define vtkJacobianContinuity_h
+
+#include "vtkFiltersHomeomorphismModule.h" // for the export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // for the internals
+
+class vtkAbstractTransform;
+
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkJacobianContinuity : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkJacobianContinuity* New();
+  vtkTypeMacro(vtkJacobianContinuity, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// What is concluded about an edge.
+  enum Verdicts
+  {
+    DIFFERENTIABLE = 0,
+    KINK = 1,
+    UNDECIDED = 2
+  };
+
+  /// The coordinate systems; see vtkDifferentiableHomeomorphism.
+  enum CoordinateSystems
+  {
+    LINEAR = 0,
+    CONTOUR = 1,
+    SMOOTH = 2
+  };
+
+  /// Where the contours of the Contour system start.
+  enum CenterPoints
+  {
+    CENTROID = 0,
+    INCENTER = 1
+  };
+
+  /// What becomes of discordant triangles in the Contour system.
+  enum DiscordantTrianglesModes
+  {
+    REFUSE = 0,
+    CARRY_BY_LINEAR = 1
+  };
+
+  ///@{
+  /// The triangulation, input port 0.
+  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
+  void SetSourceData(vtkPolyData* source);
+  ///@}
+
+  ///@{
+  /// The target of the homeomorphism to be measured, input port 1; not used if there is a transform.
+  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetTargetData(vtkPolyData* target);
+  ///@}
+
+  ///@{
+  /// The map to be measured, if it is not the homeomorphism onto the target.
+  virtual void SetTransform(vtkAbstractTransform* transform);
+  vtkGetObjectMacro(Transform, vtkAbstractTransform);
+  ///@}
+
+  ///@{
+  /// Of the homeomorphism onto the target: LINEAR, CONTOUR or SMOOTH (default), and how Contour is to
+  /// be understood. See vtkDifferentiableHomeomorphism.
+  vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
+  vtkGetMacro(CoordinateSystem, int);
+  vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
+  vtkGetMacro(CenterPoint, int);
+  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
+  vtkGetMacro(DiscordantTriangles, int);
+  vtkSetMacro(MaskInvalidTriangles, bool);
+  vtkGetMacro(MaskInvalidTriangles, bool);
+  vtkBooleanMacro(MaskInvalidTriangles, bool);
+  ///@}
+
+  ///@{
+  /// Number of points of an edge at which the jump is estimated, evenly spaced. 5 by default, from 1.
+  vtkSetClampMacro(SamplesPerEdge, int, 1, 1000);
+  vtkGetMacro(SamplesPerEdge, int);
+  ///@}
+
+  ///@{
+  /// The relative jump up to which a map counts as differentiable; a thousand times that for second
+  /// derivatives. 1e-7 by default; estimates are good to 1e-9 as a rule.
+  vtkSetClampMacro(Resolution, double, 0.0, 1.0);
+  vtkGetMacro(Resolution, double);
+  ///@}
+
+  ///@{
+  /// Whether second derivatives across the edges are compared, too. Off by default.
+  vtkSetMacro(SecondDerivatives, bool);
+  vtkGetMacro(SecondDerivatives, bool);
+  vtkBooleanMacro(SecondDerivatives, bool);
+  ///@}
+
+  ///@{
+  /// What the last execution found.
+  vtkGetMacro(NumberOfBoundaryEdges, vtkIdType);
+  vtkGetMacro(NumberOfDifferentiableEdges, vtkIdType);
+  vtkGetMacro(NumberOfKinks, vtkIdType);
+  vtkGetMacro(NumberOfUndecidedEdges, vtkIdType);
+  vtkGetMacro(LargestJump, double);
+  ///@}
+
+  /// Includes the transform's.
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkJacobianContinuity();
+  ~vtkJacobianContinuity() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  vtkAbstractTransform* Transform = nullptr;
+  int CoordinateSystem = SMOOTH;
+  int CenterPoint = CENTROID;
+  int DiscordantTriangles = REFUSE;
+  bool MaskInvalidTriangles = false;
+  int SamplesPerEdge = 5;
+  double Resolution = 1e-7;
+  bool SecondDerivatives = false;
+  vtkIdType NumberOfBoundaryEdges = 0;
+  vtkIdType NumberOfDifferentiableEdges = 0;
+  vtkIdType NumberOfKinks = 0;
+  vtkIdType NumberOfUndecidedEdges = 0;
+  double LargestJump = 0.0;
+
+private:
+  vtkJacobianContinuity(const vtkJacobianContinuity&) = delete;
+  void operator=(const vtkJacobianContinuity&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

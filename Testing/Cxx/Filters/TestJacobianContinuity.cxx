@@ -1,0 +1,389 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Whether the instrument sees kinks where mathematics puts them, and none elsewhere.
+
+#include "TestMeshes.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkHomeomorphismTransform.h"
+#include "vtkJacobianContinuity.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkThinPlateSplineTransform.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <set>
+#include <vector>
+
+namespace
+{
+
+using namespace test_meshes;
+
+/// A map of the plane that is smooth but for the line x = 7, from where on Amount times the distance to
+/// the power Exponent is added.
+class PiecewiseMap : public vtkWarpTransform
+{
+public:
+  static PiecewiseMap* New();
+  vtkTypeMacro(PiecewiseMap, vtkWarpTransform);
+
+  double Amount = 0.0;
+  int Exponent = 1;
+
+  vtkAbstractTransform* MakeTransform() override { return PiecewiseMap::New(); }
+
+protected:
+  template <typename Real>
+  void Map(const Real in[3], Real out[3]) const
+  {
+    const double x = in[0];
+    const double y = in[1];
+    const double bend = x > 7.0 ? this->Amount * std::pow(x - 7.0, this->Exponent) : 0.0;
+    out[0] = static_cast<Real>(x + bend + 0.05 * std::sin(y));
+    out[1] = static_cast<Real>(y + bend + 0.1 * std::cos(x));
+    out[2] = in[2];
+  }
+  void ForwardTransformPoint(const float in[3], float out[3]) override { this->Map(in, out); }
+  void ForwardTransformPoint(const double in[3], double out[3]) override { this->Map(in, out); }
+  // Not used: the instrument evaluates, and never asks for derivatives.
+  void ForwardTransformDerivative(const float in[3], float out[3], float d[3][3]) override
+  {
+    this->Map(in, out);
+    std::fill_n(&d[0][0], 9, std::numeric_limits<float>::quiet_NaN());
+  }
+  void ForwardTransformDerivative(const double in[3], double out[3], double d[3][3]) override
+  {
+    this->Map(in, out);
+    std::fill_n(&d[0][0], 9, std::numeric_limits<double>::quiet_NaN());
+  }
+};
+vtkStandardNewMacro(PiecewiseMap);
+
+vtkSmartPointer<vtkPolyData> RegularGrid(int n)
+{
+  return MakeMesh(GridPoints(n, 0, 0.0), GridTriangles(n));
+}
+
+vtkSmartPointer<vtkJacobianContinuity> Measure(
+  vtkPolyData* source, vtkPolyData* target, int coordinateSystem)
+{
+  auto filter = vtkSmartPointer<vtkJacobianContinuity>::New();
+  filter->SetSourceData(source);
+  filter->SetTargetData(target);
+  filter->SetCoordinateSystem(coordinateSystem);
+  filter->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
+  filter->Update();
+  return filter;
+}
+
+vtkSmartPointer<vtkJacobianContinuity> Measure(
+  vtkPolyData* source, vtkAbstractTransform* transform, bool secondDerivatives = false)
+{
+  auto filter = vtkSmartPointer<vtkJacobianContinuity>::New();
+  filter->SetSourceData(source);
+  filter->SetTransform(transform);
+  filter->SetSecondDerivatives(secondDerivatives);
+  filter->Update();
+  return filter;
+}
+
+vtkDataArray* EdgeArray(vtkJacobianContinuity* filter, const char* name)
+{
+  return filter->GetOutput()->GetCellData()->GetArray(name);
+}
+
+vtkDataArray* SampleArray(vtkJacobianContinuity* filter, const char* name)
+{
+  return filter->GetOutput()->GetPointData()->GetArray(name);
+}
+
+/// Every estimate is within its own bound of the closed form. Returns the median of the bounds over the
+/// jumps, where there is one.
+double ExpectAgreementWithClosedForm(vtkJacobianContinuity* filter)
+{
+  vtkDataArray* jump = SampleArray(filter, "JacobianJump");
+  vtkDataArray* error = SampleArray(filter, "JacobianJumpError");
+  vtkDataArray* exact = SampleArray(filter, "JacobianJumpExact");
+  std::vector<double> relative;
+  vtkIdType beyond = 0;
+  for (vtkIdType i = 0; i < jump->GetNumberOfTuples(); ++i)
+  {
+    if (std::isnan(jump->GetTuple1(i)))
+    {
+      continue;
+    }
+    const double difference = std::abs(jump->GetTuple1(i) - exact->GetTuple1(i));
+    beyond += !(difference <= error->GetTuple1(i));
+    if (exact->GetTuple1(i) > 1e-3)
+    {
+      relative.push_back(error->GetTuple1(i) / exact->GetTuple1(i));
+    }
+  }
+  EXPECT_EQ(beyond, 0) << "samples whose estimate is off by more than its bound";
+  if (relative.empty())
+  {
+    return 0.0;
+  }
+  std::nth_element(
+    relative.begin(), relative.begin() + static_cast<long>(relative.size() / 2), relative.end());
+  return relative[relative.size() / 2];
+}
+
+void ExpectVerdictsOfAllSystems(const MeshPair& pair)
+{
+  for (const int system : { vtkJacobianContinuity::LINEAR, vtkJacobianContinuity::CONTOUR,
+         vtkJacobianContinuity::SMOOTH })
+  {
+    SCOPED_TRACE("system " + std::to_string(system));
+    const auto filter = Measure(pair.Source, pair.Target, system);
+    const vtkIdType edges = filter->GetOutput()->GetNumberOfCells();
+    ASSERT_GT(edges, 0);
+    EXPECT_LT(ExpectAgreementWithClosedForm(filter), 1e-6);
+    vtkDataArray* exact = EdgeArray(filter, "JacobianJumpExact");
+    vtkDataArray* verdict = EdgeArray(filter, "Verdict");
+    vtkDataArray* order = EdgeArray(filter, "ConvergenceOrder");
+    vtkIdType wrong = 0;
+    for (vtkIdType i = 0; i < edges; ++i)
+    {
+      const int expected = exact->GetTuple1(i) > filter->GetResolution()
+        ? vtkJacobianContinuity::KINK
+        : vtkJacobianContinuity::DIFFERENTIABLE;
+      const auto found = static_cast<int>(verdict->GetTuple1(i));
+      wrong += found != expected && found != vtkJacobianContinuity::UNDECIDED;
+      if (found == vtkJacobianContinuity::KINK)
+      {
+        EXPECT_NEAR(order->GetTuple1(i), 0.0, 0.3);
+      }
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_LE(filter->GetNumberOfUndecidedEdges(), edges / 100);
+    EXPECT_EQ(filter->GetNumberOfDifferentiableEdges() + filter->GetNumberOfKinks() +
+        filter->GetNumberOfUndecidedEdges(),
+      edges);
+    if (system == vtkJacobianContinuity::SMOOTH)
+    {
+      EXPECT_EQ(filter->GetNumberOfKinks(), 0);
+    }
+    else
+    {
+      EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 0);
+    }
+    std::cout << "system " << system << ": " << edges << " edges, "
+              << filter->GetNumberOfUndecidedEdges() << " undecided\n";
+  }
+}
+
+TEST(JacobianContinuity, PlanarPairs)
+{
+  ExpectVerdictsOfAllSystems(MakePlanarPair(30, 3));
+}
+
+TEST(JacobianContinuity, ClosedSurfaces)
+{
+  ExpectVerdictsOfAllSystems(MakeClosedPair(3, 5));
+}
+
+TEST(JacobianContinuity, SimilarMeshesHaveNoJump)
+{
+  const std::vector<Point> points = GridPoints(10, 4, 0.2);
+  std::vector<Point> turned = points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    turned[i] = { 3.0 * points[i][0] - 4.0 * points[i][1] + 1.0,
+      4.0 * points[i][0] + 3.0 * points[i][1], 0.0 };
+  }
+  for (int system = 0; system < 3; ++system)
+  {
+    const auto filter = Measure(
+      MakeMesh(points, GridTriangles(10)), MakeMesh(turned, GridTriangles(10)), system);
+    EXPECT_EQ(
+      filter->GetNumberOfDifferentiableEdges(), filter->GetOutput()->GetNumberOfCells());
+  }
+}
+
+TEST(JacobianContinuity, OurTransformIsAnyTransform)
+{
+  const MeshPair pair = MakePlanarPair(10, 6);
+  vtkNew<vtkHomeomorphismTransform> transform;
+  transform->SetSource(pair.Source);
+  transform->SetTarget(pair.Target);
+  for (int system = 0; system < 3; ++system)
+  {
+    transform->SetCoordinateSystem(system);
+    transform->SetDiscordantTriangles(vtkHomeomorphismTransform::CARRY_BY_LINEAR);
+    const auto byTransform = Measure(pair.Source, transform);
+    const auto byTarget = Measure(pair.Source, pair.Target, system);
+    EXPECT_EQ(byTransform->GetNumberOfKinks(), byTarget->GetNumberOfKinks());
+    ExpectAgreementWithClosedForm(byTransform);
+    // Measured on a copy of the mesh, nothing is known of the map but its values.
+    vtkNew<vtkPolyData> copy;
+    copy->DeepCopy(pair.Source);
+    const auto fromOutside = Measure(copy, transform);
+    EXPECT_EQ(fromOutside->GetNumberOfKinks(), byTarget->GetNumberOfKinks());
+    EXPECT_TRUE(std::isnan(EdgeArray(fromOutside, "JacobianJumpExact")->GetTuple1(0)));
+  }
+}
+
+TEST(JacobianContinuity, ThinPlateSplinesAreDifferentiable)
+{
+  const MeshPair pair = MakePlanarPair(15, 9);
+  vtkNew<vtkPoints> from;
+  vtkNew<vtkPoints> to;
+  for (vtkIdType i = 0; i < pair.Source->GetNumberOfPoints(); i += 11)
+  {
+    // Landmarks off the mesh's vertices, so that edges end anywhere.
+    double point[3];
+    pair.Source->GetPoint(i, point);
+    point[0] += 0.31;
+    from->InsertNextPoint(point);
+    pair.Target->GetPoint(i, point);
+    point[0] += 0.31;
+    to->InsertNextPoint(point);
+  }
+  vtkNew<vtkThinPlateSplineTransform> spline;
+  spline->SetSourceLandmarks(from);
+  spline->SetTargetLandmarks(to);
+  spline->SetBasisToR2LogR();
+  const auto filter = Measure(pair.Source, spline);
+  EXPECT_EQ(filter->GetNumberOfKinks(), 0);
+  EXPECT_LE(filter->GetNumberOfUndecidedEdges(), filter->GetOutput()->GetNumberOfCells() / 100);
+}
+
+/// The edges on the line x = 7 of a grid of n x n squares, and no others, should have the verdict.
+void ExpectKinksOnTheLineOnly(vtkJacobianContinuity* filter, const char* verdictName, int n)
+{
+  vtkDataArray* verdict = EdgeArray(filter, verdictName);
+  vtkIdType onLine = 0;
+  for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
+  {
+    double bounds[6];
+    filter->GetOutput()->GetCellBounds(i, bounds);
+    const bool isOnLine = bounds[0] == 7.0 && bounds[1] == 7.0;
+    onLine += isOnLine;
+    EXPECT_EQ(static_cast<int>(verdict->GetTuple1(i)),
+      isOnLine ? vtkJacobianContinuity::KINK : vtkJacobianContinuity::DIFFERENTIABLE);
+  }
+  EXPECT_EQ(onLine, n);
+}
+
+TEST(JacobianContinuity, SmallKinksAreSeen)
+{
+  vtkNew<PiecewiseMap> map;
+  map->Amount = 1e-6;
+  const auto filter = Measure(RegularGrid(14), map);
+  ExpectKinksOnTheLineOnly(filter, "Verdict", 14);
+}
+
+TEST(JacobianContinuity, OnceDifferentiableIsNotTwice)
+{
+  vtkNew<PiecewiseMap> map;
+  map->Amount = 0.1;
+  map->Exponent = 2;
+  const auto once = Measure(RegularGrid(14), map, true);
+  EXPECT_EQ(once->GetNumberOfKinks(), 0);
+  EXPECT_EQ(once->GetNumberOfUndecidedEdges(), 0);
+  ExpectKinksOnTheLineOnly(once, "SecondDerivativeVerdict", 14);
+
+  map->Exponent = 3;
+  map->Modified();
+  const auto twice = Measure(RegularGrid(14), map, true);
+  vtkDataArray* second = EdgeArray(twice, "SecondDerivativeVerdict");
+  for (vtkIdType i = 0; i < second->GetNumberOfTuples(); ++i)
+  {
+    EXPECT_EQ(second->GetTuple1(i), vtkJacobianContinuity::DIFFERENTIABLE);
+  }
+}
+
+TEST(JacobianContinuity, TheJumpIsTheOneOfAKnownMap)
+{
+  // Two squares, the second stretched along x by 1 + a and sheared by b: across the edge x = 1 the
+  // derivative in its direction goes from (1, 0) to (1 + a, b).
+  const double a = 0.5;
+  const double b = 0.25;
+  const std::vector<Triangle> triangles{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 } };
+  const auto source =
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 } },
+      triangles);
+  const auto target = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2 + a, b, 0 }, { 0, 1, 0 },
+                                 { 1, 1, 0 }, { 2 + a, 1 + b, 0 } },
+    triangles);
+  const auto filter = Measure(source, target, vtkJacobianContinuity::LINEAR);
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 3);
+  EXPECT_EQ(filter->GetNumberOfBoundaryEdges(), 6);
+  EXPECT_EQ(filter->GetNumberOfKinks(), 1);
+  const double norm = std::hypot(1.0, 0.5 * (1.0 + std::hypot(1.0 + a, b)));
+  for (vtkIdType i = 0; i < 3; ++i)
+  {
+    if (EdgeArray(filter, "Verdict")->GetTuple1(i) != vtkJacobianContinuity::KINK)
+    {
+      continue;
+    }
+    EXPECT_NEAR(EdgeArray(filter, "JacobianJump")->GetTuple1(i), std::hypot(a, b) / norm, 1e-9);
+    EXPECT_NEAR(EdgeArray(filter, "NormalJump")->GetTuple1(i), a / norm, 1e-9);
+    EXPECT_NEAR(EdgeArray(filter, "TangentialJump")->GetTuple1(i), b / norm, 1e-9);
+    EXPECT_NEAR(EdgeArray(filter, "AngleJump")->GetTuple1(i),
+      std::atan2(b, 1.0 + a) * 180.0 / std::acos(-1.0), 1e-7);
+    EXPECT_NEAR(
+      EdgeArray(filter, "StretchJump")->GetTuple1(i), std::hypot(1.0 + a, b) - 1.0, 1e-9);
+    double cells[2];
+    EdgeArray(filter, "EdgeTriangles")->GetTuple(i, cells);
+    EXPECT_EQ((std::set<double>{ cells[0], cells[1] }), (std::set<double>{ 0.0, 3.0 }));
+  }
+}
+
+TEST(JacobianContinuity, TrianglesAndPointsCarryTheLargestJump)
+{
+  const MeshPair pair = MakePlanarPair(6, 2);
+  const auto filter = Measure(pair.Source, pair.Target, vtkJacobianContinuity::LINEAR);
+  auto* colored = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
+  vtkDataArray* triangleJump = colored->GetCellData()->GetArray("JacobianJump");
+  vtkDataArray* pointJump = colored->GetPointData()->GetArray("JacobianJump");
+  std::vector<double> largest(colored->GetNumberOfCells(), 0.0);
+  for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
+  {
+    double cells[2];
+    EdgeArray(filter, "EdgeTriangles")->GetTuple(i, cells);
+    for (const double cell : cells)
+    {
+      double& value = largest[static_cast<std::size_t>(cell)];
+      value = std::max(value, EdgeArray(filter, "JacobianJump")->GetTuple1(i));
+    }
+  }
+  for (vtkIdType t = 0; t < colored->GetNumberOfCells(); ++t)
+  {
+    EXPECT_EQ(triangleJump->GetTuple1(t), largest[t]);
+  }
+  EXPECT_EQ(pointJump->GetRange()[1], filter->GetLargestJump());
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells() * 2 + filter->GetNumberOfBoundaryEdges(),
+    3 * pair.Source->GetNumberOfCells());
+}
+
+TEST(JacobianContinuity, NeedsAMap)
+{
+  vtkNew<vtkJacobianContinuity> filter;
+  filter->SetSourceData(RegularGrid(2));
+  Messages messages(filter.Get());
+  filter->Update();
+  EXPECT_NE(messages.Error().find("There is no map to measure"), std::string::npos);
+}
+
+TEST(JacobianContinuity, TransformsOfSurfacesAreRefused)
+{
+  vtkNew<PiecewiseMap> map;
+  vtkNew<vtkJacobianContinuity> filter;
+  filter->SetSourceData(MakeSheet(5, 1, 0.5));
+  filter->SetTransform(map);
+  Messages messages(filter.Get());
+  filter->Update();
+  EXPECT_NE(messages.Error().find("planar triangulation only"), std::string::npos);
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 0);
+}
+
+} // namespace
