@@ -4,7 +4,6 @@
 #include "EdgeCrossings.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace homeomorphism
 {
@@ -16,19 +15,9 @@ Vector3 Sum(const Vector3& a, double factor, const Vector3& b)
   return { a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2] };
 }
 
-double Dot3(const Vector3& a, const Vector3& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Vector3 Cross3(const Vector3& a, const Vector3& b)
-{
-  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
-}
-
 Vector3 Unit(const Vector3& a)
 {
-  const double length = std::hypot(a[0], a[1], a[2]);
+  const double length = Length(a);
   return { a[0] / length, a[1] / length, a[2] / length };
 }
 
@@ -40,7 +29,7 @@ Vector3 Opposite(const Vector3& a)
 /// The unit vector from an edge, with a unit tangent, towards a point beside it.
 Vector3 UnitInward(const Vector3& start, const Vector3& tangent, const Vector3& beside)
 {
-  const Vector3 d = Unit(Sum(beside, -1.0, start));
+  const Vector3 d = Unit(Difference(beside, start));
   return Unit(Sum(d, -Dot3(d, tangent), tangent));
 }
 
@@ -87,8 +76,8 @@ LineCrossing EdgeCrossings::GetCrossing(
   vtkIdType edgeIndex, double proportion, const MapUnderTest& evaluate) const
 {
   const InteriorEdge& edge = this->Edges[edgeIndex];
-  const Vector3 vector = Sum(edge.End, -1.0, edge.Start);
-  const double length = std::hypot(vector[0], vector[1], vector[2]);
+  const Vector3 vector = Difference(edge.End, edge.Start);
+  const double length = Length(vector);
   LineCrossing crossing;
   crossing.Point = Sum(edge.Start, proportion, vector);
   crossing.Tangent = Unit(vector);
@@ -99,7 +88,7 @@ LineCrossing EdgeCrossings::GetCrossing(
     crossing.Inward[side] = UnitInward(edge.Start, crossing.Tangent, apex);
     // Where the perpendicular leaves the triangle again: through the edge to the apex from the start,
     // or that from the end.
-    const Vector3 toApex = Sum(apex, -1.0, edge.Start);
+    const Vector3 toApex = Difference(apex, edge.Start);
     const double foot = Dot3(toApex, crossing.Tangent);
     const double height = Dot3(toApex, crossing.Inward[side]);
     const double along = proportion * length;

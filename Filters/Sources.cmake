@@ -42,7 +42,8 @@ set(mesh_headers
   Mesh/MeshValidation.h
   Mesh/PointLocation.h
   Mesh/Triangulation.h
-  Mesh/TriangulationPair.h)
+  Mesh/TriangulationPair.h
+  Mesh/Vector3.h)
 
 # What the VTK classes share.
 set(support_sources

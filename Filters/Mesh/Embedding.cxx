@@ -18,28 +18,6 @@ namespace homeomorphism
 namespace
 {
 
-Vector3 Difference(const Vector3& a, const Vector3& b)
-{
-  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-}
-
-double Dot3(const Vector3& a, const Vector3& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// Accurate in each component, so that a needle's normal is as good as any.
-Vector3 Cross3(const Vector3& a, const Vector3& b)
-{
-  return { DifferenceOfProducts(a[1], b[2], a[2], b[1]),
-    DifferenceOfProducts(a[2], b[0], a[0], b[2]), DifferenceOfProducts(a[0], b[1], a[1], b[0]) };
-}
-
-double Length(const Vector3& a)
-{
-  return std::hypot(a[0], a[1], a[2]);
-}
-
 /// As if computed with twice the precision (Ogita, Rump and Oishi 2005).
 double AccurateDot3(const Vector3& a, const Vector3& b)
 {
@@ -54,11 +32,6 @@ double AccurateDot3(const Vector3& a, const Vector3& b)
     sum = next;
   }
   return sum + lost;
-}
-
-Vector3 Scaled(const Vector3& a, double factor)
-{
-  return { a[0] * factor, a[1] * factor, a[2] * factor };
 }
 
 EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vector3& opposite)

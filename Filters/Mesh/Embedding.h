@@ -8,6 +8,7 @@
 #define homeomorphism_Embedding_h
 
 #include "Triangulation.h"
+#include "Vector3.h"
 
 #include "Kernel/Geometry.h"
 
@@ -19,9 +20,6 @@ class vtkPoints;
 
 namespace homeomorphism
 {
-
-/// A point or vector of 3-space.
-using Vector3 = std::array<double, 3>;
 
 /// A point of a triangle's own frame: in its plane, and the distance from the plane.
 struct FramePoint

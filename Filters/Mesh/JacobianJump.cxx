@@ -14,11 +14,6 @@ namespace homeomorphism
 namespace
 {
 
-double Length(const Vector3& a)
-{
-  return std::hypot(a[0], a[1], a[2]);
-}
-
 /// Components of a vector along three axes.
 Vector3 InAxes(const Vector3& v, const std::array<Vector3, 3>& axes)
 {

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file Vector3.h
+/// Points and vectors of 3-space.
+
+#ifndef homeomorphism_Vector3_h
+#define homeomorphism_Vector3_h
+
+#include "Kernel/Geometry.h"
+
+#include <array>
+#include <cmath>
+
+namespace homeomorphism
+{
+
+/// A point or vector of 3-space.
+using Vector3 = std::array<double, 3>;
+
+inline Vector3 Difference(const Vector3& a, const Vector3& b)
+{
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+}
+
+inline Vector3 Scaled(const Vector3& a, double factor)
+{
+  return { a[0] * factor, a[1] * factor, a[2] * factor };
+}
+
+inline double Length(const Vector3& a)
+{
+  return std::hypot(a[0], a[1], a[2]);
+}
+
+inline double Dot3(const Vector3& a, const Vector3& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Accurate in each component, so that a needle's normal is as good as any.
+inline Vector3 Cross3(const Vector3& a, const Vector3& b)
+{
+  return { DifferenceOfProducts(a[1], b[2], a[2], b[1]),
+    DifferenceOfProducts(a[2], b[0], a[0], b[2]), DifferenceOfProducts(a[0], b[1], a[1], b[0]) };
+}
+
+} // namespace homeomorphism
+
+#endif
