@@ -7,33 +7,6 @@
 
 namespace homeomorphism
 {
-namespace
-{
-
-Vector3 Sum(const Vector3& a, double factor, const Vector3& b)
-{
-  return { a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2] };
-}
-
-Vector3 Unit(const Vector3& a)
-{
-  const double length = Length(a);
-  return { a[0] / length, a[1] / length, a[2] / length };
-}
-
-Vector3 Opposite(const Vector3& a)
-{
-  return { -a[0], -a[1], -a[2] };
-}
-
-/// The unit vector from an edge, with a unit tangent, towards a point beside it.
-Vector3 UnitInward(const Vector3& start, const Vector3& tangent, const Vector3& beside)
-{
-  const Vector3 d = Unit(Difference(beside, start));
-  return Unit(Sum(d, -Dot3(d, tangent), tangent));
-}
-
-} // namespace
 
 EdgeCrossings::EdgeCrossings(const Homeomorphism& map)
   : Map(map)
@@ -44,23 +17,18 @@ EdgeCrossings::EdgeCrossings(const Homeomorphism& map)
     for (int k = 0; k < 3 && !topology.IsMasked(t); ++k)
     {
       const AcrossEdge across = topology.GetAcross(t, k);
-      if (across.Triangle < 0)
-      {
-        ++this->NumberOfBoundaryEdges;
-      }
-      if (across.Triangle <= t)
+      const bool boundary = across.Triangle < 0;
+      if (!boundary && across.Triangle <= t)
       {
         continue;
       }
       const Triangulation::Corners& corners = topology.GetCorners(t);
-      InteriorEdge edge;
+      MeshEdge edge;
       edge.Triangles = { t, across.Triangle };
-      edge.Cells = { topology.GetCellId(t), topology.GetCellId(across.Triangle) };
       edge.Points = { corners[NextCorner(k)], corners[PreviousCorner(k)] };
-      edge.Apexes = { corners[k], topology.GetCorners(across.Triangle)[across.Edge] };
-      edge.Start = this->GetPosition(Side::Source, edge.Points[0]);
-      edge.End = this->GetPosition(Side::Source, edge.Points[1]);
-      this->Edges.push_back(edge);
+      edge.Apexes = { corners[k],
+        boundary ? -1 : topology.GetCorners(across.Triangle)[across.Edge] };
+      (boundary ? this->BoundaryEdges : this->InteriorEdges).push_back(edge);
     }
   }
 }
@@ -73,22 +41,23 @@ Vector3 EdgeCrossings::GetPosition(Side side, std::int32_t point) const
 }
 
 LineCrossing EdgeCrossings::GetCrossing(
-  vtkIdType edgeIndex, double proportion, const MapUnderTest& evaluate) const
+  std::size_t edgeIndex, double proportion, const MapUnderTest& evaluate) const
 {
-  const InteriorEdge& edge = this->Edges[edgeIndex];
-  const Vector3 vector = Difference(edge.End, edge.Start);
+  const MeshEdge& edge = this->InteriorEdges[edgeIndex];
+  const Vector3 start = this->GetPosition(Side::Source, edge.Points[0]);
+  const Vector3 vector = Difference(this->GetPosition(Side::Source, edge.Points[1]), start);
   const double length = Length(vector);
   LineCrossing crossing;
-  crossing.Point = Sum(edge.Start, proportion, vector);
+  crossing.Point = Sum(start, proportion, vector);
   crossing.Tangent = Unit(vector);
   crossing.TangentReach = 0.5 * std::min(proportion, 1.0 - proportion) * length;
   for (int side = 0; side < 2; ++side)
   {
     const Vector3 apex = this->GetPosition(Side::Source, edge.Apexes[side]);
-    crossing.Inward[side] = UnitInward(edge.Start, crossing.Tangent, apex);
+    crossing.Inward[side] = UnitAcross(start, crossing.Tangent, apex);
     // Where the perpendicular leaves the triangle again: through the edge to the apex from the start,
     // or that from the end.
-    const Vector3 toApex = Difference(apex, edge.Start);
+    const Vector3 toApex = Difference(apex, start);
     const double foot = Dot3(toApex, crossing.Tangent);
     const double height = Dot3(toApex, crossing.Inward[side]);
     const double along = proportion * length;
@@ -104,43 +73,28 @@ LineCrossing EdgeCrossings::GetCrossing(
     crossing.Reach[side] = 0.5 * reach;
   }
 
-  std::array<std::array<Vector3, 3>, 2>& axes = crossing.ImageAxes;
-  if (this->Map.GetPair().HasTarget())
+  if (!this->Map.GetPair().HasTarget())
   {
-    const Vector3 start = this->GetPosition(Side::Target, edge.Points[0]);
-    const Vector3 tangent =
-      Unit(Sum(this->GetPosition(Side::Target, edge.Points[1]), -1.0, start));
-    for (int side = 0; side < 2; ++side)
-    {
-      const Vector3 inward =
-        UnitInward(start, tangent, this->GetPosition(Side::Target, edge.Apexes[side]));
-      const Vector3 normal = Cross3(tangent, inward);
-      axes[side] = { tangent, inward, side == 0 ? normal : Opposite(normal) };
-    }
+    FindImageAxes(evaluate, crossing);
     return crossing;
   }
-  // Any orthonormal axes do that both sides share: near the line's image and across it.
-  constexpr double small = 1.0 / 1024.0;
-  const auto imageOf = [&](const Vector3& direction, double step) {
-    Vector3 image{ JacobianJump::None, JacobianJump::None, JacobianJump::None };
-    evaluate(Sum(crossing.Point, step, direction), image);
-    return image;
-  };
-  const Vector3 here = imageOf(crossing.Tangent, 0.0);
-  const Vector3 tangent = Unit(
-    Sum(imageOf(crossing.Tangent, small * crossing.TangentReach), -1.0, here));
-  const Vector3 inward =
-    UnitInward(here, tangent, imageOf(crossing.Inward[0], small * crossing.Reach[0]));
-  const Vector3 normal = Cross3(tangent, inward);
-  axes[0] = { tangent, inward, normal };
-  axes[1] = { tangent, Opposite(inward), normal };
+  const Vector3 targetStart = this->GetPosition(Side::Target, edge.Points[0]);
+  const Vector3 tangent =
+    Unit(Difference(this->GetPosition(Side::Target, edge.Points[1]), targetStart));
+  for (int side = 0; side < 2; ++side)
+  {
+    const Vector3 inward =
+      UnitAcross(targetStart, tangent, this->GetPosition(Side::Target, edge.Apexes[side]));
+    const Vector3 normal = Cross3(tangent, inward);
+    crossing.ImageAxes[side] = { tangent, inward, side == 0 ? normal : Scaled(normal, -1.0) };
+  }
   return crossing;
 }
 
 JacobianJump EdgeCrossings::GetExactJump(
-  vtkIdType edgeIndex, const LineCrossing& crossing) const
+  std::size_t edgeIndex, const LineCrossing& crossing) const
 {
-  const InteriorEdge& edge = this->Edges[edgeIndex];
+  const MeshEdge& edge = this->InteriorEdges[edgeIndex];
   const Embedding& source = this->Map.GetPair().GetEmbedding(Side::Source);
   std::array<Vector3, 2> across;
   Vector3 along;
@@ -149,13 +103,9 @@ JacobianJump EdgeCrossings::GetExactJump(
     Location place;
     place.Triangle = edge.Triangles[side];
     place.Point = source.ToFrame(place.Triangle, source.ToWorking(crossing.Point.data()));
-    const std::array<double, 9> j = this->Map.GetJacobian(Side::Source, place).Matrix;
-    const auto image = [&j](const Vector3& v) -> Vector3 {
-      return { j[0] * v[0] + j[1] * v[1] + j[2] * v[2], j[3] * v[0] + j[4] * v[1] + j[5] * v[2],
-        j[6] * v[0] + j[7] * v[1] + j[8] * v[2] };
-    };
-    across[side] = image(crossing.Inward[side]);
-    along = image(crossing.Tangent);
+    const Jacobian jacobian = this->Map.GetJacobian(Side::Source, place);
+    across[side] = jacobian * crossing.Inward[side];
+    along = jacobian * crossing.Tangent;
   }
   return CompareDerivatives(crossing, across, along);
 }

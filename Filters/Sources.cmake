@@ -49,12 +49,18 @@ set(mesh_headers
 set(support_sources
   AttributeTransport.cxx
   CoordinateLines.cxx
-  EdgeCrossings.cxx)
+  EdgeCrossings.cxx
+  InnerLines.cxx
+  MeasuredPlaces.cxx
+  Stars.cxx)
 set(support_headers
   AttributeTransport.h
   CoordinateLines.h
   EdgeCrossings.h
-  FilterSupport.h)
+  FilterSupport.h
+  InnerLines.h
+  MeasuredPlaces.h
+  Stars.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results
 # would change from one machine to another.

@@ -3,14 +3,14 @@
 
 #include "vtkJacobianContinuity.h"
 
-#include "EdgeCrossings.h"
 #include "FilterSupport.h"
-#include "Mesh/JacobianJump.h"
+#include "MeasuredPlaces.h"
 
 #include "vtkAbstractTransform.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkErrorCode.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -40,39 +40,78 @@ public:
 namespace
 {
 
-/// What is known of one sample of an edge.
-struct Sample
-{
-  JacobianJump First;
-  JacobianJump Second;
-  double Exact = JacobianJump::None;
-};
+using Sample = MeasuredPlaces::Sample;
 
-/// Arrays of the lines' cells, one value an edge.
-class EdgeArrays
+static_assert(int(PlaceKind::Vertex) == vtkJacobianContinuity::VERTEX, "kinds of places");
+
+/// Cell arrays, one value a place.
+class PlaceArrays
 {
 public:
-  explicit EdgeArrays(vtkIdType edges, bool secondDerivatives)
-    : Edges(edges)
+  PlaceArrays(const MeasuredPlaces& places, bool secondDerivatives)
+    : Places(places)
   {
     for (const char* name : { "JacobianJump", "JacobianJumpError", "JacobianJumpExact",
            "NormalJump", "TangentialJump", "AngleJump", "StretchJump", "ConvergenceOrder" })
     {
       this->AddDoubles(name);
     }
-    this->Verdict = this->NewVerdict("Verdict");
+    this->Verdict = this->NewIntegers("Verdict");
+    this->Type = this->NewIntegers("PlaceType");
     if (secondDerivatives)
     {
       this->AddDoubles("SecondDerivativeJump");
       this->AddDoubles("SecondDerivativeJumpError");
-      this->SecondVerdict = this->NewVerdict("SecondDerivativeVerdict");
+      this->SecondVerdict = this->NewIntegers("SecondDerivativeVerdict");
     }
     this->Triangles->SetName("EdgeTriangles");
     this->Triangles->SetNumberOfComponents(2);
-    this->Triangles->SetNumberOfTuples(edges);
+    this->Triangles->SetNumberOfTuples(places.GetNumberOfPlaces());
   }
 
-  void Set(vtkIdType edge, const std::vector<Sample>& samples)
+  /// @a samples are what was measured at the place: none if there is nothing to compare.
+  void Set(vtkIdType index, const std::vector<Sample>& samples)
+  {
+    const MeasuredPlace& place = this->Places.GetPlace(index);
+    this->Type->SetValue(index, static_cast<int>(place.Kind));
+    const std::array<vtkIdType, 2> cells = this->Places.GetCells(place);
+    this->Triangles->SetTypedTuple(index, cells.data());
+    this->Verdict->SetValue(index, vtkJacobianContinuity::NOTHING_TO_COMPARE);
+    if (this->SecondVerdict)
+    {
+      this->SecondVerdict->SetValue(index, vtkJacobianContinuity::NOTHING_TO_COMPARE);
+    }
+    for (const auto& array : this->Doubles)
+    {
+      array->SetValue(index, JacobianJump::None);
+    }
+    if (!samples.empty())
+    {
+      this->SetMeasured(index, samples);
+    }
+  }
+
+  double GetJump(vtkIdType place) const { return this->Doubles[0]->GetValue(place); }
+  int GetVerdict(vtkIdType place) const { return this->Verdict->GetValue(place); }
+
+  void AddTo(vtkCellData* cellData) const
+  {
+    for (const auto& array : this->Doubles)
+    {
+      cellData->AddArray(array);
+    }
+    cellData->AddArray(this->Verdict);
+    if (this->SecondVerdict)
+    {
+      cellData->AddArray(this->SecondVerdict);
+    }
+    cellData->AddArray(this->Triangles);
+    cellData->AddArray(this->Type);
+    cellData->SetActiveScalars("JacobianJump");
+  }
+
+private:
+  void SetMeasured(vtkIdType index, const std::vector<Sample>& samples)
   {
     const auto largest = [&samples](JacobianJump Sample::*which) {
       // NaN, where the map could not be evaluated, counts as more than anything.
@@ -96,44 +135,20 @@ public:
       worst.First.Stretch, worst.First.Order };
     for (std::size_t i = 0; i < 8; ++i)
     {
-      this->Doubles[i]->SetValue(edge, values[i]);
+      this->Doubles[i]->SetValue(index, values[i]);
     }
-    this->Verdict->SetValue(edge, Conclude(samples, &Sample::First));
-    if (this->SecondVerdict)
+    this->Verdict->SetValue(index, Conclude(samples, &Sample::First));
+    if (this->SecondVerdict &&
+      !MeasuredPlaces::IsPoint(this->Places.GetPlace(index).Kind))
     {
       const Sample worstSecond = largest(&Sample::Second);
-      this->Doubles[8]->SetValue(edge, worstSecond.Second.Jump);
-      this->Doubles[9]->SetValue(edge, worstSecond.Second.Error);
-      this->SecondVerdict->SetValue(edge, Conclude(samples, &Sample::Second));
+      this->Doubles[8]->SetValue(index, worstSecond.Second.Jump);
+      this->Doubles[9]->SetValue(index, worstSecond.Second.Error);
+      this->SecondVerdict->SetValue(index, Conclude(samples, &Sample::Second));
     }
   }
 
-  void SetTriangles(vtkIdType edge, vtkIdType first, vtkIdType second)
-  {
-    this->Triangles->SetTypedComponent(edge, 0, first);
-    this->Triangles->SetTypedComponent(edge, 1, second);
-  }
-
-  double GetJump(vtkIdType edge) const { return this->Doubles[0]->GetValue(edge); }
-  int GetVerdict(vtkIdType edge) const { return this->Verdict->GetValue(edge); }
-
-  void AddTo(vtkCellData* cellData) const
-  {
-    for (const auto& array : this->Doubles)
-    {
-      cellData->AddArray(array);
-    }
-    cellData->AddArray(this->Verdict);
-    if (this->SecondVerdict)
-    {
-      cellData->AddArray(this->SecondVerdict);
-    }
-    cellData->AddArray(this->Triangles);
-    cellData->SetActiveScalars("JacobianJump");
-  }
-
-private:
-  /// One kink makes the edge a kink; it is differentiable only if it is at all samples.
+  /// One kink makes the place a kink; it is differentiable only if it is at all samples.
   static int Conclude(const std::vector<Sample>& samples, JacobianJump Sample::*which)
   {
     const auto count = [&samples, which](JumpVerdict verdict) {
@@ -152,31 +167,58 @@ private:
   {
     this->Doubles.push_back(vtkSmartPointer<vtkDoubleArray>::New());
     this->Doubles.back()->SetName(name);
-    this->Doubles.back()->SetNumberOfTuples(this->Edges);
+    this->Doubles.back()->SetNumberOfTuples(this->Places.GetNumberOfPlaces());
   }
 
-  vtkSmartPointer<vtkIntArray> NewVerdict(const char* name) const
+  vtkSmartPointer<vtkIntArray> NewIntegers(const char* name) const
   {
     auto array = vtkSmartPointer<vtkIntArray>::New();
     array->SetName(name);
-    array->SetNumberOfTuples(this->Edges);
+    array->SetNumberOfTuples(this->Places.GetNumberOfPlaces());
     return array;
   }
 
-  vtkIdType Edges;
+  const MeasuredPlaces& Places;
   std::vector<vtkSmartPointer<vtkDoubleArray>> Doubles;
   vtkSmartPointer<vtkIntArray> Verdict;
+  vtkSmartPointer<vtkIntArray> Type;
   vtkSmartPointer<vtkIntArray> SecondVerdict;
   vtkNew<vtkIdTypeArray> Triangles;
 };
 
-vtkSmartPointer<vtkDoubleArray> NewJumpArray(const char* name, vtkIdType tuples, double fill)
+vtkSmartPointer<vtkDoubleArray> NewJumpArray(const char* name, vtkIdType tuples)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
   array->SetName(name);
   array->SetNumberOfTuples(tuples);
-  array->FillValue(fill);
+  array->FillValue(JacobianJump::None);
   return array;
+}
+
+/// The homeomorphism as a map that is known by its values only. Remembers the triangle found last, so
+/// each place needs one of its own: results must not depend on what was measured before.
+MapUnderTest MakeMapUnderTest(const std::shared_ptr<const Homeomorphism>& map)
+{
+  const double reach = map->GetReach(Side::Source, 0.0, PrecisionOfType(VTK_DOUBLE));
+  TriangleIndex hint = -1;
+  return [map, reach, hint](const Vector3& point, Vector3& image) mutable {
+    const Location place = map->Locate(Side::Source, point.data(), reach, hint);
+    hint = place.Triangle;
+    if (place.Triangle < 0)
+    {
+      return false;
+    }
+    map->MapPoint(Side::Source, place, image.data());
+    return true;
+  };
+}
+
+MapUnderTest MakeMapUnderTest(vtkAbstractTransform* transform)
+{
+  return [transform](const Vector3& point, Vector3& image) {
+    transform->InternalTransformPoint(point.data(), image.data());
+    return true;
+  };
 }
 
 } // namespace
@@ -235,13 +277,13 @@ int vtkJacobianContinuity::RequestData(
   vtkPolyData* lines = vtkPolyData::GetData(outputs, 0);
   vtkPolyData* colored = vtkPolyData::GetData(outputs, 1);
   this->NumberOfBoundaryEdges = 0;
-  this->NumberOfDifferentiableEdges = 0;
-  this->NumberOfKinks = 0;
-  this->NumberOfUndecidedEdges = 0;
+  std::fill_n(&this->Counts[0][0], sizeof(this->Counts) / sizeof(this->Counts[0][0]), 0);
   this->LargestJump = 0.0;
+  this->SetErrorCode(vtkErrorCode::NoError);
 
   if (!this->Transform && !target)
   {
+    this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro(<< "There is no map to measure: set a transform (SetTransform) or a target mesh "
                      "(input port 1).");
     return 0;
@@ -268,121 +310,124 @@ int vtkJacobianContinuity::RequestData(
   ReportProblems(this, this->Internal->Cache.GetProblems());
   if (!map)
   {
+    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
   if (this->Transform && !map->GetPair().GetEmbedding(Side::Source).IsPlanar())
   {
+    this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro(<< "A transform is measured on a planar triangulation only. For a surface, give the "
                      "target mesh (input port 1).");
     return 0;
   }
 
-  MapUnderTest evaluate;
-  if (this->Transform)
-  {
-    vtkAbstractTransform* transform = this->Transform;
-    evaluate = [transform](const Vector3& point, Vector3& image) {
-      transform->InternalTransformPoint(point.data(), image.data());
-      return true;
-    };
-  }
-  else
-  {
-    const double reach = map->GetReach(Side::Source, 0.0, PrecisionOfType(VTK_DOUBLE));
-    evaluate = [map, reach](const Vector3& point, Vector3& image) {
-      const Location place = map->Locate(Side::Source, point.data(), reach, -1);
-      if (place.Triangle < 0)
-      {
-        return false;
-      }
-      map->MapPoint(Side::Source, place, image.data());
-      return true;
-    };
-  }
+  const bool planar = map->GetPair().HasTarget()
+    ? map->GetPair().GetEmbedding(Side::Source).IsColumnar()
+    : map->GetPair().GetEmbedding(Side::Source).IsPlanar();
+  const homeomorphism::CenterPoint center = options.System == homeomorphism::CoordinateSystem::Contour
+    ? options.Center
+    : homeomorphism::CenterPoint::Centroid;
+  const MeasuredPlaces places(*map, center,
+    { true, this->BoundaryEdges, this->Spokes, this->WingSegments, this->CenterSegments,
+      this->StripBorders, this->Centroids, this->Vertices },
+    planar, this->SamplesPerEdge);
+  this->NumberOfBoundaryEdges =
+    static_cast<vtkIdType>(places.GetEdges().GetBoundaryEdges().size());
 
-  const EdgeCrossings crossings(*map);
-  this->NumberOfBoundaryEdges = crossings.GetNumberOfBoundaryEdges();
-  const vtkIdType edges = crossings.GetNumberOfEdges();
-  const int samples = this->SamplesPerEdge;
-  const vtkIdType pointsPerEdge = samples + 2;
+  // Each place's points follow those of the place before it.
+  const vtkIdType count = places.GetNumberOfPlaces();
+  std::vector<vtkIdType> firstPoint(count + 1, 0);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    firstPoint[i + 1] = firstPoint[i] + places.GetNumberOfPoints(places.GetPlace(i).Kind);
+  }
+  const vtkIdType numberOfPoints = firstPoint[count];
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(edges * pointsPerEdge);
-  const auto pointJump =
-    NewJumpArray("JacobianJump", edges * pointsPerEdge, JacobianJump::None);
-  const auto pointError =
-    NewJumpArray("JacobianJumpError", edges * pointsPerEdge, JacobianJump::None);
-  const auto pointExact =
-    NewJumpArray("JacobianJumpExact", edges * pointsPerEdge, JacobianJump::None);
-  EdgeArrays edgeArrays(edges, this->SecondDerivatives);
+  points->SetNumberOfPoints(numberOfPoints);
+  const auto pointJump = NewJumpArray("JacobianJump", numberOfPoints);
+  const auto pointError = NewJumpArray("JacobianJumpError", numberOfPoints);
+  const auto pointExact = NewJumpArray("JacobianJumpExact", numberOfPoints);
+  PlaceArrays placeArrays(places, this->SecondDerivatives);
 
   const vtkIdType done = RunInBlocks(
-    this, edges, 0.05, 0.95,
+    this, count, 0.05, 0.95,
     [&](vtkIdType begin, vtkIdType end) {
-      std::vector<Sample> values(samples);
-      for (vtkIdType edge = begin; edge < end; ++edge)
+      std::vector<Sample> values;
+      for (vtkIdType index = begin; index < end; ++index)
       {
-        const InteriorEdge& interior = crossings.GetEdge(edge);
+        const MapUnderTest evaluate =
+          this->Transform ? MakeMapUnderTest(this->Transform) : MakeMapUnderTest(map);
+        const MeasuredPlace& place = places.GetPlace(index);
+        const int samples = places.GetNumberOfSamples(place.Kind);
+        // A line's first point is its end, not a sample.
+        const vtkIdType firstSample =
+          firstPoint[index] + (MeasuredPlaces::IsPoint(place.Kind) ? 0 : 1);
+        values.clear();
         for (int i = 0; i < samples; ++i)
         {
-          const double t = (i + 1.0) / (samples + 1.0);
-          const LineCrossing crossing = crossings.GetCrossing(edge, t, evaluate);
-          Sample& sample = values[i];
-          sample.First = EstimateJump(evaluate, crossing, 1, this->Resolution);
-          sample.Exact = map->GetPair().HasTarget()
-            ? crossings.GetExactJump(edge, crossing).Jump
-            : JacobianJump::None;
-          if (this->SecondDerivatives)
-          {
-            sample.Second = EstimateJump(evaluate, crossing, 2, 1e3 * this->Resolution);
-          }
-          const vtkIdType point = edge * pointsPerEdge + 1 + i;
-          points->SetPoint(point, crossing.Point.data());
-          pointJump->SetValue(point, sample.First.Jump);
-          pointError->SetValue(point, sample.First.Error);
-          pointExact->SetValue(point, sample.Exact);
+          values.push_back(places.Measure(
+            place, i, evaluate, this->Resolution, this->SecondDerivatives));
+          pointJump->SetValue(firstSample + i, values[i].First.Jump);
+          pointError->SetValue(firstSample + i, values[i].First.Error);
+          pointExact->SetValue(firstSample + i, values[i].Exact);
         }
-        points->SetPoint(edge * pointsPerEdge, interior.Start.data());
-        points->SetPoint(edge * pointsPerEdge + samples + 1, interior.End.data());
-        edgeArrays.Set(edge, values);
-        edgeArrays.SetTriangles(edge, interior.Cells[0], interior.Cells[1]);
+        placeArrays.Set(index, values);
+        for (vtkIdType i = firstPoint[index]; i < firstPoint[index + 1]; ++i)
+        {
+          points->SetPoint(
+            i, places.GetPosition(place, static_cast<int>(i - firstPoint[index])).data());
+        }
       }
     },
-    1 << 12);
-  if (done < edges)
+    1 << 11);
+  if (done < count)
   {
     // Aborted: nothing is better than a part that looks like the whole.
     return 1;
   }
 
-  vtkNew<vtkCellArray> cells;
-  const auto triangleJump = NewJumpArray("JacobianJump", source->GetNumberOfCells(), 0.0);
-  const auto vertexJump = NewJumpArray("JacobianJump", source->GetNumberOfPoints(), 0.0);
-  for (vtkIdType edge = 0; edge < edges; ++edge)
+  vtkNew<vtkCellArray> vertexCells;
+  vtkNew<vtkCellArray> lineCells;
+  const auto triangleJump = NewJumpArray("JacobianJump", source->GetNumberOfCells());
+  const auto vertexJump = NewJumpArray("JacobianJump", source->GetNumberOfPoints());
+  for (vtkIdType index = 0; index < count; ++index)
   {
-    cells->InsertNextCell(static_cast<int>(pointsPerEdge));
-    for (vtkIdType i = 0; i < pointsPerEdge; ++i)
+    const MeasuredPlace& place = places.GetPlace(index);
+    vtkCellArray* cells = MeasuredPlaces::IsPoint(place.Kind) ? vertexCells : lineCells;
+    cells->InsertNextCell(places.GetNumberOfPoints(place.Kind));
+    for (vtkIdType i = firstPoint[index]; i < firstPoint[index + 1]; ++i)
     {
-      cells->InsertCellPoint(edge * pointsPerEdge + i);
+      cells->InsertCellPoint(i);
     }
-    const InteriorEdge& interior = crossings.GetEdge(edge);
-    const double jump = edgeArrays.GetJump(edge);
+    const int verdict = placeArrays.GetVerdict(index);
+    if (verdict >= 0)
+    {
+      ++this->Counts[int(place.Kind)][verdict];
+    }
+    if (place.Kind != PlaceKind::Edge)
+    {
+      continue;
+    }
+    const double jump = placeArrays.GetJump(index);
+    // What is not a number counts for nothing, as where a mesh's array starts from.
     const auto raise = [jump](vtkDoubleArray* array, vtkIdType id) {
-      array->SetValue(id, std::max(array->GetValue(id), jump));
+      array->SetValue(id, std::fmax(array->GetValue(id), jump));
     };
-    raise(triangleJump, interior.Cells[0]);
-    raise(triangleJump, interior.Cells[1]);
-    raise(vertexJump, interior.Points[0]);
-    raise(vertexJump, interior.Points[1]);
-    this->LargestJump = std::max(this->LargestJump, jump);
-    const int verdict = edgeArrays.GetVerdict(edge);
-    this->NumberOfDifferentiableEdges += verdict == DIFFERENTIABLE;
-    this->NumberOfKinks += verdict == KINK;
-    this->NumberOfUndecidedEdges += verdict == UNDECIDED;
+    for (const vtkIdType cell : places.GetCells(place))
+    {
+      raise(triangleJump, cell);
+    }
+    for (const std::int32_t point : places.GetEdges().GetInteriorEdges()[place.Item].Points)
+    {
+      raise(vertexJump, point);
+    }
+    this->LargestJump = std::fmax(this->LargestJump, jump);
   }
   lines->SetPoints(points);
-  lines->SetLines(cells);
-  edgeArrays.AddTo(lines->GetCellData());
+  lines->SetVerts(vertexCells);
+  lines->SetLines(lineCells);
+  placeArrays.AddTo(lines->GetCellData());
   lines->GetPointData()->AddArray(pointJump);
   lines->GetPointData()->AddArray(pointError);
   lines->GetPointData()->AddArray(pointExact);
@@ -393,6 +438,14 @@ int vtkJacobianContinuity::RequestData(
   colored->GetPointData()->AddArray(vertexJump);
   this->UpdateProgress(1.0);
   return 1;
+}
+
+vtkIdType vtkJacobianContinuity::GetNumberOfPlaces(int placeType, int verdict)
+{
+  return placeType >= EDGE && placeType <= VERTEX && verdict >= DIFFERENTIABLE &&
+      verdict <= UNDECIDED
+    ? this->Counts[placeType][verdict]
+    : 0;
 }
 
 void vtkJacobianContinuity::PrintSelf(ostream& os, vtkIndent indent)
@@ -406,9 +459,16 @@ void vtkJacobianContinuity::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SamplesPerEdge: " << this->SamplesPerEdge << "\n";
   os << indent << "Resolution: " << this->Resolution << "\n";
   os << indent << "SecondDerivatives: " << this->SecondDerivatives << "\n";
+  os << indent << "BoundaryEdges: " << this->BoundaryEdges << "\n";
+  os << indent << "Spokes: " << this->Spokes << "\n";
+  os << indent << "WingSegments: " << this->WingSegments << "\n";
+  os << indent << "CenterSegments: " << this->CenterSegments << "\n";
+  os << indent << "StripBorders: " << this->StripBorders << "\n";
+  os << indent << "Centroids: " << this->Centroids << "\n";
+  os << indent << "Vertices: " << this->Vertices << "\n";
   os << indent << "NumberOfBoundaryEdges: " << this->NumberOfBoundaryEdges << "\n";
-  os << indent << "NumberOfDifferentiableEdges: " << this->NumberOfDifferentiableEdges << "\n";
-  os << indent << "NumberOfKinks: " << this->NumberOfKinks << "\n";
-  os << indent << "NumberOfUndecidedEdges: " << this->NumberOfUndecidedEdges << "\n";
+  os << indent << "NumberOfDifferentiableEdges: " << this->GetNumberOfDifferentiableEdges() << "\n";
+  os << indent << "NumberOfKinks: " << this->GetNumberOfKinks() << "\n";
+  os << indent << "NumberOfUndecidedEdges: " << this->GetNumberOfUndecidedEdges() << "\n";
   os << indent << "LargestJump: " << this->LargestJump << "\n";
 }

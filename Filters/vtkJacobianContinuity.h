@@ -8,7 +8,8 @@
  * each interior edge whether the map's Jacobian is the same on both sides. The map is either any
  * vtkAbstractTransform (SetTransform; the triangulation must then be planar), or the homeomorphism onto
  * a second triangulation with the same triangles (input port 1), planar or a surface in 3-space; on
- * surfaces the two sides are compared after unfolding them about the edge.
+ * surfaces the two sides are compared after unfolding them about the edge. On request it tells the same
+ * for other places where a map made of pieces may fail; see PlaceTypes.
  *
  * The map is only evaluated, never looked into: derivatives are one-sided differences over halving
  * steps, extrapolated to step 0 (Richardson), with a bound on their error from how the extrapolations
@@ -22,26 +23,34 @@
  *   largest over the edge's samples; the arrays below are for the sample where it is largest;
  * - `JacobianJumpError`: bound on the error of the estimate, the largest over the samples;
  * - `JacobianJumpExact`: the same jump in closed form, if the map is the homeomorphism onto the target,
- *   or a vtkHomeomorphismTransform whose source has the triangulation's own vtkPoints; else NaN;
- * - `NormalJump`, `TangentialJump`: the jump's parts across the edge's image and along it;
+ *   or a vtkHomeomorphismTransform whose source has the triangulation's own vtkPoints; else NaN, as at
+ *   vertices;
+ * - `NormalJump`, `TangentialJump`: the jump's parts across the line's image and along it;
  * - `AngleJump` (degrees) and `StretchJump`: the angle between the images of the direction across the
- *   edge on the two sides, and the ratio of the longer to the shorter, less 1;
+ *   line on the two sides, and the ratio of the longer to the shorter, less 1;
  * - `ConvergenceOrder`: the exponent with which the difference of the plain quotients on the two sides
  *   shrinks with the step, 1 for a differentiable map, 0 for a kink; NaN where it is all rounding;
- * - `Verdict` (int): DIFFERENTIABLE, KINK or UNDECIDED. A kink is a jump larger than Resolution that
- *   stands out from its error bound; a map is called differentiable where the jump, its error bound
- *   added, is below Resolution;
- * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles;
+ * - `Verdict` (int): see Verdicts. A kink is a jump larger than Resolution that stands out from its
+ *   error bound; a map is called differentiable where the jump, its error bound added, is below
+ *   Resolution;
+ * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles; the same one twice for
+ *   places within a triangle; the second is -1 for boundary edges and vertices;
+ * - `PlaceType` (int): see PlaceTypes;
  * - with SecondDerivatives, `SecondDerivativeJump`, `SecondDerivativeJumpError` (times the reach of the
  *   steps over the norm of the Jacobian) and `SecondDerivativeVerdict` (int): the same for the second
- *   derivative across the edge.
+ *   derivative across the line.
  *
  * The point arrays `JacobianJump`, `JacobianJumpError` and `JacobianJumpExact` have the values at the
- * samples (NaN at the vertices). Boundary edges have no other side, so no jump, and are not part of the
- * output; GetNumberOfBoundaryEdges counts them.
+ * samples (NaN at the ends of lines).
+ *
+ * Centroids and vertices are vertex cells, which come first in the cell arrays. There the one-sided
+ * derivatives in directions all around are compared with those of the linear map that fits them best (by
+ * least squares); the jump is the largest deviation, over the norm. Its parts, angle and stretch have no
+ * meaning and are NaN. Where there is nothing to compare, at boundary edges and at the vertices of
+ * surfaces, which have no tangent plane, all numbers are NaN and the verdict is NOTHING_TO_COMPARE.
  *
  * Output port 1 is the triangulation with a cell array and a point array `JacobianJump`: the largest of
- * the triangle's interior edges, and of the edges at the point; 0 where there is none.
+ * the triangle's interior edges, and of the edges at the point; NaN where there is none.
  *
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The
  * transform must allow concurrent calls once updated, as VTK's do.
@@ -66,12 +75,30 @@ public:
   vtkTypeMacro(vtkJacobianContinuity, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// What is concluded about an edge.
+  /// What is concluded about a place.
   enum Verdicts
   {
+    NOTHING_TO_COMPARE = -1,
     DIFFERENTIABLE = 0,
     KINK = 1,
     UNDECIDED = 2
+  };
+
+  /// The kinds of places. All but the first are measured on request only. Those within triangles are
+  /// where one of the coordinate systems is made of pieces; they follow from the triangulation alone and
+  /// can be asked for whatever the map is. The centre of a triangle is its centroid, or in the Contour
+  /// system the point that CenterPoint says.
+  enum PlaceTypes
+  {
+    EDGE = 0,           ///< interior edge
+    BOUNDARY_EDGE = 1,  ///< has one side only, and no jump
+    SPOKE = 2,          ///< from a triangle's centre to a corner
+    WING_SEGMENT = 3,   ///< from the middle of a center segment to an end of its edge
+    CENTER_SEGMENT = 4, ///< from a triangle's centre to its foot on an edge; where the foot is outside
+                        ///< the edge, neither this nor the edge's wing segments are measured
+    STRIP_BORDER = 5,   ///< of the strip along an interior edge in which the Smooth chart is not affine
+    TRIANGLE_CENTER = 6, ///< a triangle's centre; asked for as Centroids
+    VERTEX = 7          ///< a point of the triangulation, on the boundary too
   };
 
   /// The coordinate systems; see vtkDifferentiableHomeomorphism.
@@ -129,7 +156,33 @@ public:
   ///@}
 
   ///@{
-  /// Number of points of an edge at which the jump is estimated, evenly spaced. 5 by default, from 1.
+  /// Which places are measured besides the interior edges. None by default.
+  vtkSetMacro(BoundaryEdges, bool);
+  vtkGetMacro(BoundaryEdges, bool);
+  vtkBooleanMacro(BoundaryEdges, bool);
+  vtkSetMacro(Spokes, bool);
+  vtkGetMacro(Spokes, bool);
+  vtkBooleanMacro(Spokes, bool);
+  vtkSetMacro(WingSegments, bool);
+  vtkGetMacro(WingSegments, bool);
+  vtkBooleanMacro(WingSegments, bool);
+  vtkSetMacro(CenterSegments, bool);
+  vtkGetMacro(CenterSegments, bool);
+  vtkBooleanMacro(CenterSegments, bool);
+  vtkSetMacro(StripBorders, bool);
+  vtkGetMacro(StripBorders, bool);
+  vtkBooleanMacro(StripBorders, bool);
+  vtkSetMacro(Centroids, bool);
+  vtkGetMacro(Centroids, bool);
+  vtkBooleanMacro(Centroids, bool);
+  vtkSetMacro(Vertices, bool);
+  vtkGetMacro(Vertices, bool);
+  vtkBooleanMacro(Vertices, bool);
+  ///@}
+
+  ///@{
+  /// Number of points of a line at which the jump is estimated, evenly spaced, and of directions in each
+  /// sector at a centroid or vertex, besides those that bound it. 5 by default, from 1.
   vtkSetClampMacro(SamplesPerEdge, int, 1, 1000);
   vtkGetMacro(SamplesPerEdge, int);
   ///@}
@@ -149,13 +202,17 @@ public:
   ///@}
 
   ///@{
-  /// What the last execution found.
+  /// What the last execution found at the interior edges.
   vtkGetMacro(NumberOfBoundaryEdges, vtkIdType);
-  vtkGetMacro(NumberOfDifferentiableEdges, vtkIdType);
-  vtkGetMacro(NumberOfKinks, vtkIdType);
-  vtkGetMacro(NumberOfUndecidedEdges, vtkIdType);
+  vtkIdType GetNumberOfDifferentiableEdges() { return this->Counts[EDGE][DIFFERENTIABLE]; }
+  vtkIdType GetNumberOfKinks() { return this->Counts[EDGE][KINK]; }
+  vtkIdType GetNumberOfUndecidedEdges() { return this->Counts[EDGE][UNDECIDED]; }
   vtkGetMacro(LargestJump, double);
   ///@}
+
+  /// The number of places of a type (see PlaceTypes) about which the last execution concluded @a verdict
+  /// (DIFFERENTIABLE, KINK or UNDECIDED).
+  vtkIdType GetNumberOfPlaces(int placeType, int verdict);
 
   /// Includes the transform's.
   vtkMTimeType GetMTime() override;
@@ -178,10 +235,14 @@ protected:
   int SamplesPerEdge = 5;
   double Resolution = 1e-7;
   bool SecondDerivatives = false;
+  bool BoundaryEdges = false;
+  bool Spokes = false;
+  bool WingSegments = false;
+  bool CenterSegments = false;
+  bool StripBorders = false;
+  bool Centroids = false;
+  bool Vertices = false;
   vtkIdType NumberOfBoundaryEdges = 0;
-  vtkIdType NumberOfDifferentiableEdges = 0;
-  vtkIdType NumberOfKinks = 0;
-  vtkIdType NumberOfUndecidedEdges = 0;
   double LargestJump = 0.0;
 
 private:
@@ -190,6 +251,7 @@ private:
 
   class Internals;
   std::unique_ptr<Internals> Internal;
+  vtkIdType Counts[VERTEX + 1][UNDECIDED + 1] = {};
 };
 
 #endif

@@ -137,15 +137,29 @@ void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) 
 
 Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 {
+  return this->FromFrames(from, place.Triangle,
+    this->VisitCharts(from, place.Triangle, [&place](const auto& chart, const auto& other) {
+      return MapDerivative(chart, other, chart.ToReference(place.Point.InPlane));
+    }));
+}
+
+Jacobian Homeomorphism::GetJacobian(
+  Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
+{
+  return this->FromFrames(from, triangle,
+    this->VisitCharts(from, triangle, [&coordinates](const auto& chart, const auto& other) {
+      return MapDerivative(chart, other, chart.FromCoordinates(coordinates));
+    }));
+}
+
+Jacobian Homeomorphism::FromFrames(
+  Side from, TriangleIndex triangle, const Matrix2& inFrames) const
+{
   const Embedding& source = this->Pair->GetEmbedding(from);
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
-  const Matrix2 inFrames = this->VisitCharts(from, place.Triangle,
-    [&place](const auto& chart, const auto& other) {
-      return MapDerivative(chart, other, chart.ToReference(place.Point.InPlane));
-    });
   const double rescale = source.GetScale() / target.GetScale();
-  const std::array<Vector3, 3> from3 = source.GetAxes(place.Triangle);
-  const std::array<Vector3, 3> to3 = target.GetAxes(place.Triangle);
+  const std::array<Vector3, 3> from3 = source.GetAxes(triangle);
+  const std::array<Vector3, 3> to3 = target.GetAxes(triangle);
 
   Jacobian jacobian;
   for (int row = 0; row < 3; ++row)
@@ -161,7 +175,7 @@ Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
     }
   }
   jacobian.Determinant = inFrames.Determinant() * rescale * rescale *
-    source.GetHandedness(place.Triangle) * target.GetHandedness(place.Triangle);
+    source.GetHandedness(triangle) * target.GetHandedness(triangle);
   return jacobian;
 }
 

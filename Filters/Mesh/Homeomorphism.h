@@ -36,6 +36,13 @@ struct Jacobian
   std::array<double, 9> Matrix;
   /// Ratio of areas, negative where orientation is reversed.
   double Determinant;
+
+  Vector3 operator*(const Vector3& v) const
+  {
+    const std::array<double, 9>& j = this->Matrix;
+    return { j[0] * v[0] + j[1] * v[1] + j[2] * v[2], j[3] * v[0] + j[4] * v[1] + j[5] * v[2],
+      j[6] * v[0] + j[7] * v[1] + j[8] * v[2] };
+  }
 };
 
 /// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
@@ -66,6 +73,11 @@ public:
   /// The derivative at a place; on an edge, the limit from the place's triangle.
   Jacobian GetJacobian(Side from, const Location& place) const;
 
+  /// The derivative at the point of a triangle that has these coordinates; where the coordinate system is
+  /// not differentiable, the limit along the contour that they name.
+  Jacobian GetJacobian(
+    Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
+
   /// Triangular coordinates of a place of the domain.
   TriangularCoordinates GetCoordinates(Side side, const Location& place) const
   {
@@ -77,6 +89,9 @@ private:
 
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
+
+  /// From the triangle's frames to the input's coordinates.
+  Jacobian FromFrames(Side from, TriangleIndex triangle, const Matrix2& inFrames) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;

@@ -85,21 +85,17 @@ JacobianJump Describe(const std::array<Vector3, 2>& derivatives, int order, doub
   return jump;
 }
 
-/// Slope of log(difference of the sides' quotients) against log(step), where the difference stands out
-/// from rounding: the median over neighbouring steps.
-double ObservedOrder(const OneSidedDerivative& first, const OneSidedDerivative& second,
-  const LineCrossing& crossing, int order)
+/// Slope of log(difference) against log(step), where the difference stands out from rounding: the median
+/// over neighbouring steps. @a differenceAt and @a roundingAt take the number of a step.
+template <typename DifferenceAt, typename RoundingAt>
+double ObservedOrder(DifferenceAt&& differenceAt, RoundingAt&& roundingAt)
 {
   std::vector<double> slopes;
   double last = 0.0;
   for (int i = 0; i < OneSidedDerivative::NumberOfSteps; ++i)
   {
-    const double difference =
-      Length(Mismatch({ InAxes(first.GetQuotient(i), crossing.ImageAxes[0]),
-                        InAxes(second.GetQuotient(i), crossing.ImageAxes[1]) },
-        order));
-    const double rounding = first.GetRounding(i) + second.GetRounding(i);
-    if (!(difference > 16.0 * rounding))
+    const double difference = differenceAt(i);
+    if (!(difference > 16.0 * roundingAt(i)))
     {
       break;
     }
@@ -120,79 +116,223 @@ double ObservedOrder(const OneSidedDerivative& first, const OneSidedDerivative& 
   return *middle;
 }
 
-} // namespace
-
-JacobianJump EstimateJump(
-  const MapUnderTest& map, const LineCrossing& crossing, int order, double resolution)
+JumpVerdict Conclude(const JacobianJump& jump, double resolution)
 {
-  const auto along = [&](const Vector3& direction, double step) {
-    const Vector3 point{ crossing.Point[0] + step * direction[0],
-      crossing.Point[1] + step * direction[1], crossing.Point[2] + step * direction[2] };
+  if (jump.Jump > 2.0 * jump.Error && jump.Jump > resolution)
+  {
+    return JumpVerdict::Kink;
+  }
+  return jump.Jump + jump.Error <= resolution ? JumpVerdict::Differentiable
+                                              : JumpVerdict::Undecided;
+}
+
+/// The map along a ray.
+class FunctionOnRay
+{
+public:
+  FunctionOnRay(const MapUnderTest& map, const Vector3& start, const Vector3& direction)
+    : Map(map)
+    , Start(start)
+    , Direction(direction)
+  {
+  }
+
+  Vector3 operator()(double step) const
+  {
     Vector3 image;
-    if (!map(point, image))
+    if (!this->Map(Sum(this->Start, step, this->Direction), image))
     {
       image.fill(JacobianJump::None);
     }
     return image;
-  };
-  const Vector3 center = along(crossing.Tangent, 0.0);
-  const Vector3 backwards{ -crossing.Tangent[0], -crossing.Tangent[1], -crossing.Tangent[2] };
-  const auto roundingOf = [&](const Vector3& direction, double reach) {
+  }
+
+  /// What rounding can do to the values within reach.
+  double Rounding(double reach) const
+  {
     // A point is known to its rounding, which the map carries over, and so is its image.
     constexpr double ulp = std::numeric_limits<double>::epsilon();
-    const Vector3 far = along(direction, reach);
-    const double slope =
-      Length({ far[0] - center[0], far[1] - center[1], far[2] - center[2] }) / reach;
+    const Vector3 start = (*this)(0.0);
+    const Vector3 far = (*this)(reach);
+    const double slope = Length(Difference(far, start)) / reach;
     const double least = 2.0 * ulp *
-      (std::max(Length(far), Length(center)) + slope * (Length(crossing.Point) + reach));
-    return std::max(least, Noise([&](double t) { return along(direction, t); }, reach));
-  };
-
-  const OneSidedDerivative forward([&](double t) { return along(crossing.Tangent, t); }, 1,
-    crossing.TangentReach, roundingOf(crossing.Tangent, crossing.TangentReach));
-  const OneSidedDerivative backward([&](double t) { return along(backwards, t); }, 1,
-    crossing.TangentReach, roundingOf(backwards, crossing.TangentReach));
-  const double tangentLength =
-    0.5 * (Length(forward.Extrapolate().Value) + Length(backward.Extrapolate().Value));
-
-  std::array<double, 2> sideLength{};
-  std::array<Vector3, 2> derivatives{};
-  double error = 0.0;
-  double measuredReach = std::min(crossing.Reach[0], crossing.Reach[1]);
-  std::array<OneSidedDerivative, 2> sides{
-    OneSidedDerivative([&](double t) { return along(crossing.Inward[0], t); }, order,
-      crossing.Reach[0], roundingOf(crossing.Inward[0], crossing.Reach[0])),
-    OneSidedDerivative([&](double t) { return along(crossing.Inward[1], t); }, order,
-      crossing.Reach[1], roundingOf(crossing.Inward[1], crossing.Reach[1]))
-  };
-  for (int side = 0; side < 2; ++side)
-  {
-    const DerivativeEstimate estimate = sides[side].Extrapolate();
-    derivatives[side] = InAxes(estimate.Value, crossing.ImageAxes[side]);
-    error += estimate.Error;
-    sideLength[side] = order == 1
-      ? Length(estimate.Value)
-      : Length(OneSidedDerivative([&](double t) { return along(crossing.Inward[side], t); }, 1,
-          crossing.Reach[side], roundingOf(crossing.Inward[side], crossing.Reach[side]))
-                 .Extrapolate()
-                 .Value);
+      (std::max(Length(far), Length(start)) + slope * (Length(this->Start) + reach));
+    return std::max(least, Noise(*this, reach));
   }
-  double norm = std::hypot(tangentLength, 0.5 * (sideLength[0] + sideLength[1]));
+
+private:
+  const MapUnderTest& Map;
+  const Vector3& Start;
+  Vector3 Direction;
+};
+
+/// Takes the derivatives along a star's rays to their deviations from those of the linear map that
+/// fits them best.
+class DeviationFromLinear
+{
+public:
+  explicit DeviationFromLinear(const Star& star)
+    : Rays(star.Rays.size())
+  {
+    // The linear maps' derivatives span a plane in the space of all derivatives; these are orthonormal
+    // axes of it.
+    for (const Star::Ray& ray : star.Rays)
+    {
+      this->Axes[0].push_back(ray.InPlane.x);
+      this->Axes[1].push_back(ray.InPlane.y);
+    }
+    this->Normalize(0);
+    // Twice, as the rays of a narrow sector leave little of the second axis.
+    for (int pass = 0; pass < 2; ++pass)
+    {
+      double common = 0.0;
+      for (std::size_t i = 0; i < this->Rays; ++i)
+      {
+        common += this->Axes[0][i] * this->Axes[1][i];
+      }
+      for (std::size_t i = 0; i < this->Rays; ++i)
+      {
+        this->Axes[1][i] -= common * this->Axes[0][i];
+      }
+      this->Normalize(1);
+    }
+  }
+
+  /// The largest deviation. @a derivativeOf takes the number of a ray.
+  template <typename DerivativeOf>
+  double Largest(DerivativeOf&& derivativeOf) const
+  {
+    std::array<Vector3, 2> parts{};
+    for (std::size_t i = 0; i < this->Rays; ++i)
+    {
+      for (int k = 0; k < 2; ++k)
+      {
+        parts[k] = Sum(parts[k], this->Axes[k][i], derivativeOf(i));
+      }
+    }
+    double largest = 0.0;
+    for (std::size_t i = 0; i < this->Rays; ++i)
+    {
+      const double deviation = Length(Sum(Sum(derivativeOf(i), -this->Axes[0][i], parts[0]),
+        -this->Axes[1][i], parts[1]));
+      largest = deviation <= largest ? largest : deviation;
+    }
+    return largest;
+  }
+
+  /// What errors of the derivatives can do to the largest deviation.
+  template <typename ErrorOf>
+  double LargestError(ErrorOf&& errorOf) const
+  {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < this->Rays; ++i)
+    {
+      double error = 0.0;
+      for (std::size_t k = 0; k < this->Rays; ++k)
+      {
+        const double weight = (i == k ? 1.0 : 0.0) - this->Axes[0][i] * this->Axes[0][k] -
+          this->Axes[1][i] * this->Axes[1][k];
+        error += std::abs(weight) * errorOf(k);
+      }
+      largest = error <= largest ? largest : error;
+    }
+    return largest;
+  }
+
+private:
+  void Normalize(int axis)
+  {
+    double square = 0.0;
+    for (const double component : this->Axes[axis])
+    {
+      square += component * component;
+    }
+    for (double& component : this->Axes[axis])
+    {
+      component = square > 0.0 ? component / std::sqrt(square) : 0.0;
+    }
+  }
+
+  std::size_t Rays;
+  std::array<std::vector<double>, 2> Axes;
+};
+
+/// The norm of a Jacobian with these derivatives along evenly spread rays.
+template <typename DerivativeOf>
+double NormOfJacobian(std::size_t rays, DerivativeOf&& derivativeOf)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rays; ++i)
+  {
+    sum += Length(derivativeOf(i));
+  }
+  return std::sqrt(2.0) * sum / static_cast<double>(rays);
+}
+
+} // namespace
+
+void FindImageAxes(const MapUnderTest& map, LineCrossing& crossing)
+{
+  constexpr double small = 1.0 / 1024.0;
+  const FunctionOnRay along(map, crossing.Point, crossing.Tangent);
+  const FunctionOnRay across(map, crossing.Point, crossing.Inward[0]);
+  const Vector3 start = along(0.0);
+  const Vector3 tangent = Unit(Difference(along(small * crossing.TangentReach), start));
+  const Vector3 inward =
+    UnitAcross(start, tangent, across(small * crossing.Reach[0]));
+  const Vector3 normal = Cross3(tangent, inward);
+  crossing.ImageAxes[0] = { tangent, inward, normal };
+  crossing.ImageAxes[1] = { tangent, Scaled(inward, -1.0), normal };
+}
+
+JacobianJump EstimateJump(
+  const MapUnderTest& map, const LineCrossing& crossing, int order, double resolution)
+{
+  struct Estimated
+  {
+    OneSidedDerivative Quotients;
+    DerivativeEstimate Limit;
+    double Rounding;
+  };
+  const auto estimate = [&](const Vector3& direction, int ofOrder, double reach) {
+    const FunctionOnRay onRay(map, crossing.Point, direction);
+    const double rounding = onRay.Rounding(reach);
+    const OneSidedDerivative quotients(onRay, ofOrder, reach, rounding);
+    return Estimated{ quotients, quotients.Extrapolate(), rounding };
+  };
+  const std::array<Estimated, 2> tangents{ estimate(crossing.Tangent, 1, crossing.TangentReach),
+    estimate(Scaled(crossing.Tangent, -1.0), 1, crossing.TangentReach) };
+  const std::array<Estimated, 2> first{ estimate(crossing.Inward[0], 1, crossing.Reach[0]),
+    estimate(crossing.Inward[1], 1, crossing.Reach[1]) };
+  double norm =
+    std::hypot(0.5 * (Length(tangents[0].Limit.Value) + Length(tangents[1].Limit.Value)),
+      0.5 * (Length(first[0].Limit.Value) + Length(first[1].Limit.Value)));
+  std::array<Estimated, 2> sides = first;
   if (order == 2)
   {
-    norm /= measuredReach;
+    norm /= std::min(crossing.Reach[0], crossing.Reach[1]);
+    for (int side = 0; side < 2; ++side)
+    {
+      const FunctionOnRay onRay(map, crossing.Point, crossing.Inward[side]);
+      sides[side].Quotients =
+        OneSidedDerivative(onRay, 2, crossing.Reach[side], first[side].Rounding);
+      sides[side].Limit = sides[side].Quotients.Extrapolate();
+    }
   }
-  JacobianJump jump = Describe(derivatives, order, norm);
-  jump.Error = error / norm;
-  jump.Order = ObservedOrder(sides[0], sides[1], crossing, order);
-  if (jump.Jump > 2.0 * jump.Error && jump.Jump > resolution)
-  {
-    jump.Verdict = JumpVerdict::Kink;
-  }
-  else if (jump.Jump + jump.Error <= resolution)
-  {
-    jump.Verdict = JumpVerdict::Differentiable;
-  }
+  JacobianJump jump = Describe({ InAxes(sides[0].Limit.Value, crossing.ImageAxes[0]),
+                                 InAxes(sides[1].Limit.Value, crossing.ImageAxes[1]) },
+    order, norm);
+  jump.Error = (sides[0].Limit.Error + sides[1].Limit.Error) / norm;
+  jump.Order = ObservedOrder(
+    [&](int i) {
+      return Length(Mismatch({ InAxes(sides[0].Quotients.GetQuotient(i), crossing.ImageAxes[0]),
+                               InAxes(sides[1].Quotients.GetQuotient(i), crossing.ImageAxes[1]) },
+        order));
+    },
+    [&](int i) {
+      return sides[0].Quotients.GetRounding(i) + sides[1].Quotients.GetRounding(i);
+    });
+  jump.Verdict = Conclude(jump, resolution);
   return jump;
 }
 
@@ -203,6 +343,44 @@ JacobianJump CompareDerivatives(const LineCrossing& crossing, const std::array<V
   return Describe({ InAxes(inward[0], crossing.ImageAxes[0]),
                     InAxes(inward[1], crossing.ImageAxes[1]) },
     1, norm);
+}
+
+JacobianJump EstimateJump(const MapUnderTest& map, const Star& star, double resolution)
+{
+  std::vector<OneSidedDerivative> quotients;
+  std::vector<DerivativeEstimate> limits;
+  for (const Star::Ray& ray : star.Rays)
+  {
+    const FunctionOnRay onRay(map, star.Point, ray.Direction);
+    quotients.emplace_back(onRay, 1, ray.Reach, onRay.Rounding(ray.Reach));
+    limits.push_back(quotients.back().Extrapolate());
+  }
+  const DeviationFromLinear deviation(star);
+  const auto limitOf = [&limits](std::size_t ray) { return limits[ray].Value; };
+  const double norm = NormOfJacobian(limits.size(), limitOf);
+  JacobianJump jump;
+  jump.Jump = deviation.Largest(limitOf) / norm;
+  jump.Error =
+    deviation.LargestError([&limits](std::size_t ray) { return limits[ray].Error; }) / norm;
+  jump.Order = ObservedOrder(
+    [&](int i) {
+      return deviation.Largest([&](std::size_t ray) { return quotients[ray].GetQuotient(i); });
+    },
+    [&](int i) {
+      return deviation.LargestError(
+        [&](std::size_t ray) { return quotients[ray].GetRounding(i); });
+    });
+  jump.Verdict = Conclude(jump, resolution);
+  return jump;
+}
+
+JacobianJump CompareDerivatives(const Star& star, const std::vector<Vector3>& derivatives)
+{
+  const auto derivativeOf = [&derivatives](std::size_t ray) { return derivatives[ray]; };
+  JacobianJump jump;
+  jump.Jump = DeviationFromLinear(star).Largest(derivativeOf) /
+    NormOfJacobian(derivatives.size(), derivativeOf);
+  return jump;
 }
 
 } // namespace homeomorphism

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file JacobianJump.h
-/// Does a map's Jacobian jump across a line? Estimated from the map's values alone.
+/// Does a map's Jacobian jump across a line, or at a point? Estimated from the map's values alone.
 
 #ifndef homeomorphism_JacobianJump_h
 #define homeomorphism_JacobianJump_h
@@ -12,12 +12,13 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <vector>
 
 namespace homeomorphism
 {
 
 /// A map that can be evaluated: takes a point to its image, both in the input's coordinates, and
-/// returns false where it has none. Must be safe to call from several threads.
+/// returns false where it has none. May remember where it was evaluated last: each thread has its own.
 using MapUnderTest = std::function<bool(const Vector3& point, Vector3& image)>;
 
 /// A point of a line in the domain, and what is on the two sides of the line there.
@@ -38,6 +39,26 @@ struct LineCrossing
   std::array<std::array<Vector3, 3>, 2> ImageAxes;
 };
 
+/// Fills in the image's axes from the map's values: near the line's image and across it. They are the
+/// same on both sides, as within a plane.
+void FindImageAxes(const MapUnderTest& map, LineCrossing& crossing);
+
+/// A point of the domain, and the directions in which the map is followed away from it.
+struct Star
+{
+  struct Ray
+  {
+    /// Unit vector.
+    Vector3 Direction;
+    /// Its components along orthonormal axes of the plane in which all rays lie.
+    Vector2 InPlane;
+    /// How far the map may be followed that way.
+    double Reach;
+  };
+  Vector3 Point;
+  std::vector<Ray> Rays;
+};
+
 /// What is concluded.
 enum class JumpVerdict
 {
@@ -46,17 +67,19 @@ enum class JumpVerdict
   Undecided = 2
 };
 
-/// The jump of the Jacobian, or of the second derivative, at a crossing. Lengths are relative to the
-/// norm of the Jacobian (for second derivatives: times the norm of the Jacobian over the reach).
+/// The jump of the Jacobian, or of the second derivative, at a crossing or in a star. Lengths are relative
+/// to the norm of the Jacobian (for second derivatives: times the norm of the Jacobian over the reach).
 struct JacobianJump
 {
   static constexpr double None = std::numeric_limits<double>::quiet_NaN();
 
-  /// Norm of the difference of the derivatives on the two sides.
+  /// Norm of the difference of the derivatives on the two sides; in a star, the largest deviation of
+  /// the derivatives along its rays from those of the linear map that fits them best.
   double Jump = None;
   /// Bound on the error of Jump.
   double Error = None;
-  /// Its part at a right angle to the line's image, and that along it.
+  /// Its part at a right angle to the line's image, and that along it. NaN in a star, as are the angle
+  /// and the stretch.
   double Normal = None;
   double Tangential = None;
   /// Angle, in radians, between the images of the direction across the line on the two sides, and the
@@ -80,6 +103,13 @@ JacobianJump EstimateJump(
 /// verdict.
 JacobianJump CompareDerivatives(const LineCrossing& crossing, const std::array<Vector3, 2>& inward,
   const Vector3& along);
+
+/// Estimates how far the map is from having a derivative at the star's point: whether the one-sided
+/// derivatives along its rays are those of one linear map. Verdicts as above.
+JacobianJump EstimateJump(const MapUnderTest& map, const Star& star, double resolution);
+
+/// The same from known derivatives along the rays: no error, no order, no verdict.
+JacobianJump CompareDerivatives(const Star& star, const std::vector<Vector3>& derivatives);
 
 } // namespace homeomorphism
 

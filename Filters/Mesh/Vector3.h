@@ -38,6 +38,25 @@ inline double Dot3(const Vector3& a, const Vector3& b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// a + factor * b.
+inline Vector3 Sum(const Vector3& a, double factor, const Vector3& b)
+{
+  return { a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2] };
+}
+
+inline Vector3 Unit(const Vector3& a)
+{
+  const double length = Length(a);
+  return { a[0] / length, a[1] / length, a[2] / length };
+}
+
+/// The unit vector at a right angle to a line, with a unit tangent, towards a point beside it.
+inline Vector3 UnitAcross(const Vector3& onLine, const Vector3& tangent, const Vector3& beside)
+{
+  const Vector3 d = Unit(Difference(beside, onLine));
+  return Unit(Sum(d, -Dot3(d, tangent), tangent));
+}
+
 /// Accurate in each component, so that a needle's normal is as good as any.
 inline Vector3 Cross3(const Vector3& a, const Vector3& b)
 {
