@@ -89,50 +89,58 @@ double ContourThrough(double h, double b, double x, double y)
 {
   return RootOfIncreasing(
     [=](double s) -> ValueAndSlope {
-      const ContourOfHalf contour(h, b, s);
-      const ContourOfHalfDerivative derivative(h, b, s, contour);
-      const double sine = std::min(1.0, y * contour.Curvature);
+      const ArcOfHalf arc(h, b, s);
+      const ArcOfHalfDerivative derivative(h, b, s, arc);
+      const double sine = std::min(1.0, y * arc.Curvature);
       const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
       const double slope = derivative.EdgePoint -
         (y > 0.0 ? derivative.Curvature * y * y / (cosine * (1.0 + cosine)) : 0.0);
-      return { contour.EdgePoint - (y > 0.0 ? y * sine / (1.0 + cosine) : 0.0) - x, slope };
+      return { arc.EdgePoint - (y > 0.0 ? y * sine / (1.0 + cosine) : 0.0) - x, slope };
     },
     0.0, std::max(0.0, 1.0 - 2.0 * y / h), x / b);
 }
 
 } // namespace
 
-ContourOfHalf::ContourOfHalf(double h, double b, double s)
+ArcOfHalf::ArcOfHalf(double h, double b, double s)
+  : R(std::hypot(h * (1.0 + s), 2.0 * b * s))
+  , Curvature(4.0 * b * s / (h * (1.0 - s) * R))
+  , EdgePoint(b * s * (1.0 + h * (1.0 - s) / (R + h * (1.0 + s))))
 {
-  this->R = std::hypot(h * (1.0 + s), 2.0 * b * s);
-  this->Slope = 2.0 * b * s / (h * (1.0 + s));
-  this->Curvature = 4.0 * b * s / (h * (1.0 - s) * this->R);
-  this->ArcLength = 0.5 * this->R * (1.0 - s) / (1.0 + s) * ArcTangentRatio(this->Slope);
-  this->Length = 0.5 * this->R + this->ArcLength;
-  this->EdgePoint = b * s * (1.0 + h * (1.0 - s) / (this->R + h * (1.0 + s)));
+}
+
+ContourOfHalf::ContourOfHalf(double h, double b, double s)
+  : ArcOfHalf(h, b, s)
+  , Slope(2.0 * b * s / (h * (1.0 + s)))
+  , ArcLength(0.5 * R * (1.0 - s) / (1.0 + s) * ArcTangentRatio(Slope))
+  , Length(0.5 * R + ArcLength)
+{
+}
+
+ArcOfHalfDerivative::ArcOfHalfDerivative(double h, double b, double s, const ArcOfHalf& arc)
+  : R((h * (h / arc.R) * (1.0 + s)) + 4.0 * b * (b / arc.R) * s)
+  , Curvature(4.0 * b / (h * (1.0 - s) * arc.R) * (1.0 / (1.0 - s) - s * R / arc.R))
+{
+  const double sum = arc.R + h * (1.0 + s);
+  const double extra = h * (1.0 - s) / sum;
+  this->EdgePoint = b * (1.0 + extra) - b * s * (h / sum + extra * (this->R + h) / sum);
 }
 
 ContourOfHalfDerivative::ContourOfHalfDerivative(
   double h, double b, double s, const ContourOfHalf& contour)
+  : ArcOfHalfDerivative(h, b, s, contour)
 {
-  const double R = contour.R;
-  const double dR = (h * (h / R) * (1.0 + s)) + 4.0 * b * (b / R) * s;
   const double slopeDerivative = 2.0 * b / (h * (1.0 + s) * (1.0 + s));
-  this->Angle = 2.0 * (b / R) * (h / R);
-  this->Curvature = 4.0 * b / (h * (1.0 - s) * R) * (1.0 / (1.0 - s) - s * dR / R);
-  this->Radius = h / (4.0 * b * s) * ((1.0 - s) * dR - R / s);
+  this->Angle = 2.0 * (b / contour.R) * (h / contour.R);
+  this->Radius = h / (4.0 * b * s) * ((1.0 - s) * this->R - contour.R / s);
 
   const double ratio = ArcTangentRatio(contour.Slope);
   const double share = (1.0 - s) / (1.0 + s);
   const double shareDerivative = -2.0 / ((1.0 + s) * (1.0 + s));
-  this->Length = 0.5 * dR * (1.0 + share * ratio) +
-    0.5 * R *
+  this->Length = 0.5 * this->R * (1.0 + share * ratio) +
+    0.5 * contour.R *
       (shareDerivative * ratio +
         share * ArcTangentRatioDerivative(contour.Slope) * slopeDerivative);
-
-  const double sum = R + h * (1.0 + s);
-  const double extra = h * (1.0 - s) / sum;
-  this->EdgePoint = b * (1.0 + extra) - b * s * (h / sum + extra * (dR + h) / sum);
 }
 
 ContourChart::ContourChart(

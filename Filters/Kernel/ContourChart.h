@@ -33,36 +33,52 @@ enum class CenterPoint
   Incenter = 1
 };
 
-/// All that depends on the number s of a contour, in one half of an edge. The half is seen in the
+/// What of a contour depends on its number s alone, in one half of an edge. The half is seen in the
 /// frame with the foot of the center segment at the origin, the centre at (0, h) and the corner at
 /// (b, 0); its contours are numbered by s from 0, the center segment, to 1, the segment from the
-/// centre to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2).
-struct ContourOfHalf
+/// centre to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is cheap
+/// and finds s.
+struct ArcOfHalf
 {
   /// Twice the length of the straight piece: R = sqrt(h^2 (1 + s)^2 + 4 b^2 s^2).
   double R;
-  /// tan(phi) = 2 b s / (h (1 + s)), phi being the angle by which the arc turns.
-  double Slope;
   /// 1 / r = 4 b s / (h (1 - s) R), the curvature of the arc; infinite at the corner.
   double Curvature;
+  /// E = b s (1 + h (1 - s) / (R + h (1 + s))), where the contour meets the edge.
+  double EdgePoint;
+
+  ArcOfHalf(double h, double b, double s);
+};
+
+/// The contour's lengths besides.
+struct ContourOfHalf : ArcOfHalf
+{
+  /// tan(phi) = 2 b s / (h (1 + s)), phi being the angle by which the arc turns.
+  double Slope;
   /// Length of the arc, r phi = (R / 2) ((1 - s) / (1 + s)) atan(tan phi) / tan phi.
   double ArcLength;
   /// L = R / 2 + r phi, the length of the contour.
   double Length;
-  /// E = b s (1 + h (1 - s) / (R + h (1 + s))), where the contour meets the edge.
-  double EdgePoint;
 
   ContourOfHalf(double h, double b, double s);
 };
 
-/// Derivatives with respect to s of a contour's numbers.
-struct ContourOfHalfDerivative
+/// Derivatives of an arc's numbers with respect to s.
+struct ArcOfHalfDerivative
 {
-  double Angle;     ///< d phi / d s
-  double Curvature; ///< d (1 / r) / d s; infinite at the corner
-  double Radius;    ///< d r / d s; infinite at the center segment
-  double Length;    ///< d L / d s
-  double EdgePoint; ///< d E / d s, between b / 2 and 3 b / 2
+  double R;
+  double Curvature; ///< infinite at the corner
+  double EdgePoint; ///< between b / 2 and 3 b / 2
+
+  ArcOfHalfDerivative(double h, double b, double s, const ArcOfHalf& arc);
+};
+
+/// Derivatives of a contour's numbers with respect to s.
+struct ContourOfHalfDerivative : ArcOfHalfDerivative
+{
+  double Angle;  ///< d phi / d s
+  double Radius; ///< d r / d s; infinite at the center segment
+  double Length; ///< d L / d s
 
   ContourOfHalfDerivative(double h, double b, double s, const ContourOfHalf& contour);
 };

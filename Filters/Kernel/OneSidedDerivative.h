@@ -23,8 +23,11 @@ struct DerivativeEstimate
   double Error = std::numeric_limits<double>::infinity();
 };
 
-/// Difference quotients of a function of one variable, f(t) for t >= 0, over halving steps h, and their
+/// Difference quotients of a function of one variable, f(t) for t >= 0, over shrinking steps h, and their
 /// Richardson extrapolation to h = 0.
+///
+/// Steps are halved at first, while the extrapolation gains most, then quartered: the small ones are
+/// there to see a border between two pieces of the function close to 0.
 ///
 /// The error of the quotients is a power series in h if the function is smooth on its side. Where it is
 /// so only near 0, as for a map made of pieces, the rows of small steps agree with each other; where the
@@ -35,33 +38,47 @@ class OneSidedDerivative
 {
 public:
   using Vector = std::array<double, 3>;
-  static constexpr int NumberOfSteps = 18;
+  static constexpr int MaximumSteps = 18;
+  /// As many steps leave the quartering out: enough where only the size of a derivative is wanted.
+  static constexpr int HalvedSteps = 11;
 
   /// Quotients of order 1, (f(h) - f(0)) / h, or 2, (f(2 h) - 2 f(h) + f(0)) / h^2.
   ///
   /// @a function takes a step to a Vector (NaN where it cannot be evaluated), @a largestStep is the
   /// largest argument used, @a rounding bounds the absolute error of each component.
   template <typename Function>
-  OneSidedDerivative(Function&& function, int order, double largestStep, double rounding)
+  OneSidedDerivative(Function&& function, int order, double largestStep, double rounding,
+    int steps = MaximumSteps)
+    : NumberOfSteps(steps)
   {
     const Vector start = function(0.0);
-    Vector far = function(largestStep);
-    double step = order == 1 ? largestStep : 0.5 * largestStep;
-    for (int i = 0; i < NumberOfSteps; ++i, step *= 0.5)
+    Vector far = order == 1 ? start : function(largestStep);
+    Vector last = start;
+    for (int i = 0; i < this->NumberOfSteps; ++i)
     {
+      const double step = largestStep * StepRatio(i) / order;
       this->Steps[i] = step;
-      const Vector near = function(order == 1 ? 0.5 * step : step);
-      for (int axis = 0; axis < 3; ++axis)
+      if (order == 1)
       {
-        this->Quotients[i][axis] = order == 1
-          ? (far[axis] - start[axis]) / step
-          : ((far[axis] - near[axis]) - (near[axis] - start[axis])) / step / step;
+        this->Quotients[i] = Quotient(start, function(step), step);
+        this->Rounding[i] = 2.0 * rounding / step;
+        continue;
       }
-      this->Rounding[i] = order == 1 ? 4.0 * rounding / step : 8.0 * rounding / step / step;
-      far = near;
+      const Vector near = function(step);
+      // Twice the step is the step before, as long as steps are halved.
+      if (i > 0)
+      {
+        far = 2.0 * step == this->Steps[i - 1] ? last : function(2.0 * step);
+      }
+      const Vector nearHalf = Quotient(start, near, step);
+      const Vector farHalf = Quotient(near, far, step);
+      this->Quotients[i] = Quotient(nearHalf, farHalf, step);
+      this->Rounding[i] = 4.0 * rounding / step / step;
+      last = near;
     }
   }
 
+  int GetNumberOfSteps() const { return this->NumberOfSteps; }
   double GetStep(int i) const { return this->Steps[i]; }
   const Vector& GetQuotient(int i) const { return this->Quotients[i]; }
   double GetRounding(int i) const { return this->Rounding[i]; }
@@ -69,50 +86,62 @@ public:
   /// The limit of the quotients.
   DerivativeEstimate Extrapolate() const
   {
-    const std::array<DerivativeEstimate, NumberOfSteps> rows = this->ExtrapolateRows();
+    const std::array<DerivativeEstimate, MaximumSteps> allRows = this->ExtrapolateRows();
+    const auto begin = allRows.begin();
+    const auto end = begin + this->NumberOfSteps;
     int first = 0;
     while (true)
     {
-      const auto best = std::min_element(rows.begin() + first, rows.end(),
+      const auto best = std::min_element(begin + first, end,
         [](const DerivativeEstimate& a, const DerivativeEstimate& b) { return a.Error < b.Error; });
       // Large steps may agree on the wrong limit, that of another piece of the map. Smaller ones, which
       // do not reach that piece, then contradict them.
       const bool contradicted =
-        std::any_of(best, rows.end(), [best](const DerivativeEstimate& row) {
+        std::any_of(best, end, [best](const DerivativeEstimate& row) {
           return Distance(row.Value, best->Value) > row.Error + best->Error;
         });
       if (!contradicted)
       {
         // Neighbours in the tableau can agree by chance; the next best row hardly does as well.
         DerivativeEstimate result = *best;
-        const auto next = best + 1 != rows.end() ? best + 1 : best - 1;
+        const auto next = best + 1 != end ? best + 1 : best - 1;
         result.Error = std::max(result.Error, 2.0 * Distance(result.Value, next->Value));
         return result;
       }
-      first = static_cast<int>(best - rows.begin()) + 1;
+      first = static_cast<int>(best - begin) + 1;
     }
   }
 
 private:
+  static double StepRatio(int i)
+  {
+    constexpr int halvings = HalvedSteps - 1;
+    return std::ldexp(1.0, i <= halvings ? -i : halvings - 2 * i);
+  }
+
+  /// (b - a) / step.
+  static Vector Quotient(const Vector& a, const Vector& b, double step)
+  {
+    return { (b[0] - a[0]) / step, (b[1] - a[1]) / step, (b[2] - a[2]) / step };
+  }
+
   /// The best extrapolation of each row of Neville's tableau: from step i and the larger ones.
-  std::array<DerivativeEstimate, NumberOfSteps> ExtrapolateRows() const
+  std::array<DerivativeEstimate, MaximumSteps> ExtrapolateRows() const
   {
     struct Entry
     {
       Vector Value{};
       double Rounding = 0.0;
     };
-    std::array<DerivativeEstimate, NumberOfSteps> best;
-    std::array<Entry, NumberOfSteps> previous;
-    for (int i = 0; i < NumberOfSteps; ++i)
+    std::array<DerivativeEstimate, MaximumSteps> best;
+    std::array<Entry, MaximumSteps> previous;
+    for (int i = 0; i < this->NumberOfSteps; ++i)
     {
-      std::array<Entry, NumberOfSteps> row;
+      std::array<Entry, MaximumSteps> row;
       row[0] = { this->Quotients[i], this->Rounding[i] };
-      double power = 1.0;
       for (int k = 1; k <= i; ++k)
       {
-        power *= 2.0;
-        const double weight = 1.0 / (power - 1.0);
+        const double weight = 1.0 / (this->Steps[i - k] / this->Steps[i] - 1.0);
         for (int axis = 0; axis < 3; ++axis)
         {
           row[k].Value[axis] = row[k - 1].Value[axis] +
@@ -141,9 +170,10 @@ private:
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
   }
 
-  std::array<double, NumberOfSteps> Steps;
-  std::array<Vector, NumberOfSteps> Quotients;
-  std::array<double, NumberOfSteps> Rounding;
+  int NumberOfSteps;
+  std::array<double, MaximumSteps> Steps;
+  std::array<Vector, MaximumSteps> Quotients;
+  std::array<double, MaximumSteps> Rounding;
 };
 
 } // namespace homeomorphism

@@ -30,7 +30,7 @@ Vector3 InAxes(const Vector3& v, const std::array<Vector3, 3>& axes)
 template <typename Function>
 double Noise(Function&& function, double reach)
 {
-  constexpr int count = 10;
+  constexpr int count = 8;
   const double step = reach * 0x1p-22;
   std::array<Vector3, count> values;
   for (int i = 0; i < count; ++i)
@@ -86,13 +86,14 @@ JacobianJump Describe(const std::array<Vector3, 2>& derivatives, int order, doub
 }
 
 /// Slope of log(difference) against log(step), where the difference stands out from rounding: the median
-/// over neighbouring steps. @a differenceAt and @a roundingAt take the number of a step.
+/// over neighbouring steps. @a any has the steps, the others take the number of one.
 template <typename DifferenceAt, typename RoundingAt>
-double ObservedOrder(DifferenceAt&& differenceAt, RoundingAt&& roundingAt)
+double ObservedOrder(const OneSidedDerivative& any, DifferenceAt&& differenceAt,
+  RoundingAt&& roundingAt)
 {
   std::vector<double> slopes;
   double last = 0.0;
-  for (int i = 0; i < OneSidedDerivative::NumberOfSteps; ++i)
+  for (int i = 0; i < any.GetNumberOfSteps(); ++i)
   {
     const double difference = differenceAt(i);
     if (!(difference > 16.0 * roundingAt(i)))
@@ -101,7 +102,7 @@ double ObservedOrder(DifferenceAt&& differenceAt, RoundingAt&& roundingAt)
     }
     if (i > 0)
     {
-      slopes.push_back(std::log2(last / difference));
+      slopes.push_back(std::log(last / difference) / std::log(any.GetStep(i - 1) / any.GetStep(i)));
     }
     last = difference;
   }
@@ -155,7 +156,7 @@ public:
     const Vector3 start = (*this)(0.0);
     const Vector3 far = (*this)(reach);
     const double slope = Length(Difference(far, start)) / reach;
-    const double least = 2.0 * ulp *
+    const double least = 0.5 * ulp *
       (std::max(Length(far), Length(start)) + slope * (Length(this->Start) + reach));
     return std::max(least, Noise(*this, reach));
   }
@@ -294,19 +295,29 @@ JacobianJump EstimateJump(
     DerivativeEstimate Limit;
     double Rounding;
   };
-  const auto estimate = [&](const Vector3& direction, int ofOrder, double reach) {
-    const FunctionOnRay onRay(map, crossing.Point, direction);
-    const double rounding = onRay.Rounding(reach);
-    const OneSidedDerivative quotients(onRay, ofOrder, reach, rounding);
+  const auto estimate = [](const FunctionOnRay& onRay, double reach, double rounding,
+                          int steps = OneSidedDerivative::MaximumSteps) {
+    const OneSidedDerivative quotients(onRay, 1, reach, rounding, steps);
     return Estimated{ quotients, quotients.Extrapolate(), rounding };
   };
-  const std::array<Estimated, 2> tangents{ estimate(crossing.Tangent, 1, crossing.TangentReach),
-    estimate(Scaled(crossing.Tangent, -1.0), 1, crossing.TangentReach) };
-  const std::array<Estimated, 2> first{ estimate(crossing.Inward[0], 1, crossing.Reach[0]),
-    estimate(crossing.Inward[1], 1, crossing.Reach[1]) };
+  const auto estimateSide = [&](int side) {
+    const FunctionOnRay onRay(map, crossing.Point, crossing.Inward[side]);
+    return estimate(onRay, crossing.Reach[side], onRay.Rounding(crossing.Reach[side]));
+  };
+  const std::array<Estimated, 2> first{ estimateSide(0), estimateSide(1) };
+  const auto estimateTangent = [&](double sign) {
+    const FunctionOnRay onRay(map, crossing.Point, Scaled(crossing.Tangent, sign));
+    return estimate(onRay, crossing.TangentReach,
+      std::max(first[0].Rounding, first[1].Rounding), OneSidedDerivative::HalvedSteps);
+  };
+  const std::array<Estimated, 2> tangents{ estimateTangent(1.0), estimateTangent(-1.0) };
   double norm =
     std::hypot(0.5 * (Length(tangents[0].Limit.Value) + Length(tangents[1].Limit.Value)),
       0.5 * (Length(first[0].Limit.Value) + Length(first[1].Limit.Value)));
+  const double normError = 0.5 *
+    (tangents[0].Limit.Error + tangents[1].Limit.Error + first[0].Limit.Error +
+      first[1].Limit.Error) /
+    norm;
   std::array<Estimated, 2> sides = first;
   if (order == 2)
   {
@@ -322,8 +333,8 @@ JacobianJump EstimateJump(
   JacobianJump jump = Describe({ InAxes(sides[0].Limit.Value, crossing.ImageAxes[0]),
                                  InAxes(sides[1].Limit.Value, crossing.ImageAxes[1]) },
     order, norm);
-  jump.Error = (sides[0].Limit.Error + sides[1].Limit.Error) / norm;
-  jump.Order = ObservedOrder(
+  jump.Error = (sides[0].Limit.Error + sides[1].Limit.Error) / norm + jump.Jump * normError;
+  jump.Order = ObservedOrder(sides[0].Quotients,
     [&](int i) {
       return Length(Mismatch({ InAxes(sides[0].Quotients.GetQuotient(i), crossing.ImageAxes[0]),
                                InAxes(sides[1].Quotients.GetQuotient(i), crossing.ImageAxes[1]) },
@@ -362,7 +373,7 @@ JacobianJump EstimateJump(const MapUnderTest& map, const Star& star, double reso
   jump.Jump = deviation.Largest(limitOf) / norm;
   jump.Error =
     deviation.LargestError([&limits](std::size_t ray) { return limits[ray].Error; }) / norm;
-  jump.Order = ObservedOrder(
+  jump.Order = ObservedOrder(quotients.front(),
     [&](int i) {
       return deviation.Largest([&](std::size_t ray) { return quotients[ray].GetQuotient(i); });
     },

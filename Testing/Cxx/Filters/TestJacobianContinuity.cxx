@@ -3,15 +3,14 @@
 
 // Whether the instrument sees kinks where mathematics puts them, and none elsewhere.
 
+#include "MeasuredMaps.h"
 #include "TestMeshes.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkJacobianContinuity.h"
-#include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkThinPlateSplineTransform.h"
 
 #include <gtest/gtest.h>
 
@@ -25,51 +24,6 @@ namespace
 {
 
 using namespace test_meshes;
-
-/// A map of the plane that is smooth but for the line x = 7, from where on Amount times the distance to
-/// the power Exponent is added.
-class PiecewiseMap : public vtkWarpTransform
-{
-public:
-  static PiecewiseMap* New();
-  vtkTypeMacro(PiecewiseMap, vtkWarpTransform);
-
-  double Amount = 0.0;
-  int Exponent = 1;
-
-  vtkAbstractTransform* MakeTransform() override { return PiecewiseMap::New(); }
-
-protected:
-  template <typename Real>
-  void Map(const Real in[3], Real out[3]) const
-  {
-    const double x = in[0];
-    const double y = in[1];
-    const double bend = x > 7.0 ? this->Amount * std::pow(x - 7.0, this->Exponent) : 0.0;
-    out[0] = static_cast<Real>(x + bend + 0.05 * std::sin(y));
-    out[1] = static_cast<Real>(y + bend + 0.1 * std::cos(x));
-    out[2] = in[2];
-  }
-  void ForwardTransformPoint(const float in[3], float out[3]) override { this->Map(in, out); }
-  void ForwardTransformPoint(const double in[3], double out[3]) override { this->Map(in, out); }
-  // Not used: the instrument evaluates, and never asks for derivatives.
-  void ForwardTransformDerivative(const float in[3], float out[3], float d[3][3]) override
-  {
-    this->Map(in, out);
-    std::fill_n(&d[0][0], 9, std::numeric_limits<float>::quiet_NaN());
-  }
-  void ForwardTransformDerivative(const double in[3], double out[3], double d[3][3]) override
-  {
-    this->Map(in, out);
-    std::fill_n(&d[0][0], 9, std::numeric_limits<double>::quiet_NaN());
-  }
-};
-vtkStandardNewMacro(PiecewiseMap);
-
-vtkSmartPointer<vtkPolyData> RegularGrid(int n)
-{
-  return MakeMesh(GridPoints(n, 0, 0.0), GridTriangles(n));
-}
 
 vtkSmartPointer<vtkJacobianContinuity> Measure(
   vtkPolyData* source, vtkPolyData* target, int coordinateSystem)
@@ -234,23 +188,7 @@ TEST(JacobianContinuity, OurTransformIsAnyTransform)
 TEST(JacobianContinuity, ThinPlateSplinesAreDifferentiable)
 {
   const MeshPair pair = MakePlanarPair(15, 9);
-  vtkNew<vtkPoints> from;
-  vtkNew<vtkPoints> to;
-  for (vtkIdType i = 0; i < pair.Source->GetNumberOfPoints(); i += 11)
-  {
-    // Landmarks off the mesh's vertices, so that edges end anywhere.
-    double point[3];
-    pair.Source->GetPoint(i, point);
-    point[0] += 0.31;
-    from->InsertNextPoint(point);
-    pair.Target->GetPoint(i, point);
-    point[0] += 0.31;
-    to->InsertNextPoint(point);
-  }
-  vtkNew<vtkThinPlateSplineTransform> spline;
-  spline->SetSourceLandmarks(from);
-  spline->SetTargetLandmarks(to);
-  spline->SetBasisToR2LogR();
+  const auto spline = MakeThinPlateSpline(pair, 11);
   const auto filter = Measure(pair.Source, spline);
   EXPECT_EQ(filter->GetNumberOfKinks(), 0);
   EXPECT_LE(filter->GetNumberOfUndecidedEdges(), filter->GetOutput()->GetNumberOfCells() / 100);

@@ -94,6 +94,12 @@ inline std::vector<Point> GridPoints(int n, std::uint64_t seed, double jitter)
   return points;
 }
 
+/// That grid with no point moved.
+inline vtkSmartPointer<vtkPolyData> RegularGrid(int n)
+{
+  return MakeMesh(GridPoints(n, 0, 0.0), GridTriangles(n));
+}
+
 /// Two different triangulations of the square [0, n] x [0, n] with the same triangles.
 inline MeshPair MakePlanarPair(int n, std::uint64_t seed, double jitter = 0.25)
 {
