@@ -189,17 +189,19 @@ void ConvertLeaves(
   {
     ++leaves;
   }
+  const double shift = self->GetProgressShift();
+  const double scale = self->GetProgressScale();
   int done = 0;
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
-    self->SetProgressShiftScale(static_cast<double>(done++) / leaves, 1.0 / leaves);
+    self->SetProgressShiftScale(shift + scale * done++ / leaves, scale / leaves);
     if (auto* leaf = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
     {
       const vtkSmartPointer<vtkDataSet> converted = convert(leaf);
       output->SetDataSet(iterator, converted);
     }
   }
-  self->SetProgressShiftScale(0.0, 1.0);
+  self->SetProgressShiftScale(shift, scale);
 }
 
 } // namespace homeomorphism

@@ -6,6 +6,7 @@
 #include "AttributeTransport.h"
 #include "FilterSupport.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -18,6 +19,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkJacobianContinuity.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -45,6 +47,15 @@ class vtkDifferentiableHomeomorphism::Internals
 public:
   HomeomorphismCache Cache;
   std::map<std::string, TransportRule> Transports;
+
+  /// Lets Continuity measure the map between the meshes.
+  void Measure(
+    vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target);
+
+  vtkNew<vtkJacobianContinuity> Continuity;
+  /// What Continuity has as its meshes.
+  std::weak_ptr<const Homeomorphism> Measured;
+  bool MeasuredInverse = false;
 };
 
 namespace
@@ -485,6 +496,7 @@ vtkDifferentiableHomeomorphism::vtkDifferentiableHomeomorphism()
   : Internal(new Internals)
 {
   this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkDifferentiableHomeomorphism::~vtkDifferentiableHomeomorphism() = default;
@@ -545,9 +557,9 @@ int vtkDifferentiableHomeomorphism::FillInputPortInformation(int port, vtkInform
   return 1;
 }
 
-int vtkDifferentiableHomeomorphism::FillOutputPortInformation(int, vtkInformation* info)
+int vtkDifferentiableHomeomorphism::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkPolyData");
   return 1;
 }
 
@@ -556,6 +568,7 @@ int vtkDifferentiableHomeomorphism::RequestDataObject(
 {
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
   vtkInformation* outInfo = outputs->GetInformationObject(0);
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
   if (!data)
   {
     MakeOutput<vtkPolyData>(outInfo);
@@ -590,6 +603,67 @@ int vtkDifferentiableHomeomorphism::RequestUpdateExtent(
 int vtkDifferentiableHomeomorphism::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const int success = this->MapData(request, inputs, outputs);
+  this->SetProgressShiftScale(0.0, 1.0);
+  if (success)
+  {
+    this->UpdateProgress(1.0);
+  }
+  return success;
+}
+
+void vtkDifferentiableHomeomorphism::Internals::Measure(
+  vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target)
+{
+  vtkJacobianContinuity* continuity = this->Continuity;
+  const std::shared_ptr<const Homeomorphism> map =
+    this->Cache.Get(source, target, GetOptions(self));
+  // New data must not make the meshes look new.
+  if (this->Measured.lock() != map || this->MeasuredInverse != self->Inverse)
+  {
+    // Copies: the originals belong to a pipeline of their own.
+    vtkNew<vtkPolyData> from;
+    vtkNew<vtkPolyData> to;
+    from->ShallowCopy(self->Inverse ? target : source);
+    to->ShallowCopy(self->Inverse ? source : target);
+    continuity->SetSourceData(from);
+    continuity->SetTargetData(to);
+    this->Measured = map;
+    this->MeasuredInverse = self->Inverse;
+  }
+  continuity->SetTransform(nullptr);
+  continuity->SetCoordinateSystem(self->CoordinateSystem);
+  continuity->SetCenterPoint(self->CenterPoint);
+  continuity->SetDiscordantTriangles(self->DiscordantTriangles);
+  continuity->SetMaskInvalidTriangles(self->MaskInvalidTriangles);
+
+  vtkNew<vtkCallbackCommand> passOn;
+  passOn->SetClientData(self);
+  passOn->SetCallback([](vtkObject* caller, unsigned long, void* client, void*) {
+    auto* inner = vtkAlgorithm::SafeDownCast(caller);
+    auto* outer = static_cast<vtkDifferentiableHomeomorphism*>(client);
+    outer->UpdateProgress(inner->GetProgress());
+    inner->SetAbortExecute(outer->GetAbortExecute());
+  });
+  const unsigned long observer =
+    continuity->AddObserver(vtkCommand::ProgressEvent, passOn);
+  continuity->Update();
+  continuity->RemoveObserver(observer);
+}
+
+vtkJacobianContinuity* vtkDifferentiableHomeomorphism::GetJacobianContinuity()
+{
+  return this->Internal->Continuity;
+}
+
+vtkMTimeType vtkDifferentiableHomeomorphism::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->Internal->Continuity->GetMTime());
+}
+
+int vtkDifferentiableHomeomorphism::MapData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
@@ -614,7 +688,16 @@ int vtkDifferentiableHomeomorphism::RequestData(
     this->NumberOfDiscordantTriangles += charts.GetSystemOf(t) != charts.GetSystem();
   }
 
-  if (!data && !IsFirstPiece(request, outputs))
+  const bool isFirstPiece = IsFirstPiece(request, outputs);
+  if (this->MeasureContinuity && isFirstPiece)
+  {
+    constexpr double share = 0.8;
+    this->SetProgressShiftScale(0.0, share);
+    this->Internal->Measure(this, source, target);
+    this->SetProgressShiftScale(share, 1.0 - share);
+    vtkPolyData::GetData(outputs, 1)->ShallowCopy(this->Internal->Continuity->GetOutput());
+  }
+  if (!data && !isFirstPiece)
   {
     return 1;
   }
@@ -656,7 +739,6 @@ int vtkDifferentiableHomeomorphism::RequestData(
     this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
-  this->UpdateProgress(1.0);
   return 1;
 }
 
@@ -680,6 +762,7 @@ void vtkDifferentiableHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
        << static_cast<int>(transport.second) << "\n";
   }
   os << indent << "BlankOutside: " << this->BlankOutside << "\n";
+  os << indent << "MeasureContinuity: " << this->MeasureContinuity << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
   os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
   os << indent << "NumberOfDiscordantTriangles: " << this->NumberOfDiscordantTriangles << "\n";
