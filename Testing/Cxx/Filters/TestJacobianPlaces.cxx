@@ -58,10 +58,6 @@ double CellValue(Continuity* filter, const char* name, vtkIdType cell)
   return filter->GetOutput()->GetCellData()->GetArray(name)->GetTuple1(cell);
 }
 
-double PointValue(Continuity* filter, const char* name, vtkIdType point)
-{
-  return filter->GetOutput()->GetPointData()->GetArray(name)->GetTuple1(point);
-}
 
 /// The numbers of places of a type with each verdict.
 std::array<vtkIdType, 3> Count(Continuity* filter, int placeType)
