@@ -1,0 +1,491 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "vtkResampleThroughHomeomorphism.h"
+
+#include "FilterSupport.h"
+#include "vtkDifferentiableHomeomorphism.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataProbeFilter.h"
+#include "vtkDataArray.h"
+#include "vtkErrorCode.h"
+#include "vtkIdList.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace homeomorphism;
+
+vtkStandardNewMacro(vtkResampleThroughHomeomorphism);
+
+namespace
+{
+
+constexpr const char* maskName = "ValidPointMask";
+
+/// Array of the same type and name with @a tuples tuples, all NaN or 0.
+vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples)
+{
+  auto result = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+  result->SetName(array->GetName());
+  result->SetNumberOfComponents(array->GetNumberOfComponents());
+  result->CopyComponentNames(array);
+  result->SetNumberOfTuples(tuples);
+  const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+  result->Fill(real ? std::numeric_limits<double>::quiet_NaN() : 0.0);
+  return result;
+}
+
+/// Hides the points that the mask leaves out, and the cells that use them.
+void Blank(vtkDataSet* output, vtkUnsignedCharArray* mask)
+{
+  const auto newGhosts = [](vtkIdType tuples) {
+    auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->SetNumberOfTuples(tuples);
+    ghosts->FillValue(0);
+    return ghosts;
+  };
+  const auto pointGhosts = newGhosts(output->GetNumberOfPoints());
+  const auto cellGhosts = newGhosts(output->GetNumberOfCells());
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    pointGhosts->SetValue(i, mask->GetValue(i) ? 0 : vtkDataSetAttributes::HIDDENPOINT);
+  }
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+  {
+    output->GetCellPoints(cell, ids);
+    if (std::any_of(ids->begin(), ids->end(), [mask](vtkIdType i) { return !mask->GetValue(i); }))
+    {
+      cellGhosts->SetValue(cell, vtkDataSetAttributes::HIDDENCELL);
+    }
+  }
+  output->GetPointData()->AddArray(pointGhosts);
+  output->GetCellData()->AddArray(cellGhosts);
+}
+
+/// The data's values at points, with a mask that tells where there are any.
+vtkSmartPointer<vtkPointSet> Probe(vtkPoints* points, vtkDataObject* data)
+{
+  vtkNew<vtkPolyData> wanted;
+  wanted->SetPoints(points);
+  vtkNew<vtkCompositeDataProbeFilter> probe;
+  probe->SetInputData(wanted);
+  probe->SetSourceData(data);
+  probe->SetValidPointMaskArrayName(maskName);
+  probe->Update();
+  return vtkPointSet::SafeDownCast(probe->GetOutputDataObject(0));
+}
+
+/// Looks again for the points that have no values, where move(i, point) moves them.
+template <typename Move>
+void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
+{
+  vtkDataArray* hasValues = found->GetPointData()->GetArray(maskName);
+  vtkNew<vtkPoints> moved;
+  moved->SetDataTypeToDouble();
+  std::vector<vtkIdType> gaps;
+  for (vtkIdType i = 0; hasValues && i < found->GetNumberOfPoints(); ++i)
+  {
+    if (hasValues->GetTuple1(i) == 0.0)
+    {
+      double point[3];
+      found->GetPoint(i, point);
+      move(i, point);
+      moved->InsertNextPoint(point);
+      gaps.push_back(i);
+    }
+  }
+  if (gaps.empty())
+  {
+    return;
+  }
+  const vtkSmartPointer<vtkPointSet> again = Probe(moved, data);
+  for (int a = 0; a < found->GetPointData()->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* array = found->GetPointData()->GetArray(a);
+    vtkDataArray* values =
+      array && array->GetName() ? again->GetPointData()->GetArray(array->GetName()) : nullptr;
+    for (std::size_t i = 0; values && i < gaps.size(); ++i)
+    {
+      array->SetTuple(gaps[i], static_cast<vtkIdType>(i), values);
+    }
+  }
+}
+
+bool HasVectors(vtkPointData* pointData)
+{
+  return pointData->GetVectors() || pointData->GetNormals() || pointData->GetTensors();
+}
+
+} // namespace
+
+vtkResampleThroughHomeomorphism::vtkResampleThroughHomeomorphism()
+{
+  this->SetNumberOfInputPorts(4);
+  // Outside points are told by the mask; errors are this filter's own.
+  this->Mapping->BlankOutsideOff();
+  this->Mapping->ComputeTriangleIdOn();
+  vtkNew<vtkCallbackCommand> passOnErrors;
+  passOnErrors->SetClientData(this);
+  passOnErrors->SetCallback([](vtkObject*, unsigned long event, void* client, void* text) {
+    auto* self = static_cast<vtkResampleThroughHomeomorphism*>(client);
+    // VTK's macros prefix their text with where it comes from; the part after it is the message.
+    std::string message = static_cast<const char*>(text);
+    const std::size_t start = message.find("): ");
+    message = start == std::string::npos ? message : message.substr(start + 3);
+    message.erase(message.find_last_not_of('\n') + 1);
+    if (event == vtkCommand::ErrorEvent)
+    {
+      vtkErrorWithObjectMacro(self, << message);
+    }
+    else
+    {
+      vtkWarningWithObjectMacro(self, << message);
+    }
+  });
+  this->Mapping->AddObserver(vtkCommand::ErrorEvent, passOnErrors);
+  this->Mapping->AddObserver(vtkCommand::WarningEvent, passOnErrors);
+}
+
+vtkResampleThroughHomeomorphism::~vtkResampleThroughHomeomorphism() = default;
+
+void vtkResampleThroughHomeomorphism::SetSourceData(vtkPolyData* source)
+{
+  this->SetInputData(0, source);
+}
+
+void vtkResampleThroughHomeomorphism::SetTargetData(vtkPolyData* target)
+{
+  this->SetInputData(1, target);
+}
+
+void vtkResampleThroughHomeomorphism::SetGridData(vtkDataSet* grid)
+{
+  this->SetInputData(3, grid);
+}
+
+vtkIdType vtkResampleThroughHomeomorphism::GetNumberOfMeshBuilds()
+{
+  return this->Mapping->GetNumberOfMeshBuilds();
+}
+
+int vtkResampleThroughHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port < 2 ? "vtkPolyData" : "vtkDataSet");
+  if (port == 2)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  }
+  if (port >= 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+int vtkResampleThroughHomeomorphism::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  return 1;
+}
+
+int vtkResampleThroughHomeomorphism::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (vtkDataObject* grid = vtkDataObject::GetData(inputs[3]))
+  {
+    MakeOutputLike(grid, outputs->GetInformationObject(0));
+  }
+  else
+  {
+    MakeOutput<vtkImageData>(outputs->GetInformationObject(0));
+  }
+  return 1;
+}
+
+int vtkResampleThroughHomeomorphism::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* outInfo = outputs->GetInformationObject(0);
+  if (vtkInformation* gridInfo = inputs[3]->GetInformationObject(0))
+  {
+    DescribeDataInOutput(gridInfo, outInfo);
+    return 1;
+  }
+  const int extent[6] = { 0, std::max(1, this->SamplingDimensions[0]) - 1, 0,
+    std::max(1, this->SamplingDimensions[1]) - 1, 0, 0 };
+  outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  // Values at each time come from the data at that time.
+  if (vtkInformation* dataInfo = inputs[2]->GetInformationObject(0))
+  {
+    for (auto* key : { Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE() })
+    {
+      if (dataInfo->Has(key))
+      {
+        outInfo->CopyEntry(dataInfo, key);
+      }
+    }
+  }
+  return 1;
+}
+
+int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  for (int port = 0; port < 3; ++port)
+  {
+    vtkInformation* info = inputs[port]->GetInformationObject(0);
+    RequestWholeMesh(info);
+    if (info && info->Has(Pipeline::WHOLE_EXTENT()))
+    {
+      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+    }
+  }
+  vtkInformation* gridInfo = inputs[3]->GetInformationObject(0);
+  vtkInformation* outInfo = outputs->GetInformationObject(0);
+  if (gridInfo)
+  {
+    for (auto* key : { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
+           Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
+    {
+      gridInfo->CopyEntry(outInfo, key);
+    }
+    if (gridInfo->Has(Pipeline::WHOLE_EXTENT()) && outInfo->Has(Pipeline::UPDATE_EXTENT()))
+    {
+      gridInfo->CopyEntry(outInfo, Pipeline::UPDATE_EXTENT());
+    }
+  }
+  return 1;
+}
+
+vtkDataSet* vtkResampleThroughHomeomorphism::Map(
+  vtkDataSet* data, bool inverse, bool carryVectors)
+{
+  this->Mapping->SetDataObject(data);
+  this->Mapping->SetInverse(inverse);
+  this->Mapping->SetCarryVectors(carryVectors);
+  this->Mapping->Update();
+  if (this->Mapping->GetErrorCode() != vtkErrorCode::NoError)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    return nullptr;
+  }
+  return vtkDataSet::SafeDownCast(this->Mapping->GetOutputDataObject(0));
+}
+
+int vtkResampleThroughHomeomorphism::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
+  vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
+  vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
+  vtkDataSet* grid = vtkDataSet::GetData(inputs[3]);
+  vtkDataSet* output = vtkDataSet::GetData(outputs);
+  this->NumberOfOutsidePoints = -1;
+  this->SetErrorCode(vtkErrorCode::NoError);
+
+  // Copies: the originals belong to a pipeline of their own. They share points and cells, so that
+  // nothing is built anew.
+  vtkNew<vtkPolyData> meshes[2];
+  meshes[0]->ShallowCopy(source);
+  meshes[1]->ShallowCopy(target);
+  this->Mapping->SetSourceData(meshes[0]);
+  this->Mapping->SetTargetData(meshes[1]);
+  this->Mapping->SetCoordinateSystem(this->CoordinateSystem);
+  this->Mapping->SetCenterPoint(this->CenterPoint);
+  this->Mapping->SetDiscordantTriangles(this->DiscordantTriangles);
+  this->Mapping->SetMaskInvalidTriangles(this->MaskInvalidTriangles);
+  this->Mapping->SetTolerance(this->Tolerance);
+  this->Mapping->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+
+  if (grid)
+  {
+    output->CopyStructure(grid);
+  }
+  else
+  {
+    double bounds[6];
+    (this->Inverse ? source : target)->GetBounds(bounds);
+    if (bounds[4] != bounds[5] && bounds[4] <= bounds[5])
+    {
+      vtkErrorMacro(<< "An image can be laid over a mesh that is parallel to the xy plane only; this "
+                       "one's z goes from "
+                    << bounds[4] << " to " << bounds[5]
+                    << ". Give the points at which values are wanted (input port 3).");
+      this->SetErrorCode(vtkErrorCode::UserError);
+      return 0;
+    }
+    if (this->SamplingBounds[0] <= this->SamplingBounds[1] &&
+      this->SamplingBounds[2] <= this->SamplingBounds[3])
+    {
+      std::copy_n(this->SamplingBounds, 4, bounds);
+    }
+    auto* image = vtkImageData::SafeDownCast(output);
+    double spacing[3] = { 1.0, 1.0, 1.0 };
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const int intervals = std::max(1, this->SamplingDimensions[axis]) - 1;
+      const double length = bounds[2 * axis + 1] - bounds[2 * axis];
+      spacing[axis] = intervals > 0 && length > 0.0 ? length / intervals : 1.0;
+    }
+    image->SetOrigin(bounds[0], bounds[2], bounds[4]);
+    image->SetSpacing(spacing);
+    image->SetExtent(outputs->GetInformationObject(0)->Get(
+      vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
+  }
+
+  // Where the grid's points come from.
+  const vtkIdType count = output->GetNumberOfPoints();
+  vtkNew<vtkPoints> origins;
+  origins->SetDataTypeToDouble();
+  std::vector<vtkIdType> inside;
+  vtkSmartPointer<vtkDataSet> shape;
+  shape.TakeReference(output->NewInstance());
+  shape->CopyStructure(output);
+  vtkDataSet* pulledBack = this->Map(shape, !this->Inverse, false);
+  if (!pulledBack)
+  {
+    return 0;
+  }
+  this->UpdateProgress(0.3);
+  vtkDataArray* isInside = pulledBack->GetPointData()->GetArray(maskName);
+  const vtkSmartPointer<vtkDataArray> triangles = pulledBack->GetPointData()->GetArray("TriangleId");
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (isInside && isInside->GetTuple1(i) != 0.0)
+    {
+      inside.push_back(i);
+      origins->InsertNextPoint(pulledBack->GetPoint(i));
+    }
+  }
+  if (this->GetAbortExecute())
+  {
+    return 1;
+  }
+
+  // What the data has there. A point on the data's border may be outside by rounding: it is looked for
+  // again, a rounding error closer to the middle of its triangle.
+  vtkDataObject* probed = data ? data : (this->Inverse ? target : source);
+  vtkSmartPointer<vtkPointSet> found = Probe(origins, probed);
+  this->UpdateProgress(0.6);
+  FillGaps(found, probed, [&](vtkIdType i, double point[3]) {
+    vtkPolyData* mesh = this->Inverse ? target : source;
+    vtkNew<vtkIdList> corners;
+    mesh->GetCellPoints(
+      static_cast<vtkIdType>(triangles->GetTuple1(inside[static_cast<std::size_t>(i)])), corners);
+    double middle[3] = { 0.0, 0.0, 0.0 };
+    for (const vtkIdType corner : *corners)
+    {
+      double position[3];
+      mesh->GetPoint(corner, position);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        middle[axis] += position[axis] / 3.0;
+      }
+    }
+    constexpr double share = 1e-12;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] += share * (middle[axis] - point[axis]);
+    }
+  });
+  this->UpdateProgress(0.7);
+  vtkSmartPointer<vtkDataArray> hasValues = found->GetPointData()->GetArray(maskName);
+  if (this->CarryVectors && HasVectors(found->GetPointData()))
+  {
+    vtkNew<vtkPolyData> values;
+    values->ShallowCopy(found);
+    // The map makes an array of this name of its own.
+    values->GetPointData()->RemoveArray(maskName);
+    found = vtkPointSet::SafeDownCast(this->Map(values, this->Inverse, true));
+    if (!found)
+    {
+      return 0;
+    }
+  }
+
+  vtkNew<vtkUnsignedCharArray> mask;
+  mask->SetName(maskName);
+  mask->SetNumberOfTuples(count);
+  mask->FillValue(0);
+  vtkIdType valid = 0;
+  for (std::size_t i = 0; i < inside.size(); ++i)
+  {
+    const bool has = hasValues && hasValues->GetTuple1(static_cast<vtkIdType>(i)) != 0.0;
+    mask->SetValue(inside[i], has ? 1 : 0);
+    valid += has;
+  }
+  vtkPointData* result = output->GetPointData();
+  for (int a = 0; a < found->GetPointData()->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* values = found->GetPointData()->GetArray(a);
+    if (!values || !values->GetName() || std::strcmp(values->GetName(), maskName) == 0 ||
+      std::strcmp(values->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
+    {
+      continue;
+    }
+    const auto array = NewEmptyLike(values, count);
+    for (std::size_t i = 0; i < inside.size(); ++i)
+    {
+      if (mask->GetValue(inside[i]))
+      {
+        array->SetTuple(inside[i], static_cast<vtkIdType>(i), values);
+      }
+    }
+    const int index = result->AddArray(array);
+    for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+    {
+      if (found->GetPointData()->GetAbstractAttribute(role) == values)
+      {
+        result->SetActiveAttribute(index, role);
+      }
+    }
+  }
+  result->AddArray(mask);
+  this->NumberOfOutsidePoints = count - valid;
+  if (this->BlankOutside && valid < count)
+  {
+    Blank(output, mask);
+  }
+  this->UpdateProgress(1.0);
+  return 1;
+}
+
+void vtkResampleThroughHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
+  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
+  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
+  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
+  os << indent << "Inverse: " << this->Inverse << "\n";
+  os << indent << "SamplingDimensions: " << this->SamplingDimensions[0] << " "
+     << this->SamplingDimensions[1] << "\n";
+  os << indent << "SamplingBounds: " << this->SamplingBounds[0] << " " << this->SamplingBounds[1]
+     << " " << this->SamplingBounds[2] << " " << this->SamplingBounds[3] << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "CarryVectors: " << this->CarryVectors << "\n";
+  os << indent << "BlankOutside: " << this->BlankOutside << "\n";
+  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
+}

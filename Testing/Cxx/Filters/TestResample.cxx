@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Whether data resampled through the homeomorphism is the data at the points that the grid's points come
+// from.
+
+#include "FilterRuns.h"
+#include "TestMeshes.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkExtractVOI.h"
+#include "vtkHomeomorphismTransform.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPointData.h"
+#include "vtkResampleThroughHomeomorphism.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+
+using namespace filter_runs;
+using namespace test_meshes;
+
+constexpr int n = 6;
+
+MeshPair MakePair()
+{
+  // The target is a sheared square: much of its bounding box is outside.
+  const MeshPair pair = MakePlanarPair(n, 11);
+  return { pair.Source, Sheared(pair.Target) };
+}
+
+double Field(const double p[3])
+{
+  return 3.0 * p[0] - 2.0 * p[1] + 0.5;
+}
+
+/// An image over the source's domain, and beyond it, with a scalar that interpolation reproduces, a
+/// vector, and cell data.
+vtkSmartPointer<vtkImageData> MakeImage()
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(0, 40, 0, 40, 0, 0);
+  image->SetOrigin(-0.5, -0.5, 0.0);
+  image->SetSpacing((n + 1.0) / 40.0, (n + 1.0) / 40.0, 1.0);
+  vtkNew<vtkDoubleArray> field;
+  field->SetName("Field");
+  vtkNew<vtkDoubleArray> wind;
+  wind->SetName("Wind");
+  wind->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    field->InsertNextValue(Field(image->GetPoint(i)));
+    wind->InsertNextTuple3(1.0, 2.0, 0.0);
+  }
+  image->GetPointData()->SetScalars(field);
+  image->GetPointData()->SetVectors(wind);
+  vtkNew<vtkIntArray> row;
+  row->SetName("Row");
+  for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
+  {
+    row->InsertNextValue(static_cast<int>(i / 40));
+  }
+  image->GetCellData()->AddArray(row);
+  return image;
+}
+
+vtkSmartPointer<vtkResampleThroughHomeomorphism> MakeResample(
+  const MeshPair& pair, vtkDataObject* data)
+{
+  auto filter = vtkSmartPointer<vtkResampleThroughHomeomorphism>::New();
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->SetDataObject(data);
+  filter->SetSamplingDimensions(50, 40);
+  return filter;
+}
+
+/// Compares every point of the output with the transform.
+void ExpectPulledBack(vtkDataSet* output, const MeshPair& pair)
+{
+  vtkNew<vtkHomeomorphismTransform> map;
+  map->SetSource(pair.Source);
+  map->SetTarget(pair.Target);
+  map->Update();
+  vtkDataArray* field = output->GetPointData()->GetArray("Field");
+  vtkDataArray* wind = output->GetPointData()->GetArray("Wind");
+  vtkDataArray* row = output->GetPointData()->GetArray("Row");
+  vtkDataArray* mask = output->GetPointData()->GetArray("ValidPointMask");
+  ASSERT_TRUE(field && mask);
+  vtkIdType inside = 0;
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    double point[3];
+    output->GetPoint(i, point);
+    double origin[3];
+    map->GetInverse()->TransformPoint(point, origin);
+    const bool valid = std::abs(origin[0]) < 1e20;
+    EXPECT_EQ(mask->GetTuple1(i) != 0.0, valid);
+    inside += valid;
+    if (!valid)
+    {
+      EXPECT_TRUE(std::isnan(field->GetTuple1(i)));
+      EXPECT_TRUE(output->GetPointGhostArray());
+      EXPECT_TRUE(output->GetPointGhostArray()->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT);
+      continue;
+    }
+    EXPECT_NEAR(field->GetTuple1(i), Field(origin), 1e-11);
+    if (row)
+    {
+      const double exactRow = (origin[1] + 0.5) * 40.0 / (n + 1.0);
+      EXPECT_NEAR(row->GetTuple1(i) + 0.5, exactRow, 0.5 + 1e-9);
+    }
+    if (wind)
+    {
+      double image[3];
+      double jacobian[3][3];
+      map->InternalTransformDerivative(origin, image, jacobian);
+      for (int k = 0; k < 2; ++k)
+      {
+        // On an edge of the triangulation the map is once differentiable, so either side will do.
+        EXPECT_NEAR(wind->GetComponent(i, k), jacobian[k][0] + 2.0 * jacobian[k][1], 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(inside, output->GetNumberOfPoints() / 4);
+  EXPECT_LT(inside, output->GetNumberOfPoints());
+}
+
+TEST(Resample, AnImageIsPulledBack)
+{
+  const MeshPair pair = MakePair();
+  const auto filter = MakeResample(pair, MakeImage());
+  filter->Update();
+  auto* image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->GetDimensions()[0], 50);
+  EXPECT_EQ(image->GetDimensions()[1], 40);
+  double bounds[6];
+  double expected[6];
+  image->GetBounds(bounds);
+  pair.Target->GetBounds(expected);
+  for (int i = 0; i < 4; ++i)
+  {
+    EXPECT_NEAR(bounds[i], expected[i], 1e-12);
+  }
+  EXPECT_STREQ(image->GetPointData()->GetScalars()->GetName(), "Field");
+  EXPECT_STREQ(image->GetPointData()->GetVectors()->GetName(), "Wind");
+  ExpectPulledBack(image, pair);
+  vtkIdType valid = 0;
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    valid += image->GetPointData()->GetArray("ValidPointMask")->GetTuple1(i) != 0.0;
+  }
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - valid);
+}
+
+TEST(Resample, AnyGridAndAnyDataWillDo)
+{
+  const MeshPair pair = MakePair();
+  const auto filter = MakeResample(pair, MakeImage());
+  Random random(3);
+  std::vector<Point> points;
+  for (int i = 0; i < 500; ++i)
+  {
+    points.push_back({ random.Uniform(-1.0, 16.0), random.Uniform(-1.0, 7.0), 0.0 });
+  }
+  filter->SetGridData(MakeCloud(points));
+  filter->Update();
+  auto* cloud = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_TRUE(cloud);
+  ExpectPulledBack(cloud, pair);
+
+  // The data in two blocks, halves of the image.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (unsigned int half = 0; half < 2; ++half)
+  {
+    vtkNew<vtkExtractVOI> cut;
+    cut->SetInputData(MakeImage());
+    cut->SetVOI(half == 0 ? 0 : 20, half == 0 ? 20 : 40, 0, 40, 0, 0);
+    cut->Update();
+    blocks->SetBlock(half, cut->GetOutput());
+  }
+  filter->SetDataObject(blocks);
+  filter->Update();
+  vtkDataArray* field = filter->GetOutput()->GetPointData()->GetArray("Field");
+  ASSERT_TRUE(field);
+  const auto whole = MakeResample(pair, MakeImage());
+  whole->SetGridData(MakeCloud(points));
+  whole->Update();
+  for (vtkIdType i = 0; i < field->GetNumberOfTuples(); ++i)
+  {
+    const double expected =
+      whole->GetOutput()->GetPointData()->GetArray("Field")->GetTuple1(i);
+    if (!std::isnan(expected))
+    {
+      EXPECT_NEAR(field->GetTuple1(i), expected, 1e-12);
+    }
+  }
+}
+
+TEST(Resample, TheMeshIsItsOwnData)
+{
+  const MeshPair pair = MakePair();
+  vtkNew<vtkPolyData> source;
+  source->ShallowCopy(pair.Source);
+  vtkNew<vtkDoubleArray> field;
+  field->SetName("Field");
+  for (vtkIdType i = 0; i < source->GetNumberOfPoints(); ++i)
+  {
+    field->InsertNextValue(Field(source->GetPoint(i)));
+  }
+  source->GetPointData()->SetScalars(field);
+  const auto filter = MakeResample({ source, pair.Target }, nullptr);
+  filter->Update();
+  ExpectPulledBack(filter->GetOutput(), pair);
+}
+
+TEST(Resample, InverseIsSourceAndTargetExchanged)
+{
+  const MeshPair pair = MakePair();
+  const auto image = MakeImage();
+  const auto forward = MakeResample(pair, image);
+  const auto inverse = MakeResample({ pair.Target, pair.Source }, image);
+  inverse->InverseOn();
+  forward->Update();
+  inverse->Update();
+  vtkDataArray* a = forward->GetOutput()->GetPointData()->GetArray("Field");
+  vtkDataArray* b = inverse->GetOutput()->GetPointData()->GetArray("Field");
+  for (vtkIdType i = 0; i < a->GetNumberOfTuples(); ++i)
+  {
+    EXPECT_TRUE(a->GetTuple1(i) == b->GetTuple1(i) ||
+      (std::isnan(a->GetTuple1(i)) && std::isnan(b->GetTuple1(i))));
+  }
+}
+
+TEST(Resample, PiecesMakeTheWhole)
+{
+  const MeshPair pair = MakePair();
+  const auto whole = MakeResample(pair, MakeImage());
+  whole->Update();
+  const auto pieces = MakeResample(pair, MakeImage());
+  auto* expected = vtkImageData::SafeDownCast(whole->GetOutputDataObject(0));
+  for (int piece = 0; piece < 3; ++piece)
+  {
+    pieces->UpdatePiece(piece, 3, 0);
+    auto* part = vtkImageData::SafeDownCast(pieces->GetOutputDataObject(0));
+    EXPECT_LT(part->GetNumberOfPoints(), expected->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+    {
+      double point[3];
+      part->GetPoint(i, point);
+      const vtkIdType same = expected->FindPoint(point);
+      const double a = part->GetPointData()->GetArray("Field")->GetTuple1(i);
+      const double b = expected->GetPointData()->GetArray("Field")->GetTuple1(same);
+      EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b)));
+    }
+  }
+  EXPECT_EQ(pieces->GetNumberOfMeshBuilds(), 1);
+}
+
+TEST(Resample, NewDataDoesNotBuildTheMeshesAgain)
+{
+  const MeshPair pair = MakePair();
+  const auto filter = MakeResample(pair, MakeImage());
+  for (int i = 0; i < 4; ++i)
+  {
+    filter->SetDataObject(MakeImage());
+    filter->Update();
+  }
+  EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 1);
+}
+
+TEST(Resample, RefusalsAreReported)
+{
+  const MeshPair pair = MakePair();
+  const auto filter =
+    MakeResample({ pair.Source, MakeMesh(GridPoints(3, 1, 0.0), GridTriangles(3)) }, MakeImage());
+  Messages messages(filter.Get());
+  filter->Update();
+  EXPECT_NE(messages.Error().find("triangles"), std::string::npos) << messages.Error();
+  EXPECT_NE(filter->GetErrorCode(), 0u);
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
+}
+
+TEST(Resample, AnImageNeedsAPlaneToLieOn)
+{
+  const auto sheet = MakeSheet(4, 1, 0.5);
+  const auto filter = MakeResample({ sheet, sheet }, nullptr);
+  Messages messages(filter.Get());
+  filter->Update();
+  EXPECT_NE(messages.Error().find("parallel to the xy plane"), std::string::npos);
+  filter->SetGridData(sheet);
+  messages.Clear();
+  filter->Update();
+  EXPECT_EQ(messages.Error(), "");
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+}
+
+} // namespace
