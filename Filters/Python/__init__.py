@@ -1,0 +1,44 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Carry anything from one triangulated domain onto another with the same triangles.
+
+Two ways to use it:
+
+- the class `Homeomorphism`, with numpy arrays in and out;
+- the VTK classes `vtkDifferentiableHomeomorphism`, `vtkHomeomorphismTransform`,
+  `vtkTriangularCoordinates`, `vtkJacobianContinuity` and `vtkResampleThroughHomeomorphism`, for VTK
+  pipelines.
+
+>>> import numpy, vtkhomeomorphism
+>>> source = numpy.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
+>>> target = source.copy(); target[3] = 0.0, 1.5
+>>> f = vtkhomeomorphism.Homeomorphism(source, target, [[0, 1, 2], [0, 2, 3]])
+>>> bool(numpy.allclose(f.inverse(f([[0.4, 0.5]])), [[0.4, 0.5]], atol=1e-15))
+True
+"""
+
+from .vtkFiltersHomeomorphism import (
+    vtkDifferentiableHomeomorphism,
+    vtkHomeomorphismTransform,
+    vtkJacobianContinuity,
+    vtkResampleThroughHomeomorphism,
+    vtkTriangularCoordinates,
+)
+
+__all__ = [
+    "Homeomorphism",
+    "vtkDifferentiableHomeomorphism",
+    "vtkHomeomorphismTransform",
+    "vtkJacobianContinuity",
+    "vtkResampleThroughHomeomorphism",
+    "vtkTriangularCoordinates",
+]
+
+
+def __getattr__(name):
+    # The VTK classes do not need numpy.
+    if name == "Homeomorphism":
+        from .arrays import Homeomorphism
+
+        return Homeomorphism
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
