@@ -64,11 +64,11 @@ LineCrossing EdgeCrossings::GetCrossing(
     double reach = height;
     if (foot > along)
     {
-      reach = std::min(reach, height * along / foot);
+      reach = std::min(reach, height * (along / foot));
     }
     if (foot < along)
     {
-      reach = std::min(reach, height * (length - along) / (length - foot));
+      reach = std::min(reach, height * ((length - along) / (length - foot)));
     }
     crossing.Reach[side] = 0.5 * reach;
   }

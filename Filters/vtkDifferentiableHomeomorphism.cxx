@@ -649,6 +649,11 @@ void vtkDifferentiableHomeomorphism::Internals::Measure(
     continuity->AddObserver(vtkCommand::ProgressEvent, passOn);
   continuity->Update();
   continuity->RemoveObserver(observer);
+  if (continuity->GetAbortExecute())
+  {
+    // What an aborted run left is not to be taken for a result.
+    continuity->Modified();
+  }
 }
 
 vtkJacobianContinuity* vtkDifferentiableHomeomorphism::GetJacobianContinuity()

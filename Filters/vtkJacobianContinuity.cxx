@@ -296,7 +296,8 @@ int vtkJacobianContinuity::RequestData(
     // A homeomorphism of the very triangulation has a closed form; of another map's domain, only the
     // edges are wanted here.
     const bool known = ours && !ours->GetInverseFlag() && ours->GetTarget() && ours->GetSource() &&
-      ours->GetSource()->GetPoints() == source->GetPoints();
+      ours->GetSource()->GetPoints() == source->GetPoints() &&
+      ours->GetSource()->GetPolys() == source->GetPolys();
     options = known ? GetOptions(ours) : HomeomorphismOptions{};
     target = known ? ours->GetTarget() : nullptr;
     if (!known)

@@ -16,6 +16,14 @@
  * disagree and from the rounding of the map's values. Steps are proportions of the triangles, so
  * nothing depends on the units.
  *
+ * What is measured so has limits, and the error bounds and verdicts are estimates, not proofs. Nothing is
+ * known between the samples, nor of what happens within distances where the change of the map's values is
+ * lost in their rounding. So a second line along which the map is not smooth, too close to tell apart, may
+ * leave a place undecided, rarely make it a kink; a derivative that does have a limit but approaches it
+ * more slowly than the 0.1th power of the distance is taken for a kink; and beside needles with an area below
+ * about 1e-4 of their neighbour's the Smooth system turns within a layer too thin to see. Far from the
+ * origin less can be told than near it.
+ *
  * Output port 0 has a polyline through the sample points of each interior edge, from one of its
  * vertices to the other, with these cell arrays (double unless it says otherwise):
  *

@@ -29,9 +29,12 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -52,7 +55,8 @@ struct Run
 std::vector<Run> SplitIntoRuns(const std::string& text)
 {
   std::vector<Run> runs;
-  const auto append = [&runs](const std::string& piece, bool variable, int level) {
+  const auto append = [&runs](const std::string& piece, bool variable, int level)
+  {
     if (runs.empty() || runs.back().Variable != variable || runs.back().Level != level)
     {
       runs.push_back({ "", variable, level });
@@ -120,7 +124,8 @@ vtkTextRenderer::Metrics Measure(vtkTextProperty* letters, const std::string& te
 /// The width of text with the space around it, which bounding boxes leave out.
 int Advance(vtkTextProperty* letters, const std::string& text)
 {
-  const auto width = [letters](const std::string& t) {
+  const auto width = [letters](const std::string& t)
+  {
     const auto box = Measure(letters, t).BoundingBox;
     return box[1] - box[0];
   };
@@ -130,7 +135,8 @@ int Advance(vtkTextProperty* letters, const std::string& text)
 void AddText(vtkRenderer* renderer, vtkTextProperty* letters, const std::string& text, double x,
   double y, const Color& color, bool halo)
 {
-  const auto add = [&](double dx, double dy, const Color& ink) {
+  const auto add = [&](double dx, double dy, const Color& ink)
+  {
     vtkNew<vtkTextActor> actor;
     actor->SetInput(text.c_str());
     actor->GetTextProperty()->ShallowCopy(letters);
@@ -151,8 +157,8 @@ void AddText(vtkRenderer* renderer, vtkTextProperty* letters, const std::string&
   add(0.0, 0.0, color);
 }
 
-void AddLabel(vtkRenderer* renderer, const Point& position, const std::string& content,
-  const Lettering& style)
+void AddLabel(
+  vtkRenderer* renderer, const Point& position, const std::string& content, const Lettering& style)
 {
   const double x = position[0] * oversampling;
   const double y = position[1] * oversampling;
@@ -264,7 +270,8 @@ std::vector<Curve> CutIntoDashes(const Curve& curve, double dash)
 
 } // namespace
 
-// --- Points ---------------------------------------------------------------------------------------
+// --- Points
+// ---------------------------------------------------------------------------------------
 
 Point Add(const Point& a, const Point& b, double factor)
 {
@@ -299,7 +306,8 @@ std::string Decimal(double value, int decimals)
   return (negative ? "\u2212" : "") + std::string(digits);
 }
 
-// --- Panel ----------------------------------------------------------------------------------------
+// --- Panel
+// ----------------------------------------------------------------------------------------
 
 Panel::Panel(Drawing& drawing, const Rectangle& place, const Rectangle& world, bool stretched)
   : Page(drawing)
@@ -462,9 +470,12 @@ void Panel::Stroke(const Curve& curve, const Pen& pen)
 
 void Panel::StrokeClosed(Curve polygon, const Pen& pen)
 {
-  // Beyond the first corner, for a joint there.
   polygon.push_back(polygon[0]);
-  polygon.push_back(Between(polygon[0], polygon[1], 0.5));
+  if (pen.Dash == 0.0)
+  {
+    // Beyond the first corner, for a joint there.
+    polygon.push_back(Between(polygon[0], polygon[1], 0.5));
+  }
   this->Stroke(polygon, pen);
 }
 
@@ -552,11 +563,25 @@ void Panel::Ring(const Point& center, double radius, const Color& inside, const 
   this->Dot(center, radius - 0.5 * pen.Width, inside);
 }
 
+void Panel::Arrow(const Point& from, const Point& to, const Pen& pen)
+{
+  const Point a = this->ToPage(from);
+  const Point b = this->ToPage(to);
+  const double length = Length(Subtract(b, a));
+  const Point along = Between({ 0.0, 0.0 }, Subtract(b, a), 1.0 / length);
+  const Point side{ -along[1], along[0] };
+  const double head = 5.0 + 2.5 * pen.Width;
+  const Point base = Add(b, along, -head);
+  this->StrokeOnPage({ a, Add(b, along, -0.8 * head) }, pen);
+  this->Triangle(b, Add(base, side, 0.36 * head), Add(base, side, -0.36 * head), pen.Ink);
+}
+
 void Panel::RightAngle(
   const Point& corner, const Point& first, const Point& second, double size, const Pen& pen)
 {
   const Point origin = this->ToPage(corner);
-  const auto leg = [&](const Point& end) {
+  const auto leg = [&](const Point& end)
+  {
     const Point along = Subtract(this->ToPage(end), origin);
     return Between({ 0.0, 0.0 }, along, size / Length(along));
   };
@@ -575,9 +600,8 @@ void Panel::Image(vtkImageData* image)
   {
     for (int column = 0; column < size[0]; ++column)
     {
-      const auto component = [&](int k) {
-        return image->GetScalarComponentAsDouble(column, row, 0, k) / 255.0;
-      };
+      const auto component = [&](int k)
+      { return image->GetScalarComponentAsDouble(column, row, 0, k) / 255.0; };
       const Color color{ component(0), component(1), component(2) };
       const double left = origin[0] + (column - 0.5) * spacing[0];
       const double bottom = origin[1] + (row - 0.5) * spacing[1];
@@ -605,7 +629,8 @@ void Panel::Label(
   this->Page.Texts.push_back({ Add(this->ToPage(point), offset), text, lettering });
 }
 
-// --- Drawing --------------------------------------------------------------------------------------
+// --- Drawing
+// --------------------------------------------------------------------------------------
 
 Drawing::Drawing(int width, int height)
   : Width(width)
@@ -704,7 +729,8 @@ void Drawing::Write(const std::string& fileName) const
   std::cout << "wrote " << fileName << std::endl;
 }
 
-// --- The programs ---------------------------------------------------------------------------------
+// --- The programs
+// ---------------------------------------------------------------------------------
 
 int RunFigure(int argc, char* argv[], const std::vector<std::string>& options,
   const std::function<void(const std::string&, const std::vector<std::string>&)>& draw)

@@ -68,11 +68,12 @@ class Drawing;
 class Panel
 {
 public:
-  /// Shows @a world in @a place: the same scale in x and y, centred, or as it takes to fill the place
-  /// if it is @a stretched.
+  /// Shows @a world in @a place: the same scale in x and y, centred, or as it takes to fill the
+  /// place if it is @a stretched.
   Panel(Drawing& drawing, const Rectangle& place, const Rectangle& world, bool stretched = false);
 
   Point ToPage(const Point& point) const;
+  const Rectangle& GetPlace() const { return this->Place; }
 
   /// A polygon that is star-shaped about the mean of its corners.
   void Fill(const Curve& polygon, const Color& color);
@@ -84,20 +85,22 @@ public:
   void StrokeLines(vtkPolyData* lines, const Pen& pen);
   /// All sides of the polygons of a vtkPolyData, each once.
   void StrokeEdges(vtkPolyData* mesh, const Pen& pen);
-  void StrokeArc(const Point& center, double radius, double fromAngle, double toAngle, const Pen& pen);
+  void StrokeArc(
+    const Point& center, double radius, double fromAngle, double toAngle, const Pen& pen);
   void StrokeCircle(const Point& center, double radius, const Pen& pen);
   void FillCircle(const Point& center, double radius, const Color& color);
   /// A dot whose radius is in pixels.
   void Dot(const Point& center, double radius, const Color& color);
   void Ring(const Point& center, double radius, const Color& inside, const Pen& pen);
+  void Arrow(const Point& from, const Point& to, const Pen& pen);
   /// Two short lines that make a square with the directions from @a corner to the other two points.
   void RightAngle(
     const Point& corner, const Point& first, const Point& second, double size, const Pen& pen);
   /// A colour image, at its own origin and spacing.
   void Image(vtkImageData* image);
   void Frame(const Pen& pen);
-  /// Text beside a point, @a offset in pixels. Its middle line is at the point's height. Between two
-  /// dollar signs letters are set as variables; _x, ^x, _{...}, ^{...} are set low and high.
+  /// Text beside a point, @a offset in pixels. Its middle line is at the point's height. Between
+  /// two dollar signs letters are set as variables; _x, ^x, _{...}, ^{...} are set low and high.
   void Label(const Point& point, const std::string& text, const Lettering& lettering = {},
     const Point& offset = { 0.0, 0.0 });
 
@@ -125,7 +128,8 @@ public:
   void ColorBar(const Rectangle& place, const std::function<Color(double)>& colorOf,
     const std::vector<std::pair<double, std::string>>& ticks);
 
-  /// Renders and writes a PNG. Needs a display (X). Throws std::runtime_error if it cannot be written.
+  /// Renders and writes a PNG. Needs a display (X). Throws std::runtime_error if it cannot be
+  /// written.
   void Write(const std::string& fileName) const;
 
 private:
@@ -158,10 +162,11 @@ double Length(const Point& a);
 /// A number with this many decimals, with a minus sign that is as long as a plus.
 std::string Decimal(double value, int decimals);
 
-/// What the eight programs have in common: finds the folder among the arguments (an argument that is no
-/// option; Output/Figures by default), makes it, hands @a draw its path, and reports what goes wrong.
-/// Options are handed on, too. Returns what main should.
+/// What the eight programs have in common: finds the folder among the arguments (an argument that
+/// is no option; Output/Figures by default), makes it, hands @a draw its path, and reports what
+/// goes wrong. Options are handed on, too. Returns what main should.
 int RunFigure(int argc, char* argv[], const std::vector<std::string>& options,
-  const std::function<void(const std::string& folder, const std::vector<std::string>& given)>& draw);
+  const std::function<void(const std::string& folder, const std::vector<std::string>& given)>&
+    draw);
 
 #endif

@@ -1,100 +1,103 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A discordant triangle: a foot of its centroid lies outside an edge. From the incenter, and in the Smooth
-// system, it has a grid all the same.
+// A discordant triangle: why contours cannot start at its centroid, and its grids from the incenter
+// and in the Smooth system.
 
 #include "Drawing.h"
 #include "Meshes.h"
 
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+
+#include <array>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace
 {
 
 const Color ink{ 0.13, 0.14, 0.17 };
-const Color faint{ 0.60, 0.63, 0.68 };
-const Color footColor{ 0.80, 0.22, 0.15 };
-const Color segmentColor{ 0.15, 0.50, 0.35 };
+const Color centerColor{ 0.80, 0.36, 0.08 };
 const Color contourColor{ 0.13, 0.40, 0.67 };
 const Color ringColor{ 0.85, 0.45, 0.13 };
+const Color outsideColor{ 0.82, 0.08, 0.16 };
 
-void DrawFeet(Panel& panel, const Curve& corners)
+void DrawFeet(Panel& panel, vtkPolyData* mesh)
 {
-  const Point centroid =
-    Between(corners[0], Between(corners[1], corners[2], 0.5), 2.0 / 3.0);
+  const Curve corners = GetTriangle(mesh, 0);
+  const Point center = Between(corners[0], Between(corners[1], corners[2], 0.5), 2.0 / 3.0);
+  panel.Fill(corners, { 0.955, 0.962, 0.975 });
+  panel.StrokeEdges(mesh, { ink, 2.6 });
   for (std::size_t k = 0; k < 3; ++k)
   {
     const Point& a = corners[k];
     const Point& b = corners[(k + 1) % 3];
     const Point edge = Subtract(b, a);
-    const double proportion =
-      ScalarProduct(Subtract(centroid, a), edge) / ScalarProduct(edge, edge);
-    const Point foot = Add(a, edge, proportion);
-    const bool outside = proportion <= 0.0 || proportion >= 1.0;
-    std::cout << "foot at " << proportion << " of the edge\n";
-    if (outside)
+    const double share = ScalarProduct(Subtract(center, a), edge) / ScalarProduct(edge, edge);
+    const Point foot = Add(a, edge, share);
+    const bool inside = share > 0.0 && share < 1.0;
+    const Color& color = inside ? centerColor : outsideColor;
+    if (!inside)
     {
-      panel.Stroke({ b, Add(a, edge, proportion + 0.25) }, { faint, 1.5, 5.0 });
+      std::cout << "the foot is at " << share << " of the edge\n";
+      panel.Stroke(
+        { share < 0.0 ? a : b, Add(foot, edge, share < 0.0 ? -0.25 : 0.25) }, { ink, 1.8, 7.0 });
     }
-    panel.Stroke({ centroid, foot }, { outside ? footColor : segmentColor, 2.2 });
-    panel.RightAngle(foot, a, centroid, 9.0, { outside ? footColor : segmentColor, 1.3 });
-    panel.Dot(foot, outside ? 5.0 : 3.5, outside ? footColor : segmentColor);
-    if (outside)
-    {
-      Lettering lettering;
-      lettering.Size = 16.0;
-      lettering.Ink = footColor;
-      lettering.Horizontal = Alignment::Left;
-      panel.Label(foot, "foot outside", lettering, { 10.0, -14.0 });
-    }
+    panel.Stroke({ center, foot }, { color, 2.2 });
+    panel.RightAngle(foot, center, share < 0.5 ? b : a, 11.0, { color, 1.4 });
+    panel.Dot(foot, inside ? 3.8 : 5.6, color);
   }
-  panel.Dot(centroid, 4.5, ink);
-  panel.Label(centroid, "$G$", {}, { -15.0, -2.0 });
+  panel.Dot(center, 4.6, ink);
+  panel.Label(center, "$G$", { 20.0 }, { 17.0, -9.0 });
 }
 
-void DrawGrid(Panel& panel, vtkPolyData* mesh, int system, int center)
+void DrawGrid(Panel& panel, vtkPolyData* mesh, int system, int centerPoint)
 {
-  const auto coordinates = MakeCoordinates(mesh, system, 8, 6, center);
+  const auto coordinates = MakeCoordinates(mesh, system, 6, 5, centerPoint);
+  vtkDataArray* const used =
+    coordinates->GetTriangulation()->GetCellData()->GetArray("UsedCoordinateSystem");
+  if (static_cast<int>(used->GetTuple1(0)) != system)
+  {
+    throw std::runtime_error("The triangle's grid is not the one that was asked for.");
+  }
   panel.StrokeLines(
-    SelectLines(coordinates, vtkTriangularCoordinates::RING_LINE), { ringColor, 1.1 });
+    SelectLines(coordinates, vtkTriangularCoordinates::RING_LINE), { ringColor, 1.0 });
   panel.StrokeLines(
-    SelectLines(coordinates, vtkTriangularCoordinates::CONTOUR_LINE), { contourColor, 1.2 });
+    SelectLines(coordinates, vtkTriangularCoordinates::CONTOUR_LINE), { contourColor, 1.1 });
+  panel.StrokeEdges(mesh, { ink, 2.6 });
 }
 
 void Draw(const std::string& folder)
 {
-  const Curve corners{ { 0.0, 0.0 }, { 2.0, 0.0 }, { 4.7, 2.5 } };
-  const auto mesh = MakeMesh(corners, { { 0, 1, 2 } });
+  const auto mesh = MakeMesh({ { 0.0, 0.0 }, { 1.0, 0.0 }, { -1.6, 1.7 } }, { { 0, 1, 2 } });
   if (IsConcordant(MakeCoordinates(mesh, vtkTriangularCoordinates::CONTOUR, 1, 1), 0))
   {
-    throw std::runtime_error("The triangle should be discordant.");
+    throw std::runtime_error("The triangle is concordant.");
   }
-  constexpr int width = 1240;
-  constexpr int height = 320;
-  constexpr double panelWidth = 395.0;
-  Drawing drawing(width, height);
+  constexpr int height = 330;
+  Drawing drawing(1240, height);
   Panel page = drawing.GetPage();
-  const std::array<std::string, 3> titles{ "Contour: discordant", "Contour, from the incenter",
+  const std::array<std::string, 3> titles{ "From the centroid: discordant", "From the incenter",
     "Smooth" };
-  for (std::size_t i = 0; i < 3; ++i)
+  for (std::size_t k = 0; k < 3; ++k)
   {
-    const double left = 12.0 + 411.0 * static_cast<double>(i);
-    page.Label({ left + 0.5 * panelWidth, height - 24.0 }, titles[i], { 20.0 });
-    Panel panel(drawing, { left, 10.0, panelWidth, 255.0 }, { -0.1, -0.4, 4.9, 3.05 });
-    if (i == 1)
+    const double left = 10.0 + 410.0 * static_cast<double>(k);
+    Panel panel(drawing, { left, 8.0, 400.0, 270.0 }, { -1.66, -0.09, 2.72, 1.86 });
+    page.Label({ left + 200.0, height - 26.0 }, titles[k], { 20.0 });
+    if (k == 0)
+    {
+      DrawFeet(panel, mesh);
+    }
+    else if (k == 1)
     {
       DrawGrid(panel, mesh, vtkTriangularCoordinates::CONTOUR, vtkTriangularCoordinates::INCENTER);
     }
-    else if (i == 2)
+    else
     {
       DrawGrid(panel, mesh, vtkTriangularCoordinates::SMOOTH, vtkTriangularCoordinates::CENTROID);
-    }
-    panel.StrokeEdges(mesh, { ink, 2.4 });
-    if (i == 0)
-    {
-      DrawFeet(panel, corners);
     }
   }
   drawing.Write(folder + "/figure-4-discordant.png");

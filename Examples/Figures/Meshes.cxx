@@ -11,8 +11,12 @@
 #include "vtkPoints.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace
 {
@@ -173,6 +177,33 @@ Curve Divide(const Point& from, const Point& to, int pieces)
     curve.push_back(Between(from, to, static_cast<double>(k) / pieces));
   }
   return curve;
+}
+
+std::vector<Curve> BoundaryEdges(vtkPolyData* mesh)
+{
+  std::map<std::pair<vtkIdType, vtkIdType>, int> uses;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < mesh->GetPolys()->GetNumberOfCells(); ++cell)
+  {
+    mesh->GetPolys()->GetCellAtId(cell, ids);
+    for (vtkIdType k = 0; k < 3; ++k)
+    {
+      ++uses[std::minmax({ ids->GetId(k), ids->GetId((k + 1) % 3) })];
+    }
+  }
+  std::vector<Curve> edges;
+  for (const auto& [ends, count] : uses)
+  {
+    if (count == 1)
+    {
+      double a[3];
+      double b[3];
+      mesh->GetPoint(ends.first, a);
+      mesh->GetPoint(ends.second, b);
+      edges.push_back({ { a[0], a[1] }, { b[0], b[1] } });
+    }
+  }
+  return edges;
 }
 
 std::vector<Curve> CrossMesh(vtkPolyData* mesh, const Point& from, const Point& to)

@@ -27,8 +27,8 @@ vtkSmartPointer<vtkPolyData> MakeMesh(
 
 Curve GetTriangle(vtkPolyData* mesh, vtkIdType triangle);
 
-/// Triangular coordinates of a mesh, with lines. Discordant triangles have Linear lines in the Contour
-/// system. Throws std::runtime_error if the mesh is refused.
+/// Triangular coordinates of a mesh, with lines. Discordant triangles have Linear lines in the
+/// Contour system. Throws std::runtime_error if the mesh is refused.
 vtkSmartPointer<vtkTriangularCoordinates> MakeCoordinates(
   vtkPolyData* mesh, int coordinateSystem, int contours, int rings, int centerPoint = 0);
 
@@ -38,8 +38,8 @@ vtkSmartPointer<vtkPolyData> SelectLines(
 
 bool IsConcordant(vtkTriangularCoordinates* coordinates, vtkIdType triangle);
 
-/// The map between two planar meshes. Throws std::runtime_error if they are refused, or in the Contour
-/// system if a triangle is discordant.
+/// The map between two planar meshes. Throws std::runtime_error if they are refused, or in the
+/// Contour system if a triangle is discordant.
 vtkSmartPointer<vtkHomeomorphismTransform> MakeMap(
   vtkPolyData* source, vtkPolyData* target, int coordinateSystem);
 
@@ -49,7 +49,11 @@ Curve MapCurve(vtkHomeomorphismTransform* map, const Curve& curve);
 /// A straight line in many pieces.
 Curve Divide(const Point& from, const Point& to, int pieces);
 
-/// The pieces of a straight line that are inside a mesh, each with its crossings of edges in between.
+/// The edges that one triangle only has.
+std::vector<Curve> BoundaryEdges(vtkPolyData* mesh);
+
+/// The pieces of a straight line that are inside a mesh, each with its crossings of edges in
+/// between.
 std::vector<Curve> CrossMesh(vtkPolyData* mesh, const Point& from, const Point& to);
 
 #endif

@@ -26,8 +26,10 @@ struct DerivativeEstimate
 /// Difference quotients of a function of one variable, f(t) for t >= 0, over shrinking steps h, and their
 /// Richardson extrapolation to h = 0.
 ///
-/// Steps are halved at first, while the extrapolation gains most, then quartered: the small ones are
-/// there to see a border between two pieces of the function close to 0.
+/// Steps are halved at first, while the extrapolation gains most. Then they shrink faster, down to where
+/// nothing but a large change can be told from rounding: the small ones are there to see a border between
+/// two pieces of the function close to 0. Their ratios are no powers of 2, lest a function that repeats
+/// itself from scale to scale deceives them all.
 ///
 /// The error of the quotients is a power series in h if the function is smooth on its side. Where it is
 /// so only near 0, as for a map made of pieces, the rows of small steps agree with each other; where the
@@ -38,8 +40,8 @@ class OneSidedDerivative
 {
 public:
   using Vector = std::array<double, 3>;
-  static constexpr int MaximumSteps = 18;
-  /// As many steps leave the quartering out: enough where only the size of a derivative is wanted.
+  static constexpr int MaximumSteps = 22;
+  /// As many steps are halved: enough where only the size of a derivative is wanted.
   static constexpr int HalvedSteps = 11;
 
   /// Quotients of order 1, (f(h) - f(0)) / h, or 2, (f(2 h) - 2 f(h) + f(0)) / h^2.
@@ -52,29 +54,38 @@ public:
     : NumberOfSteps(steps)
   {
     const Vector start = function(0.0);
-    Vector far = order == 1 ? start : function(largestStep);
+    const Vector end = function(largestStep);
+    const double slope = Distance(start, end) / largestStep;
+    // A function that does not change where it should is known to no better than that: its values were
+    // stored, or found, with fewer digits than they have.
+    double quantum = 0.0;
     Vector last = start;
     for (int i = 0; i < this->NumberOfSteps; ++i)
     {
       const double step = largestStep * StepRatio(i) / order;
       this->Steps[i] = step;
+      const Vector near = order == 1 && i == 0 ? end : function(step);
+      if (near == start)
+      {
+        quantum = std::max(quantum, slope * step);
+      }
       if (order == 1)
       {
-        this->Quotients[i] = Quotient(start, function(step), step);
-        this->Rounding[i] = 2.0 * rounding / step;
+        this->Quotients[i] = Quotient(start, near, step);
         continue;
       }
-      const Vector near = function(step);
       // Twice the step is the step before, as long as steps are halved.
-      if (i > 0)
-      {
-        far = 2.0 * step == this->Steps[i - 1] ? last : function(2.0 * step);
-      }
-      const Vector nearHalf = Quotient(start, near, step);
-      const Vector farHalf = Quotient(near, far, step);
-      this->Quotients[i] = Quotient(nearHalf, farHalf, step);
-      this->Rounding[i] = 4.0 * rounding / step / step;
+      const Vector far =
+        i == 0 ? end : (2.0 * step == this->Steps[i - 1] ? last : function(2.0 * step));
+      this->Quotients[i] =
+        Quotient(Quotient(start, near, step), Quotient(near, far, step), step);
       last = near;
+    }
+    const double error = std::max(rounding, 2.0 * quantum);
+    for (int i = 0; i < this->NumberOfSteps; ++i)
+    {
+      const double step = this->Steps[i];
+      this->Rounding[i] = order == 1 ? 2.0 * error / step : 4.0 * error / step / step;
     }
   }
 
@@ -95,15 +106,26 @@ public:
       const auto best = std::min_element(begin + first, end,
         [](const DerivativeEstimate& a, const DerivativeEstimate& b) { return a.Error < b.Error; });
       // Large steps may agree on the wrong limit, that of another piece of the map. Smaller ones, which
-      // do not reach that piece, then contradict them.
-      const bool contradicted =
-        std::any_of(best, end, [best](const DerivativeEstimate& row) {
-          return Distance(row.Value, best->Value) > row.Error + best->Error;
-        });
+      // do not reach that piece, then contradict them: their quotients are farther from the limit than
+      // rounding and a straight approach to it explain.
+      const int row = static_cast<int>(best - begin);
+      const double approach =
+        4.0 * Distance(this->Quotients[row], best->Value) / this->Steps[row];
+      bool contradicted = false;
+      for (int i = row + 1; i < this->NumberOfSteps && !contradicted; ++i)
+      {
+        contradicted = Distance(this->Quotients[i], best->Value) >
+          8.0 * this->Rounding[i] + best->Error + approach * this->Steps[i];
+      }
       if (!contradicted)
       {
         // Neighbours in the tableau can agree by chance; the next best row hardly does as well.
         DerivativeEstimate result = *best;
+        if (!std::isfinite(result.Error))
+        {
+          result.Value.fill(std::numeric_limits<double>::quiet_NaN());
+          return result;
+        }
         const auto next = best + 1 != end ? best + 1 : best - 1;
         result.Error = std::max(result.Error, 2.0 * Distance(result.Value, next->Value));
         return result;
@@ -115,8 +137,14 @@ public:
 private:
   static double StepRatio(int i)
   {
-    constexpr int halvings = HalvedSteps - 1;
-    return std::ldexp(1.0, i <= halvings ? -i : halvings - 2 * i);
+    if (i < HalvedSteps)
+    {
+      return std::ldexp(1.0, -i);
+    }
+    // To 2^-10 / 4000 in six more steps, then to 2^-10 / 8e8 in five.
+    constexpr std::array<double, MaximumSteps - HalvedSteps> rest{ 0.27, 0.07, 0.019, 5e-3, 1.3e-3,
+      2.5e-4, 4e-5, 3e-6, 2e-7, 1.7e-8, 1.25e-9 };
+    return std::ldexp(rest[i - HalvedSteps], 1 - HalvedSteps);
   }
 
   /// (b - a) / step.

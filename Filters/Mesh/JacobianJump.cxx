@@ -96,7 +96,7 @@ double ObservedOrder(const OneSidedDerivative& any, DifferenceAt&& differenceAt,
   for (int i = 0; i < any.GetNumberOfSteps(); ++i)
   {
     const double difference = differenceAt(i);
-    if (!(difference > 16.0 * roundingAt(i)))
+    if (!(difference > 64.0 * roundingAt(i)))
     {
       break;
     }
@@ -110,21 +110,29 @@ double ObservedOrder(const OneSidedDerivative& any, DifferenceAt&& differenceAt,
   {
     return JacobianJump::None;
   }
-  // The later half: closer to the limit.
-  const auto begin = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
+  // The last few: closest to the limit.
+  const auto begin = slopes.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, slopes.size()));
   const auto middle = begin + (slopes.end() - begin) / 2;
   std::nth_element(begin, middle, slopes.end());
   return *middle;
 }
 
-JumpVerdict Conclude(const JacobianJump& jump, double resolution)
+/// @a magnification is how much larger the jump is relative to the derivative that jumps than to the
+/// whole Jacobian: much, where the map stretches along the line far more than across it.
+JumpVerdict Conclude(const JacobianJump& jump, double magnification, double resolution)
 {
-  if (jump.Jump > 2.0 * jump.Error && jump.Jump > resolution)
+  const double size = magnification * jump.Jump;
+  const double error = magnification * jump.Error;
+  // A jump that shrinks with the step may be that of another border of the map, closer than the steps
+  // can tell, unless the extrapolation leaves no doubt.
+  if (size > 2.0 * error && size > resolution &&
+    (std::abs(jump.Order) < 0.1 || size > 1000.0 * error))
   {
     return JumpVerdict::Kink;
   }
-  return jump.Jump + jump.Error <= resolution ? JumpVerdict::Differentiable
-                                              : JumpVerdict::Undecided;
+  // One that grows is that of a map torn apart.
+  return size + error <= resolution && !(jump.Order < -0.5) ? JumpVerdict::Differentiable
+                                                            : JumpVerdict::Undecided;
 }
 
 /// The map along a ray.
@@ -343,7 +351,8 @@ JacobianJump EstimateJump(
     [&](int i) {
       return sides[0].Quotients.GetRounding(i) + sides[1].Quotients.GetRounding(i);
     });
-  jump.Verdict = Conclude(jump, resolution);
+  const double across = 0.5 * (Length(first[0].Limit.Value) + Length(first[1].Limit.Value));
+  jump.Verdict = Conclude(jump, order == 1 ? norm / across : 1.0, resolution);
   return jump;
 }
 
@@ -381,7 +390,7 @@ JacobianJump EstimateJump(const MapUnderTest& map, const Star& star, double reso
       return deviation.LargestError(
         [&](std::size_t ray) { return quotients[ray].GetRounding(i); });
     });
-  jump.Verdict = Conclude(jump, resolution);
+  jump.Verdict = Conclude(jump, 1.0, resolution);
   return jump;
 }
 

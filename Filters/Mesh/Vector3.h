@@ -30,7 +30,8 @@ inline Vector3 Scaled(const Vector3& a, double factor)
 
 inline double Length(const Vector3& a)
 {
-  return std::hypot(a[0], a[1], a[2]);
+  // The function of three arguments takes (0, NaN, NaN) for 0 in some libraries.
+  return std::hypot(std::hypot(a[0], a[1]), a[2]);
 }
 
 inline double Dot3(const Vector3& a, const Vector3& b)

@@ -8,14 +8,17 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkCellArray.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkJacobianContinuity.h"
+#include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <set>
 #include <vector>
@@ -301,6 +304,158 @@ TEST(JacobianContinuity, TrianglesAndPointsCarryTheLargestJump)
   EXPECT_EQ(pointJump->GetRange()[1], filter->GetLargestJump());
   EXPECT_EQ(filter->GetOutput()->GetNumberOfCells() * 2 + filter->GetNumberOfBoundaryEdges(),
     3 * pair.Source->GetNumberOfCells());
+}
+
+/// A map with something done to its values.
+class AlteredMap : public PiecewiseMap
+{
+public:
+  static AlteredMap* New();
+  vtkTypeMacro(AlteredMap, PiecewiseMap);
+  std::function<double(double)> Alter;
+  vtkAbstractTransform* MakeTransform() override { return AlteredMap::New(); }
+
+protected:
+  using PiecewiseMap::ForwardTransformPoint;
+  void ForwardTransformPoint(const double in[3], double out[3]) override
+  {
+    this->Map(in, out);
+    out[0] = this->Alter(out[0]);
+    out[1] = this->Alter(out[1]);
+  }
+};
+vtkStandardNewMacro(AlteredMap);
+
+TEST(JacobianContinuity, ValuesOfFewDigitsAreNotTakenForKinks)
+{
+  vtkNew<AlteredMap> map;
+  for (const std::function<double(double)>& alter :
+    { std::function<double(double)>([](double x) { return double(static_cast<float>(x)); }),
+      std::function<double(double)>([](double x) { return std::round(1e6 * x) / 1e6; }) })
+  {
+    map->Alter = alter;
+    map->Amount = 0.0;
+    map->Modified();
+    EXPECT_EQ(Measure(RegularGrid(14), map)->GetNumberOfKinks(), 0);
+    map->Amount = 0.5;
+    map->Modified();
+    EXPECT_EQ(Measure(RegularGrid(14), map)->GetNumberOfKinks(), 14);
+  }
+}
+
+TEST(JacobianContinuity, WhatIsNotANumberIsUndecided)
+{
+  vtkNew<AlteredMap> map;
+  map->Alter = [](double x) { return x > 3.5 ? std::numeric_limits<double>::quiet_NaN() : x; };
+  const auto filter = Measure(RegularGrid(14), map);
+  vtkIdType unknown = 0;
+  for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
+  {
+    const double jump = EdgeArray(filter, "JacobianJump")->GetTuple1(i);
+    EXPECT_NE(EdgeArray(filter, "Verdict")->GetTuple1(i), vtkJacobianContinuity::KINK);
+    EXPECT_TRUE(std::isnan(jump) || jump < 1e-6) << jump;
+    unknown += std::isnan(jump);
+  }
+  EXPECT_GT(unknown, 100);
+}
+
+TEST(JacobianContinuity, NationalGridsAreMeasured)
+{
+  // Seven digits before the point: much is left open, nothing is wrong.
+  const MeshPair near = MakePlanarPair(12, 3, 0.2);
+  MeshPair far;
+  for (auto side : { &MeshPair::Source, &MeshPair::Target })
+  {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (vtkIdType i = 0; i < (near.*side)->GetNumberOfPoints(); ++i)
+    {
+      double point[3];
+      (near.*side)->GetPoint(i, point);
+      points->InsertNextPoint(1000.0 * point[0] + 3.2e6, 1000.0 * point[1] + 6.7e6, 0.0);
+    }
+    far.*side = vtkSmartPointer<vtkPolyData>::New();
+    (far.*side)->SetPoints(points);
+    (far.*side)->SetPolys((near.*side)->GetPolys());
+  }
+  for (int system = 0; system < 3; ++system)
+  {
+    const auto filter = Measure(far.Source, far.Target, system);
+    const vtkIdType edges = filter->GetOutput()->GetNumberOfCells();
+    if (system == vtkJacobianContinuity::SMOOTH)
+    {
+      EXPECT_EQ(filter->GetNumberOfKinks(), 0);
+    }
+    else
+    {
+      EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 0);
+      EXPECT_GT(filter->GetNumberOfKinks(), edges * 9 / 10);
+    }
+  }
+}
+
+TEST(JacobianContinuity, ScaleDoesNotMatter)
+{
+  const MeshPair pair = MakePlanarPair(4, 3, 0.2);
+  for (const double scale : { 1e-300, 1e-160, 1e160, 1e300 })
+  {
+    MeshPair scaled;
+    for (auto side : { &MeshPair::Source, &MeshPair::Target })
+    {
+      vtkNew<vtkPoints> points;
+      points->SetDataTypeToDouble();
+      for (vtkIdType i = 0; i < (pair.*side)->GetNumberOfPoints(); ++i)
+      {
+        double point[3];
+        (pair.*side)->GetPoint(i, point);
+        points->InsertNextPoint(scale * point[0], scale * point[1], 0.0);
+      }
+      scaled.*side = vtkSmartPointer<vtkPolyData>::New();
+      (scaled.*side)->SetPoints(points);
+      (scaled.*side)->SetPolys((pair.*side)->GetPolys());
+    }
+    for (int system = 0; system < 3; ++system)
+    {
+      SCOPED_TRACE("scale " + std::to_string(std::log10(scale)) + ", system " +
+        std::to_string(system));
+      const auto expected = Measure(pair.Source, pair.Target, system);
+      const auto found = Measure(scaled.Source, scaled.Target, system);
+      EXPECT_EQ(found->GetNumberOfKinks(), expected->GetNumberOfKinks());
+      EXPECT_EQ(
+        found->GetNumberOfDifferentiableEdges(), expected->GetNumberOfDifferentiableEdges());
+    }
+  }
+}
+
+TEST(JacobianContinuity, OurTransformIsMeasuredOnOtherTrianglesOfItsPoints)
+{
+  const MeshPair pair = MakePlanarPair(5, 6);
+  vtkNew<vtkHomeomorphismTransform> transform;
+  transform->SetSource(pair.Source);
+  transform->SetTarget(pair.Target);
+  vtkNew<vtkPolyData> part;
+  part->SetPoints(pair.Source->GetPoints());
+  vtkNew<vtkCellArray> triangles;
+  triangles->InsertNextCell({ 0, 1, 7 });
+  triangles->InsertNextCell({ 1, 2, 7 });
+  part->SetPolys(triangles);
+  Messages messages(transform.Get());
+  const auto filter = Measure(part, transform);
+  EXPECT_EQ(messages.Error(), "");
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 1);
+  EXPECT_EQ(filter->GetErrorCode(), 0u);
+}
+
+TEST(JacobianContinuity, StretchAlongTheEdgeHidesNoKink)
+{
+  // The map stretches by 1 and 3 across an edge, and by 1e8 along it.
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };
+  const auto source =
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1, 0 }, { 0.5, -1, 0 } }, triangles);
+  const auto target =
+    MakeMesh({ { 0, 0, 0 }, { 1e8, 0, 0 }, { 0.5e8, 1, 0 }, { 0.5e8, -3, 0 } }, triangles);
+  const auto filter = Measure(source, target, vtkJacobianContinuity::LINEAR);
+  EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 0);
 }
 
 TEST(JacobianContinuity, NeedsAMap)

@@ -304,11 +304,14 @@ TEST(JacobianPlaces, SmoothIsTwiceDifferentiableWithinTriangles)
   filter->SpokesOn();
   filter->SecondDerivativesOn();
   filter->Update();
+  vtkIdType decided = 0;
   for (vtkIdType cell = 0; cell < filter->GetOutput()->GetNumberOfCells(); ++cell)
   {
-    EXPECT_EQ(CellValue(filter, "Verdict", cell), Continuity::DIFFERENTIABLE);
+    EXPECT_NE(CellValue(filter, "Verdict", cell), Continuity::KINK);
     EXPECT_NE(CellValue(filter, "SecondDerivativeVerdict", cell), Continuity::KINK);
+    decided += CellValue(filter, "Verdict", cell) == Continuity::DIFFERENTIABLE;
   }
+  EXPECT_GE(100 * decided, 98 * filter->GetOutput()->GetNumberOfCells());
 }
 
 TEST(JacobianPlaces, VerticesOfSurfacesHaveNothingToCompare)
@@ -411,6 +414,27 @@ TEST(JacobianPlaces, TheHomeomorphismOffersTheSame)
     EXPECT_LT(map->GetOutputDataObject(1)->GetNumberOfElements(vtkDataObject::CELL),
       alone->GetOutput()->GetNumberOfCells());
   }
+}
+
+TEST(JacobianPlaces, AnAbortedMeasurementIsMadeAgain)
+{
+  const MeshPair pair = MakePlanarPair(40, 2);
+  const auto map = filter_runs::MakeFilter(filter_runs::Smooth, pair);
+  map->MeasureContinuityOn();
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    auto* algorithm = vtkAlgorithm::SafeDownCast(caller);
+    algorithm->SetAbortExecute(algorithm->GetProgress() > 0.2);
+  });
+  const unsigned long observer = map->AddObserver(vtkCommand::ProgressEvent, abort);
+  map->Update();
+  EXPECT_EQ(map->GetOutputDataObject(1)->GetNumberOfElements(vtkDataObject::CELL), 0);
+  map->RemoveObserver(observer);
+  map->SetAbortExecute(0);
+  map->Modified();
+  map->Update();
+  EXPECT_EQ(
+    map->GetOutputDataObject(1)->GetNumberOfElements(vtkDataObject::CELL), 3 * 1600 - 80);
 }
 
 TEST(JacobianPlaces, TheHomeomorphismDoesNotRunTwiceForNothing)
