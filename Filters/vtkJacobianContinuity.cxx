@@ -270,7 +270,7 @@ int vtkJacobianContinuity::RequestUpdateExtent(
 }
 
 int vtkJacobianContinuity::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
@@ -319,6 +319,10 @@ int vtkJacobianContinuity::RequestData(
     vtkErrorMacro(<< "A transform is measured on a planar triangulation only. For a surface, give the "
                      "target mesh (input port 1).");
     return 0;
+  }
+  if (!IsFirstPiece(request, outputs))
+  {
+    return 1;
   }
 
   const bool planar = map->GetPair().HasTarget()
