@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string>
 
 namespace homeomorphism
@@ -120,16 +121,57 @@ inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outIn
   outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
 }
 
-/// Asks for a mesh as a whole, whatever piece of the data is asked for.
-inline void RequestWholeMesh(vtkInformation* meshInfo)
+/// Asks for an input as a whole, whatever piece of the output is asked for.
+inline void RequestWhole(vtkInformation* info)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (meshInfo)
+  if (!info)
   {
-    meshInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-    meshInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    meshInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    return;
   }
+  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  // The extent there is the output's, which means nothing to this input.
+  if (info->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+  }
+  else
+  {
+    info->Remove(Pipeline::UPDATE_EXTENT());
+  }
+}
+
+inline void CollectUpstream(vtkAlgorithm* algorithm, int port, std::set<vtkAlgorithm*>& found)
+{
+  for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+  {
+    vtkAlgorithm* producer = algorithm->GetInputAlgorithm(port, i);
+    if (producer && found.insert(producer).second)
+    {
+      for (int next = 0; next < producer->GetNumberOfInputPorts(); ++next)
+      {
+        CollectUpstream(producer, next, found);
+      }
+    }
+  }
+}
+
+/// Whether what comes in at a port and what comes in at the ports before it, which are asked for whole,
+/// are made from the same things. Those cannot be asked for both whole and in pieces at the same time:
+/// then this port must be asked for whole, too, and what becomes of it is part of piece 0.
+inline bool SharesUpstreamWithPortsBefore(vtkAlgorithm* algorithm, int port)
+{
+  std::set<vtkAlgorithm*> before;
+  for (int i = 0; i < port; ++i)
+  {
+    CollectUpstream(algorithm, i, before);
+  }
+  std::set<vtkAlgorithm*> upstream;
+  CollectUpstream(algorithm, port, upstream);
+  return std::any_of(upstream.begin(), upstream.end(),
+    [&before](vtkAlgorithm* producer) { return before.count(producer) > 0; });
 }
 
 /// Puts a new object of a type into an output, unless one of that type is there.

@@ -264,8 +264,8 @@ int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* in
 int vtkJacobianContinuity::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  RequestWholeMesh(inputs[0]->GetInformationObject(0));
-  RequestWholeMesh(inputs[1]->GetInformationObject(0));
+  RequestWhole(inputs[0]->GetInformationObject(0));
+  RequestWhole(inputs[1]->GetInformationObject(0));
   return 1;
 }
 

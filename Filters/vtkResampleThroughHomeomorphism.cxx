@@ -255,16 +255,15 @@ int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   for (int port = 0; port < 3; ++port)
   {
-    vtkInformation* info = inputs[port]->GetInformationObject(0);
-    RequestWholeMesh(info);
-    if (info && info->Has(Pipeline::WHOLE_EXTENT()))
-    {
-      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
-    }
+    RequestWhole(inputs[port]->GetInformationObject(0));
   }
   vtkInformation* gridInfo = inputs[3]->GetInformationObject(0);
   vtkInformation* outInfo = outputs->GetInformationObject(0);
-  if (gridInfo)
+  if (gridInfo && SharesUpstreamWithPortsBefore(this, 3))
+  {
+    RequestWhole(gridInfo);
+  }
+  else if (gridInfo)
   {
     for (auto* key : { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
            Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
@@ -295,7 +294,7 @@ vtkDataSet* vtkResampleThroughHomeomorphism::Map(
 }
 
 int vtkResampleThroughHomeomorphism::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
@@ -304,6 +303,11 @@ int vtkResampleThroughHomeomorphism::RequestData(
   vtkDataSet* output = vtkDataSet::GetData(outputs);
   this->NumberOfOutsidePoints = -1;
   this->SetErrorCode(vtkErrorCode::NoError);
+  if (grid && !IsFirstPiece(request, outputs) && SharesUpstreamWithPortsBefore(this, 3))
+  {
+    this->NumberOfOutsidePoints = 0;
+    return 1;
+  }
 
   // Copies: the originals belong to a pipeline of their own. They share points and cells, so that
   // nothing is built anew.

@@ -24,7 +24,8 @@
  * Active vectors, normals and tensors are carried by the Jacobian, as vtkDifferentiableHomeomorphism does;
  * see CarryVectors.
  *
- * The meshes and the data are asked for whole, the grid in the pieces that the output is asked for in.
+ * The meshes and the data are asked for whole, the grid in the pieces that the output is asked for in; a
+ * grid that is made upstream from what one of the others is made from is whole in piece 0.
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads or
  * pieces.
  *
