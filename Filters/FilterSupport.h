@@ -17,6 +17,7 @@
 #include "vtkDataSet.h"
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObject.h"
 #include "vtkSMPTools.h"
@@ -143,16 +144,31 @@ inline void RequestWhole(vtkInformation* info)
   }
 }
 
-inline void CollectUpstream(vtkAlgorithm* algorithm, int port, std::set<vtkAlgorithm*>& found)
+/// In the information of an input port: it is always asked for whole.
+inline vtkInformationIntegerKey* AskedForWhole()
+{
+  static vtkInformationIntegerKey* const key =
+    vtkInformationIntegerKey::MakeKey("ASKED_FOR_WHOLE", "FiltersHomeomorphism");
+  return key;
+}
+
+/// Adds the algorithms that the ones connected to a port depend on, themselves included; @a inPieces: only
+/// if the same piece is asked from them.
+inline void CollectUpstream(
+  vtkAlgorithm* algorithm, int port, bool inPieces, std::set<vtkAlgorithm*>& found)
 {
   for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
   {
     vtkAlgorithm* producer = algorithm->GetInputAlgorithm(port, i);
-    if (producer && found.insert(producer).second)
+    if (!producer || !found.insert(producer).second)
     {
-      for (int next = 0; next < producer->GetNumberOfInputPorts(); ++next)
+      continue;
+    }
+    for (int next = 0; next < producer->GetNumberOfInputPorts(); ++next)
+    {
+      if (!inPieces || !producer->GetInputPortInformation(next)->Has(AskedForWhole()))
       {
-        CollectUpstream(producer, next, found);
+        CollectUpstream(producer, next, inPieces, found);
       }
     }
   }
@@ -163,15 +179,15 @@ inline void CollectUpstream(vtkAlgorithm* algorithm, int port, std::set<vtkAlgor
 /// then this port must be asked for whole, too, and what becomes of it is part of piece 0.
 inline bool SharesUpstreamWithPortsBefore(vtkAlgorithm* algorithm, int port)
 {
-  std::set<vtkAlgorithm*> before;
+  std::set<vtkAlgorithm*> whole;
   for (int i = 0; i < port; ++i)
   {
-    CollectUpstream(algorithm, i, before);
+    CollectUpstream(algorithm, i, false, whole);
   }
-  std::set<vtkAlgorithm*> upstream;
-  CollectUpstream(algorithm, port, upstream);
-  return std::any_of(upstream.begin(), upstream.end(),
-    [&before](vtkAlgorithm* producer) { return before.count(producer) > 0; });
+  std::set<vtkAlgorithm*> pieces;
+  CollectUpstream(algorithm, port, true, pieces);
+  return std::any_of(pieces.begin(), pieces.end(),
+    [&whole](vtkAlgorithm* producer) { return whole.count(producer) > 0; });
 }
 
 /// Puts a new object of a type into an output, unless one of that type is there.

@@ -550,6 +550,7 @@ int vtkDifferentiableHomeomorphism::FillInputPortInformation(int port, vtkInform
   if (port < 2)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    info->Set(AskedForWhole(), 1);
     return 1;
   }
   AcceptDataSetsAndTrees(info);

@@ -254,6 +254,7 @@ vtkMTimeType vtkJacobianContinuity::GetMTime()
 int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Set(AskedForWhole(), 1);
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);

@@ -199,6 +199,7 @@ int vtkTriangularCoordinates::FillInputPortInformation(int port, vtkInformation*
   if (port == 0)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    info->Set(AskedForWhole(), 1);
     return 1;
   }
   AcceptDataSetsAndTrees(info);
