@@ -17,6 +17,7 @@
 #include "vtkDataSet.h"
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObject.h"
 #include "vtkSMPTools.h"
@@ -25,6 +26,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string>
 
 namespace homeomorphism
@@ -120,16 +122,72 @@ inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outIn
   outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
 }
 
-/// Asks for a mesh as a whole, whatever piece of the data is asked for.
-inline void RequestWholeMesh(vtkInformation* meshInfo)
+/// Asks for an input as a whole, whatever piece of the output is asked for.
+inline void RequestWhole(vtkInformation* info)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (meshInfo)
+  if (!info)
   {
-    meshInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-    meshInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    meshInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    return;
   }
+  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  // The extent there is the output's, which means nothing to this input.
+  if (info->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+  }
+  else
+  {
+    info->Remove(Pipeline::UPDATE_EXTENT());
+  }
+}
+
+/// In the information of an input port: it is always asked for whole.
+inline vtkInformationIntegerKey* AskedForWhole()
+{
+  static vtkInformationIntegerKey* const key =
+    vtkInformationIntegerKey::MakeKey("ASKED_FOR_WHOLE", "FiltersHomeomorphism");
+  return key;
+}
+
+/// Adds the algorithms that the ones connected to a port depend on, themselves included; @a inPieces: only
+/// if the same piece is asked from them.
+inline void CollectUpstream(
+  vtkAlgorithm* algorithm, int port, bool inPieces, std::set<vtkAlgorithm*>& found)
+{
+  for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+  {
+    vtkAlgorithm* producer = algorithm->GetInputAlgorithm(port, i);
+    if (!producer || !found.insert(producer).second)
+    {
+      continue;
+    }
+    for (int next = 0; next < producer->GetNumberOfInputPorts(); ++next)
+    {
+      if (!inPieces || !producer->GetInputPortInformation(next)->Has(AskedForWhole()))
+      {
+        CollectUpstream(producer, next, inPieces, found);
+      }
+    }
+  }
+}
+
+/// Whether what comes in at a port and what comes in at the ports before it, which are asked for whole,
+/// are made from the same things. Those cannot be asked for both whole and in pieces at the same time:
+/// then this port must be asked for whole, too, and what becomes of it is part of piece 0.
+inline bool SharesUpstreamWithPortsBefore(vtkAlgorithm* algorithm, int port)
+{
+  std::set<vtkAlgorithm*> whole;
+  for (int i = 0; i < port; ++i)
+  {
+    CollectUpstream(algorithm, i, false, whole);
+  }
+  std::set<vtkAlgorithm*> pieces;
+  CollectUpstream(algorithm, port, true, pieces);
+  return std::any_of(pieces.begin(), pieces.end(),
+    [&whole](vtkAlgorithm* producer) { return whole.count(producer) > 0; });
 }
 
 /// Puts a new object of a type into an output, unless one of that type is there.

@@ -550,6 +550,7 @@ int vtkDifferentiableHomeomorphism::FillInputPortInformation(int port, vtkInform
   if (port < 2)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    info->Set(AskedForWhole(), 1);
     return 1;
   }
   AcceptDataSetsAndTrees(info);
@@ -595,8 +596,12 @@ int vtkDifferentiableHomeomorphism::RequestInformation(
 int vtkDifferentiableHomeomorphism::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  RequestWholeMesh(inputs[0]->GetInformationObject(0));
-  RequestWholeMesh(inputs[1]->GetInformationObject(0));
+  RequestWhole(inputs[0]->GetInformationObject(0));
+  RequestWhole(inputs[1]->GetInformationObject(0));
+  if (SharesUpstreamWithPortsBefore(this, 2))
+  {
+    RequestWhole(inputs[2]->GetInformationObject(0));
+  }
   return 1;
 }
 
@@ -702,7 +707,7 @@ int vtkDifferentiableHomeomorphism::MapData(
     this->SetProgressShiftScale(share, 1.0 - share);
     vtkPolyData::GetData(outputs, 1)->ShallowCopy(this->Internal->Continuity->GetOutput());
   }
-  if (!data && !isFirstPiece)
+  if (!isFirstPiece && (!data || SharesUpstreamWithPortsBefore(this, 2)))
   {
     return 1;
   }

@@ -69,7 +69,8 @@
  * The meshes are validated, and refused with a message that names the kind of defect, how many
  * triangles have it and the first of their ids; see MaskInvalidTriangles. Empty meshes leave all
  * points outside. What is computed from the meshes is kept until their points or cells change. If the
- * output is asked for in pieces, a mesh that is its own data is part of piece 0.
+ * output is asked for in pieces, the meshes are asked for whole, and what is made from them is part of
+ * piece 0: the mesh if it is its own data, and data that is made upstream from what a mesh is made from.
  *
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
  *

@@ -254,6 +254,7 @@ vtkMTimeType vtkJacobianContinuity::GetMTime()
 int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Set(AskedForWhole(), 1);
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -264,13 +265,13 @@ int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* in
 int vtkJacobianContinuity::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  RequestWholeMesh(inputs[0]->GetInformationObject(0));
-  RequestWholeMesh(inputs[1]->GetInformationObject(0));
+  RequestWhole(inputs[0]->GetInformationObject(0));
+  RequestWhole(inputs[1]->GetInformationObject(0));
   return 1;
 }
 
 int vtkJacobianContinuity::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
@@ -320,6 +321,10 @@ int vtkJacobianContinuity::RequestData(
     vtkErrorMacro(<< "A transform is measured on a planar triangulation only. For a surface, give the "
                      "target mesh (input port 1).");
     return 0;
+  }
+  if (!IsFirstPiece(request, outputs))
+  {
+    return 1;
   }
 
   const bool planar = map->GetPair().HasTarget()

@@ -60,6 +60,8 @@
  * Output port 1 is the triangulation with a cell array and a point array `JacobianJump`: the largest of
  * the triangle's interior edges, and of the edges at the point; NaN where there is none.
  *
+ * The meshes are asked for whole, and if the outputs are asked for in pieces, all is part of piece 0.
+ *
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The
  * transform must allow concurrent calls once updated, as VTK's do.
  *

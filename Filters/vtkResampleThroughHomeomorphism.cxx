@@ -55,18 +55,26 @@ vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples
 /// Hides the points that the mask leaves out, and the cells that use them.
 void Blank(vtkDataSet* output, vtkUnsignedCharArray* mask)
 {
-  const auto newGhosts = [](vtkIdType tuples) {
-    auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  const auto copyGhosts = [](vtkDataSetAttributes* attributes, vtkIdType tuples) {
+    const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    if (auto* current = attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()))
+    {
+      ghosts->DeepCopy(current);
+      return ghosts;
+    }
     ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
     ghosts->SetNumberOfTuples(tuples);
     ghosts->FillValue(0);
     return ghosts;
   };
-  const auto pointGhosts = newGhosts(output->GetNumberOfPoints());
-  const auto cellGhosts = newGhosts(output->GetNumberOfCells());
+  const auto pointGhosts = copyGhosts(output->GetPointData(), output->GetNumberOfPoints());
+  const auto cellGhosts = copyGhosts(output->GetCellData(), output->GetNumberOfCells());
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
   {
-    pointGhosts->SetValue(i, mask->GetValue(i) ? 0 : vtkDataSetAttributes::HIDDENPOINT);
+    if (!mask->GetValue(i))
+    {
+      pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
+    }
   }
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
@@ -74,11 +82,20 @@ void Blank(vtkDataSet* output, vtkUnsignedCharArray* mask)
     output->GetCellPoints(cell, ids);
     if (std::any_of(ids->begin(), ids->end(), [mask](vtkIdType i) { return !mask->GetValue(i); }))
     {
-      cellGhosts->SetValue(cell, vtkDataSetAttributes::HIDDENCELL);
+      cellGhosts->SetValue(cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
     }
   }
   output->GetPointData()->AddArray(pointGhosts);
   output->GetCellData()->AddArray(cellGhosts);
+}
+
+/// Passes the marks of what is hidden or belongs to another piece.
+void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
+{
+  if (vtkAbstractArray* ghosts = from->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()))
+  {
+    to->AddArray(ghosts);
+  }
 }
 
 /// The data's values at points, with a mask that tells where there are any.
@@ -190,6 +207,10 @@ vtkIdType vtkResampleThroughHomeomorphism::GetNumberOfMeshBuilds()
 int vtkResampleThroughHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port < 2 ? "vtkPolyData" : "vtkDataSet");
+  if (port < 3)
+  {
+    info->Set(AskedForWhole(), 1);
+  }
   if (port == 2)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
@@ -255,16 +276,15 @@ int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   for (int port = 0; port < 3; ++port)
   {
-    vtkInformation* info = inputs[port]->GetInformationObject(0);
-    RequestWholeMesh(info);
-    if (info && info->Has(Pipeline::WHOLE_EXTENT()))
-    {
-      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
-    }
+    RequestWhole(inputs[port]->GetInformationObject(0));
   }
   vtkInformation* gridInfo = inputs[3]->GetInformationObject(0);
   vtkInformation* outInfo = outputs->GetInformationObject(0);
-  if (gridInfo)
+  if (gridInfo && SharesUpstreamWithPortsBefore(this, 3))
+  {
+    RequestWhole(gridInfo);
+  }
+  else if (gridInfo)
   {
     for (auto* key : { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
            Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
@@ -295,7 +315,7 @@ vtkDataSet* vtkResampleThroughHomeomorphism::Map(
 }
 
 int vtkResampleThroughHomeomorphism::RequestData(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
@@ -304,6 +324,11 @@ int vtkResampleThroughHomeomorphism::RequestData(
   vtkDataSet* output = vtkDataSet::GetData(outputs);
   this->NumberOfOutsidePoints = -1;
   this->SetErrorCode(vtkErrorCode::NoError);
+  if (grid && !IsFirstPiece(request, outputs) && SharesUpstreamWithPortsBefore(this, 3))
+  {
+    this->NumberOfOutsidePoints = 0;
+    return 1;
+  }
 
   // Copies: the originals belong to a pipeline of their own. They share points and cells, so that
   // nothing is built anew.
@@ -464,6 +489,11 @@ int vtkResampleThroughHomeomorphism::RequestData(
   }
   result->AddArray(mask);
   this->NumberOfOutsidePoints = count - valid;
+  if (grid)
+  {
+    PassGhosts(grid->GetPointData(), output->GetPointData());
+    PassGhosts(grid->GetCellData(), output->GetCellData());
+  }
   if (this->BlankOutside && valid < count)
   {
     Blank(output, mask);

@@ -19,12 +19,13 @@
  * point falls into), and with the point array `ValidPointMask` (unsigned char): 1 where there are values,
  * 0 outside the target's domain and where the data has none. There, floating-point arrays are NaN,
  * others 0, and points and the cells that use them are blanked (vtkGhostType); see BlankOutside.
- * The grid's own arrays are not passed.
+ * The grid's own arrays are not passed, except vtkGhostType.
  *
  * Active vectors, normals and tensors are carried by the Jacobian, as vtkDifferentiableHomeomorphism does;
  * see CarryVectors.
  *
- * The meshes and the data are asked for whole, the grid in the pieces that the output is asked for in.
+ * The meshes and the data are asked for whole, the grid in the pieces that the output is asked for in; a
+ * grid that is made upstream from what one of the others is made from is whole in piece 0.
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads or
  * pieces.
  *

@@ -199,6 +199,7 @@ int vtkTriangularCoordinates::FillInputPortInformation(int port, vtkInformation*
   if (port == 0)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    info->Set(AskedForWhole(), 1);
     return 1;
   }
   AcceptDataSetsAndTrees(info);
@@ -239,7 +240,11 @@ int vtkTriangularCoordinates::RequestInformation(
 int vtkTriangularCoordinates::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  RequestWholeMesh(inputs[0]->GetInformationObject(0));
+  RequestWhole(inputs[0]->GetInformationObject(0));
+  if (SharesUpstreamWithPortsBefore(this, 1))
+  {
+    RequestWhole(inputs[1]->GetInformationObject(0));
+  }
   return 1;
 }
 
@@ -306,6 +311,11 @@ int vtkTriangularCoordinates::RequestData(
     this->NumberOfOutsidePoints += coordinates.CountOutside();
   };
 
+  if (!isFirstPiece && (!data || SharesUpstreamWithPortsBefore(this, 1)))
+  {
+    this->UpdateProgress(1.0);
+    return 1;
+  }
   if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
   {
     ConvertLeaves(this, tree, vtkCompositeDataSet::SafeDownCast(output), [&](vtkDataSet* leaf) {
@@ -318,7 +328,7 @@ int vtkTriangularCoordinates::RequestData(
   {
     addCoordinates(vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(output));
   }
-  else if (isFirstPiece)
+  else
   {
     // Without data of its own, the triangulation gets the coordinates on top of its cell arrays.
     addCoordinates(triangles, vtkDataSet::SafeDownCast(output));

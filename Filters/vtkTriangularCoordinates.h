@@ -40,8 +40,9 @@
  * - `DeterminantBound` (double): a lower bound, in closed form, of the Smooth chart's determinant
  *   over that of the affine chart. Small beside a far smaller neighbour.
  *
- * If there is no data on port 1, output 0 has these cell arrays too. What is made from the
- * triangulation alone is part of piece 0 if the outputs are asked for in pieces.
+ * If there is no data on port 1, output 0 has these cell arrays too. If the
+ * outputs are asked for in pieces, the triangulation is asked for whole, and what is made from it is part
+ * of piece 0, as is data that is made upstream from what the triangulation is made from.
  *
  * The triangulation may lie in any plane, where its points' distance from the plane is ignored, or be
  * a surface in 3-space, closed or not. It is validated, and refused with a message that names the

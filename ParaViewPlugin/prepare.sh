@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# Makes a private ParaView on Debian 12, once, in build/paraview-prefix. Run it, or source it for
+# $paraview_prefix and the packages to be there.
+#
+# Debian's python3-paraview, which has pvpython and what CMake needs to find ParaView, cannot be installed
+# beside libvtk9-dev: the Python modules of the two VTKs are in the same folder. So it is unpacked into a
+# folder of its own, with links to the rest of ParaView, which is installed as usual.
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+source "$root/Testing/setup.sh"
+paraview_prefix="$root/build/paraview-prefix"
+
+prepare_paraview()
+{
+  install_missing g++ cmake ninja-build paraview paraview-dev mpi-default-dev \
+    libdouble-conversion-dev liblz4-dev liblzma-dev libutfcpp-dev xvfb xauth
+  local version done
+  version="$(dpkg-query -W -f='${Version}' paraview)"
+  done="$paraview_prefix/complete-$version"
+  if [[ -e "$done" ]]; then
+    return
+  fi
+  echo "Making a private ParaView $version"
+  rm -rf "$paraview_prefix"
+  mkdir -p "$paraview_prefix"
+  local package file
+  (
+    cd "$paraview_prefix"
+    apt-get download "python3-paraview=$version"
+    dpkg-deb -x python3-paraview_*.deb .
+    rm python3-paraview_*.deb
+  )
+  for package in paraview paraview-dev; do
+    dpkg -L "$package"
+  done | grep -E '^/usr/(bin|include|lib|share/paraview)' | while read -r file; do
+    if [[ ! -d "$file" || -L "$file" ]]; then
+      echo "$file"
+    fi
+  done >"$paraview_prefix/files"
+  # Programs look for their Python modules beside where they really are, so those are copied.
+  (
+    cd "$paraview_prefix"
+    grep -v '^/usr/bin/' files | xargs -d '\n' cp --symbolic-link --parents --target-directory=.
+    grep '^/usr/bin/' files | xargs -d '\n' cp --no-dereference --parents --target-directory=.
+    rm files
+  )
+  touch "$done"
+}
+
+prepare_paraview
