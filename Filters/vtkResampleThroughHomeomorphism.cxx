@@ -391,6 +391,7 @@ int vtkResampleThroughHomeomorphism::RequestData(
   vtkDataSet* pulledBack = this->Map(shape, !this->Inverse, false);
   if (!pulledBack)
   {
+    output->Initialize();
     return 0;
   }
   this->UpdateProgress(0.3);
@@ -446,6 +447,7 @@ int vtkResampleThroughHomeomorphism::RequestData(
     found = vtkPointSet::SafeDownCast(this->Map(values, this->Inverse, true));
     if (!found)
     {
+      output->Initialize();
       return 0;
     }
   }
