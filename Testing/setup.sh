@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Sourced by Testing/run, Examples/run and Examples/figures.
+# Sourced by Testing/run, Examples/run, Examples/figures and ParaViewPlugin/prepare.sh.
 
 # The distribution's compilers, CMake and Python, which go with the distribution's VTK, even if
 # others come first on the caller's PATH.
