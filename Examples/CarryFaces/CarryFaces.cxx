@@ -227,6 +227,8 @@ void Write(vtkDataObject* data, const std::string& fileName)
   vtkNew<Writer> writer;
   writer->SetInputDataObject(data);
   writer->SetFileName(fileName.c_str());
+  // VTK before 9.4 cannot read data at a file's end with every version of expat.
+  writer->SetDataModeToBinary();
   if (!writer->Write())
   {
     throw std::runtime_error("Cannot write " + fileName + ".");

@@ -67,7 +67,8 @@ for number, system in enumerate(("Linear", "Smooth")):
     # The edges lie over the source; seen over the target, they are mapped as well.
     edges = simple.DifferentiableHomeomorphism(
         registrationName="Edges in " + system, Data=simple.OutputPort(mapped, 1), **settings)
-    simple.SaveData(os.path.join(folder, "mapped-%s.vtp" % system), proxy=mapped)
+    simple.SaveData(os.path.join(folder, "mapped-%s.vtp" % system), proxy=mapped,
+                    DataMode="Binary")
 
     simple.SetActiveView(view)
     surface = simple.Show(mapped, view)
@@ -107,3 +108,4 @@ jump.AutomaticRescaleRangeMode = "Never"
 jump.UseLogScale = 1
 jump.RGBPoints = [1e-12, 1.0, 0.93, 0.6, 1e-8, 0.96, 0.6, 0.3, 1e-4, 0.75, 0.2, 0.4, 1.0, 0.2, 0.05, 0.3]
 simple.SaveScreenshot(os.path.join(folder, "continuity.png"), layout, ImageResolution=[1200, 640])
+simple.RenderAllViews()

@@ -20,8 +20,9 @@ pieces = {"Source": session.read(meshes, "source", in_pieces=True),
 def save(name, proxy, port=0):
     """All results in files of one kind, in as many pieces as there are processes."""
     merged = simple.MergeBlocks(Input=simple.OutputPort(proxy, port), MergePoints=0)
+    # Raw data at the files' end is more than VTK can read back with every version of expat.
     writer = simple.servermanager.writers.XMLPUnstructuredGridWriter(
-        Input=merged, FileName=os.path.join(results, name + ".pvtu"))
+        Input=merged, FileName=os.path.join(results, name + ".pvtu"), DataMode="Binary")
     writer.UpdatePipeline()
 
 
