@@ -241,7 +241,7 @@ public:
 
   ///@{
   /// Whether output port 1 tells where the map is differentiable. Off by default: it takes about as long
-  /// as mapping 400 points for each edge.
+  /// as mapping 500 points for each edge.
   vtkSetMacro(MeasureContinuity, bool);
   vtkGetMacro(MeasureContinuity, bool);
   vtkBooleanMacro(MeasureContinuity, bool);
