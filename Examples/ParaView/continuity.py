@@ -1,111 +1,194 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Carries a grid from one triangulation onto another, and colours the edges by how much the map's Jacobian
-jumps there, for Linear and Smooth side by side.
+"""Where is the map between two triangulations differentiable? Three answers side by side, for the three
+coordinate systems: a grid that is carried from one triangulation onto another, over the edges' images in the
+colours of how much the map's Jacobian jumps there.
 
-In pvpython or pvbatch:   pvpython continuity.py PLUGIN [FOLDER]
-In ParaView: load the plugin (Tools, Manage Plugins), then run this script (Macros, or the Python shell)
+In ParaView: load the plugin, then File > Run Script... In a shell, with the plugin's folder in PV_PLUGIN_PATH
+or the plugin's file as the second argument:
 
-Writes continuity.png and the mapped data, mapped-Linear.vtp and mapped-Smooth.vtp, to FOLDER (the current
-one by default)."""
+    pvbatch continuity.py FOLDER [DifferentiableHomeomorphism.so]
 
+The folder (default: Output) gets continuity.png, and for each system grid-SYSTEM.vtp and edges-SYSTEM.vtp.
+"""
+
+import math
 import os
+import random
 import sys
 
-from paraview import simple
+from paraview.simple import *
 
-arguments = [a for a in sys.argv[1:] if a]
-if arguments:
-    simple.LoadPlugin(arguments[0], remote=False, ns=vars(simple))
-folder = arguments[1] if len(arguments) > 1 else os.getcwd()
-os.makedirs(folder, exist_ok=True)
+INTERVALS = 5
+SYSTEMS = "Linear", "Contour", "Smooth"
 
-# A square of triangles. Instead of these two sources, read your own meshes:
-#   source_mesh = simple.XMLPolyDataReader(FileName=["source.vtp"])
-mesh = """
-import math
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray
-n, moved = 5, {moved}
-points, triangles = vtkPoints(), vtkCellArray()
-points.SetDataTypeToDouble()
-for j in range(n + 1):
-    for i in range(n + 1):
-        inside = moved and 0 < i < n and 0 < j < n
-        dx = 0.25 * math.sin(5 * i + 3 * j) if inside else 0.0
-        dy = 0.25 * math.cos(7 * i + 2 * j) if inside else 0.0
-        points.InsertNextPoint(i + dx, j + dy, 0.0)
-for j in range(n):
-    for i in range(n):
-        a = j * (n + 1) + i
-        b, c, d = a + 1, a + n + 2, a + n + 1
-        for corners in ((a, b, c), (a, c, d)) if (i + j) % 2 else ((a, b, d), (b, c, d)):
-            triangles.InsertNextCell(3, corners)
-self.GetPolyDataOutput().SetPoints(points)
-self.GetPolyDataOutput().SetPolys(triangles)
-"""
-source_mesh = simple.ProgrammableSource(
-    registrationName="Source", OutputDataSetType="vtkPolyData", Script=mesh.format(moved=False))
-target_mesh = simple.ProgrammableSource(
-    registrationName="Target", OutputDataSetType="vtkPolyData", Script=mesh.format(moved=True))
-plane = simple.Plane(registrationName="Plane", Origin=[0, 0, 0], Point1=[5, 0, 0], Point2=[0, 5, 0],
-                     XResolution=400, YResolution=400)
-# Lines to see the map by.
-grid = simple.Calculator(
-    registrationName="Grid", Input=plane, ResultArrayName="Grid",
-    Function="max(cos(6.283185307*5*coordsX), cos(6.283185307*5*coordsY))")
 
-layout = simple.CreateLayout(name="Continuity")
-layout.SplitHorizontal(0, 0.5)
-for number, system in enumerate(("Linear", "Smooth")):
-    view = simple.CreateView("RenderView")
-    # The halves of the first cell.
-    layout.AssignView(number + 1, view)
-    settings = {"Source": source_mesh, "Target": target_mesh, "CoordinateSystem": system}
-    mapped = simple.DifferentiableHomeomorphism(
-        registrationName="Mapped by " + system, Data=grid, MeasureContinuity=1, **settings)
-    # The edges lie over the source; seen over the target, they are mapped as well.
-    edges = simple.DifferentiableHomeomorphism(
-        registrationName="Edges in " + system, Data=simple.OutputPort(mapped, 1), **settings)
-    simple.SaveData(os.path.join(folder, "mapped-%s.vtp" % system), proxy=mapped,
-                    DataMode="Binary")
+def write(path, points, triangles=(), lines=()):
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-    simple.SetActiveView(view)
-    surface = simple.Show(mapped, view)
-    simple.ColorBy(surface, ("POINTS", "Grid"))
-    colors = simple.GetColorTransferFunction("Grid")
-    colors.RGBPoints = [-1.0, 1.0, 1.0, 1.0, 0.9, 1.0, 1.0, 1.0, 0.97, 0.35, 0.45, 0.6, 1.0, 0.3, 0.4, 0.55]
-    surface.SetScalarBarVisibility(view, False)
-    surface.Ambient, surface.Diffuse = 1.0, 0.0
-    lines = simple.Show(edges, view)
-    simple.ColorBy(lines, ("CELLS", "JacobianJump"))
-    lines.LineWidth = 4
-    lines.Position = [0, 0, 0.01]
-    lines.Ambient, lines.Diffuse = 1.0, 0.0
-    jump = simple.GetColorTransferFunction("JacobianJump")
-    lines.SetScalarBarVisibility(view, True)
-    bar = simple.GetScalarBar(jump, view)
-    bar.Title, bar.ComponentTitle = "Jump of the Jacobian", ""
-    bar.Orientation, bar.WindowLocation = "Horizontal", "Lower Center"
-    bar.ScalarBarLength, bar.ScalarBarThickness = 0.6, 10
-    bar.TitleFontSize = bar.LabelFontSize = 14
-    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
-    bar.AutomaticLabelFormat, bar.LabelFormat = 0, "%.0e"
-    bar.AddRangeLabels, bar.UseCustomLabels = 0, 1
-    bar.CustomLabels = [1e-12, 1e-9, 1e-6, 1e-3, 1.0]
-    title = simple.Show(simple.Text(Text=system), view)
-    title.Color, title.FontSize = [0.1, 0.1, 0.1], 20
-    title.WindowLocation = "Upper Center"
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1.0, 1.0, 1.0]
-    view.OrientationAxesVisibility = 0
-    view.InteractionMode = "2D"
-    view.CameraPosition, view.CameraFocalPoint = [2.5, 2.2, 10], [2.5, 2.2, 0]
-    view.CameraParallelProjection, view.CameraParallelScale = 1, 3.35
-# One scale for both, after both have had their say about its range.
-jump = simple.GetColorTransferFunction("JacobianJump")
-jump.AutomaticRescaleRangeMode = "Never"
-jump.UseLogScale = 1
-jump.RGBPoints = [1e-12, 1.0, 0.93, 0.6, 1e-8, 0.96, 0.6, 0.3, 1e-4, 0.75, 0.2, 0.4, 1.0, 0.2, 0.05, 0.3]
-simple.SaveScreenshot(os.path.join(folder, "continuity.png"), layout, ImageResolution=[1200, 640])
-simple.RenderAllViews()
+    data = vtkPolyData()
+    data.SetPoints(vtkPoints())
+    data.GetPoints().SetDataTypeToDouble()
+    for x, y in points:
+        data.GetPoints().InsertNextPoint(x, y, 0.0)
+    for cells, put in (triangles, data.SetPolys), (lines, data.SetLines):
+        array = vtkCellArray()
+        for cell in cells:
+            array.InsertNextCell(len(cell), list(cell))
+        put(array)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(data)
+    # VTK before 9.4 cannot read data at a file's end with every version of expat.
+    writer.SetDataModeToBinary()
+    writer.Write()
+
+
+def mesh_points(seed):
+    """Of a square of triangles whose inner points are moved at random."""
+    chance = random.Random(seed)
+    points = []
+    for j in range(INTERVALS + 1):
+        for i in range(INTERVALS + 1):
+            radius, angle = 0.3 * math.sqrt(chance.random()), 2.0 * math.pi * chance.random()
+            if not (0 < i < INTERVALS and 0 < j < INTERVALS):
+                radius = 0.0
+            points.append(((i + radius * math.cos(angle)) / INTERVALS,
+                           (j + radius * math.sin(angle)) / INTERVALS))
+    return points
+
+
+def mesh_triangles():
+    triangles = []
+    for j in range(INTERVALS):
+        for i in range(INTERVALS):
+            a = j * (INTERVALS + 1) + i
+            b, c, d = a + 1, a + INTERVALS + 2, a + INTERVALS + 1
+            triangles += ((a, b, c), (a, c, d)) if (i + j) % 2 else ((a, b, d), (b, c, d))
+    return triangles
+
+
+def write_grid(path, lines=20, pieces=1000):
+    """Lines in both directions, of so many pieces that bends look like bends, and kinks like kinks."""
+    points = []
+    for k in range(lines + 1):
+        points += [(k / lines, i / pieces) for i in range(pieces + 1)]
+        points += [(i / pieces, k / lines) for i in range(pieces + 1)]
+    write(path, points, lines=[range(first, first + pieces + 1)
+                               for first in range(0, len(points), pieces + 1)])
+
+
+def color_by_jump(display):
+    ColorBy(display, ("CELLS", "JacobianJump"))
+    colors = GetColorTransferFunction("JacobianJump")
+    colors.AutomaticRescaleRangeMode = "Never"
+    # On a logarithmic scale: rounding errors are at its one end, kinks at the other.
+    colors.RGBPoints = [1e-9, 0.10, 0.35, 0.75,
+                        1e-6, 0.45, 0.75, 0.85,
+                        1e-3, 0.98, 0.80, 0.35,
+                        1e0, 0.80, 0.05, 0.10]
+    colors.ColorSpace = "Lab"
+    colors.UseLogScale = 1
+    colors.NanColor = [0.6, 0.6, 0.6]
+    return colors
+
+
+def show_system(system, source, target, grid, view):
+    """Shows the carried grid over the images of the edges; returns what is to be saved."""
+    settings = {"Source": source, "Target": target, "CoordinateSystem": system,
+                "DiscordantTriangles": "Carry by Linear"}
+    carried = DifferentiableHomeomorphism(registrationName="Grid " + system, Data=grid, **settings)
+    display = Show(carried, view)
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = [0.45, 0.45, 0.5]
+    display.LineWidth = 2.0
+    display.RenderLinesAsTubes = 1
+    display.Position = [0.0, 0.0, 0.01]
+
+    measured = JacobianContinuity(registrationName="Measured " + system, **settings)
+    # The edges are the source's; the map takes them to the target's.
+    edges = DifferentiableHomeomorphism(registrationName="Edges " + system, Data=measured, **settings)
+    display = Show(edges, view)
+    display.LineWidth = 6.0
+    colors = color_by_jump(display)
+
+    title = Text(registrationName="Title " + system, Text=system)
+    display = Show(title, view)
+    display.WindowLocation = "Upper Center"
+    display.FontSize = 24
+    display.Color = [0.0, 0.0, 0.0]
+    return carried, edges, colors
+
+
+if __name__ == "__main__":
+    folder = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "Output")
+    if len(sys.argv) > 2:
+        LoadPlugin(sys.argv[2], remote=False, ns=globals())
+    if "JacobianContinuity" not in globals():
+        sys.exit("The plugin DifferentiableHomeomorphism is not loaded.")
+    os.makedirs(folder, exist_ok=True)
+
+    write_grid(os.path.join(folder, "grid.vtp"))
+    for name, seed in ("source", 3), ("target", 8):
+        write(os.path.join(folder, name + ".vtp"), mesh_points(seed), mesh_triangles())
+    source, target, grid = [
+        XMLPolyDataReader(registrationName=name, FileName=[os.path.join(folder, name + ".vtp")])
+        for name in ("source", "target", "grid")]
+
+    layout = CreateLayout("Where is the map differentiable?")
+    layout.SetSize(1920, 800)
+    left = CreateView("RenderView")
+    AssignViewToLayout(view=left, layout=layout, hint=0)
+    layout.SplitHorizontal(0, 1.0 / 3.0)
+    middle = CreateView("RenderView")
+    AssignViewToLayout(view=middle, layout=layout, hint=2)
+    layout.SplitHorizontal(2, 0.5)
+    right = CreateView("RenderView")
+    AssignViewToLayout(view=right, layout=layout, hint=6)
+
+    for system, view in zip(SYSTEMS, (left, middle, right)):
+        view.UseColorPaletteForBackground = 0
+        view.Background = [1.0, 1.0, 1.0]
+        view.OrientationAxesVisibility = 0
+        view.InteractionMode = "2D"
+        carried, edges, colors = show_system(system, source, target, grid, view)
+        for name, result in ("grid", carried), ("edges", edges):
+            SaveData(os.path.join(folder, "%s-%s.vtp" % (name, system)), proxy=result,
+                     DataMode="Binary")
+
+    bar = GetScalarBar(colors, middle)
+    bar.Visibility = 1
+    bar.Title = "jump of the Jacobian across the edge, relative"
+    bar.ComponentTitle = ""
+    bar.Orientation = "Horizontal"
+    bar.WindowLocation = "Any Location"
+    bar.Position = [0.1, 0.02]
+    bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
+    bar.TitleFontSize = bar.LabelFontSize = 18
+    bar.ScalarBarLength = 0.8
+    bar.ScalarBarThickness = 16
+    bar.AddRangeLabels = 0
+    bar.DrawTickMarks = 0
+    bar.UseCustomLabels = 1
+    bar.CustomLabels = [1e-9, 1e-6, 1e-3, 1.0]
+
+    # The first picture of a view moves its camera.
+    RenderAllViews()
+    for view in left, middle, right:
+        view.CameraParallelProjection = 1
+        view.CameraPosition = [0.5, 0.45, 3.0]
+        view.CameraFocalPoint = [0.5, 0.45, 0.0]
+        view.CameraViewUp = [0.0, 1.0, 0.0]
+        view.CameraParallelScale = 0.65
+    RenderAllViews()
+    SaveScreenshot(os.path.join(folder, "continuity.png"), layout, ImageResolution=[1920, 800],
+                   SeparatorWidth=0, FontScaling="Do not scale fonts")
+    # In a window, views have other shapes.
+    for view in left, middle, right:
+        ResetCamera(view)
+        view.CameraParallelScale *= 0.75
+    RenderAllViews()
+    SetActiveSource(FindSource("Measured Contour"))
+    print("Wrote continuity.png, grid-*.vtp and edges-*.vtp to", folder)
