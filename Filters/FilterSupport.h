@@ -11,18 +11,23 @@
 #include "Mesh/HomeomorphismCache.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkExecutive.h"
+#include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObject.h"
+#include "vtkPointData.h"
 #include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <limits>
@@ -260,6 +265,55 @@ void ConvertLeaves(
     }
   }
   self->SetProgressShiftScale(shift, scale);
+}
+
+/// Replaces the ghost array of some attributes, if it fits them, by a copy, else by a new one.
+inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkIdType tuples)
+{
+  const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  auto* current = vtkArrayDownCast<vtkUnsignedCharArray>(
+    attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (current && current->GetNumberOfValues() == tuples)
+  {
+    ghosts->DeepCopy(current);
+  }
+  else
+  {
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->SetNumberOfTuples(tuples);
+    ghosts->FillValue(0);
+  }
+  attributes->AddArray(ghosts);
+  return ghosts;
+}
+
+/// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use them or
+/// points that do not exist. @a cells has the output's cells.
+inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet* output)
+{
+  const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
+  const vtkIdType numberOfCells = output->GetNumberOfCells();
+  vtkUnsignedCharArray* pointGhosts = RenewGhosts(output->GetPointData(), numberOfPoints);
+  vtkUnsignedCharArray* cellGhosts = RenewGhosts(output->GetCellData(), numberOfCells);
+  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  {
+    if (!mask->GetValue(i))
+    {
+      pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
+    }
+  }
+  const auto ids = vtkSmartPointer<vtkIdList>::New();
+  for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
+  {
+    cells->GetCellPoints(cell, ids);
+    if (std::any_of(ids->begin(), ids->end(), [=](vtkIdType point) {
+          return point < 0 || point >= numberOfPoints || !mask->GetValue(point);
+        }))
+    {
+      cellGhosts->SetValue(
+        cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
+    }
+  }
 }
 
 } // namespace homeomorphism

@@ -78,25 +78,6 @@ bool BecomesStructuredGrid(vtkDataObject* data)
   return vtkImageData::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data);
 }
 
-vtkDataArray* CopyOfGhosts(vtkDataSetAttributes* attributes, vtkIdType tuples)
-{
-  const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  auto* current = vtkArrayDownCast<vtkUnsignedCharArray>(
-    attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  if (current && current->GetNumberOfValues() == tuples)
-  {
-    ghosts->DeepCopy(current);
-  }
-  else
-  {
-    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-    ghosts->SetNumberOfTuples(tuples);
-    ghosts->FillValue(0);
-  }
-  attributes->AddArray(ghosts);
-  return ghosts;
-}
-
 } // namespace
 
 /// Maps one data set.
@@ -453,30 +434,7 @@ private:
     {
       return;
     }
-    auto* pointGhosts = vtkArrayDownCast<vtkUnsignedCharArray>(
-      CopyOfGhosts(this->Output->GetPointData(), this->NumberOfPoints));
-    const vtkIdType cells = this->Output->GetNumberOfCells();
-    auto* cellGhosts =
-      vtkArrayDownCast<vtkUnsignedCharArray>(CopyOfGhosts(this->Output->GetCellData(), cells));
-    for (vtkIdType i = 0; i < this->NumberOfPoints; ++i)
-    {
-      if (!this->Mask->GetValue(i))
-      {
-        pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
-      }
-    }
-    vtkNew<vtkIdList> ids;
-    for (vtkIdType cell = 0; cell < cells; ++cell)
-    {
-      this->Input->GetCellPoints(cell, ids);
-      if (std::any_of(ids->begin(), ids->end(), [this](vtkIdType point) {
-            return !this->IsPoint(point) || !this->Mask->GetValue(point);
-          }))
-      {
-        cellGhosts->SetValue(
-          cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
-      }
-    }
+    HidePoints(this->Input, this->Mask, this->Output);
   }
 
   vtkDifferentiableHomeomorphism* Self;

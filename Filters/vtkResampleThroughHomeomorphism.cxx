@@ -52,43 +52,6 @@ vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples
   return result;
 }
 
-/// Hides the points that the mask leaves out, and the cells that use them.
-void Blank(vtkDataSet* output, vtkUnsignedCharArray* mask)
-{
-  const auto copyGhosts = [](vtkDataSetAttributes* attributes, vtkIdType tuples) {
-    const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    if (auto* current = attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()))
-    {
-      ghosts->DeepCopy(current);
-      return ghosts;
-    }
-    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-    ghosts->SetNumberOfTuples(tuples);
-    ghosts->FillValue(0);
-    return ghosts;
-  };
-  const auto pointGhosts = copyGhosts(output->GetPointData(), output->GetNumberOfPoints());
-  const auto cellGhosts = copyGhosts(output->GetCellData(), output->GetNumberOfCells());
-  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
-  {
-    if (!mask->GetValue(i))
-    {
-      pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
-    }
-  }
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
-  {
-    output->GetCellPoints(cell, ids);
-    if (std::any_of(ids->begin(), ids->end(), [mask](vtkIdType i) { return !mask->GetValue(i); }))
-    {
-      cellGhosts->SetValue(cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
-    }
-  }
-  output->GetPointData()->AddArray(pointGhosts);
-  output->GetCellData()->AddArray(cellGhosts);
-}
-
 /// Passes the marks of what is hidden or belongs to another piece.
 void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 {
@@ -498,7 +461,7 @@ int vtkResampleThroughHomeomorphism::RequestData(
   }
   if (this->BlankOutside && valid < count)
   {
-    Blank(output, mask);
+    HidePoints(output, mask, output);
   }
   this->UpdateProgress(1.0);
   return 1;
