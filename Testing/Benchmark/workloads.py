@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""What is mapped: pairs of meshes, points and an image, the same in every run."""
+
+import numpy
+
+# Points inside are moved by up to this share of a square. Every triangle is concordant then, in any pair.
+JITTER = 0.15
+
+
+def grid_points(n, seed):
+    """The points of n x n unit squares, row by row, those inside moved at random."""
+    points = numpy.stack(numpy.meshgrid(range(n + 1), range(n + 1)), -1).astype(float)
+    offsets = numpy.random.default_rng(seed).uniform(-JITTER, JITTER, points.shape)
+    points[1:-1, 1:-1] += offsets[1:-1, 1:-1]
+    return points.reshape(-1, 2)
+
+
+def delaunay_triangles(points, n):
+    """The grid's squares, each cut along the diagonal that makes the triangulation Delaunay.
+
+    So the peers that triangulate by themselves arrive at the same triangles (which is checked), but these
+    are numbered along the rows, as those of meshes usually are."""
+    corner = (numpy.arange(n)[:, None] * (n + 1) + numpy.arange(n)).ravel()
+    a, b, c, d = corner, corner + 1, corner + n + 2, corner + n + 1
+
+    def lifted(i):
+        difference = points[i] - points[d]
+        return numpy.column_stack([difference, (difference**2).sum(axis=1)])
+
+    d_in_circle_of_abc = numpy.linalg.det(numpy.stack([lifted(a), lifted(b), lifted(c)], axis=1)) > 0
+    first = numpy.where(d_in_circle_of_abc[:, None], numpy.column_stack([a, b, d]), numpy.column_stack([a, b, c]))
+    second = numpy.where(d_in_circle_of_abc[:, None], numpy.column_stack([b, c, d]), numpy.column_stack([a, c, d]))
+    return numpy.stack([first, second], axis=1).reshape(-1, 3)
+
+
+def grid_in_scan_order(n, columns, rows):
+    """The centres of the pixels of an image of [0, n] x [0, n]."""
+    x, y = numpy.meshgrid((numpy.arange(columns) + 0.5) * n / columns, (numpy.arange(rows) + 0.5) * n / rows)
+    return numpy.column_stack([x.ravel(), y.ravel()])
+
+
+def few_lines(points, columns, lines):
+    """Some of the lines of such a grid, for those who would take too long for all."""
+    grid = points.reshape(-1, columns, 2)
+    return grid[:: max(1, len(grid) // lines)].reshape(-1, 2)
+
+
+def random_points(n, count):
+    return numpy.random.default_rng(11).uniform(0.0, n, (count, 2))
+
+
+def picture(size):
+    """An RGB image of smooth waves."""
+    y, x = numpy.mgrid[0:size, 0:size] / size
+    channels = []
+    for k in range(3):
+        waves = numpy.sin(40.0 * x + 9.0 * k) * numpy.cos(31.0 * y - 5.0 * k) + numpy.sin(60.0 * x * y + k)
+        channels.append(numpy.uint8(numpy.clip(127.5 + 60.0 * waves, 0, 255)))
+    return numpy.stack(channels, axis=-1)
+
+
+class Workload:
+    """A pair of meshes over the square [0, n] x [0, n], scaled, in a folder from which the C++ program reads it."""
+
+    def __init__(self, folder, n, scale=1.0):
+        self.folder = folder
+        self.width = n * scale
+        self.source = grid_points(n, 1) * scale
+        self.target = grid_points(n, 2) * scale
+        self.triangles = delaunay_triangles(self.source, n)
+        self.points = {}
+        self.image = None
+        folder.mkdir()
+        self._write("source.f64", self._in_space(self.source))
+        self._write("target.f64", self._in_space(self.target))
+        self._write("triangles.i64", self.triangles.astype(numpy.int64))
+
+    def add_points(self, name, points):
+        self.points[name] = numpy.ascontiguousarray(points)
+        self._write(f"points-{name}.f64", self._in_space(points))
+
+    def set_image(self, image):
+        self.image = image
+        self._write("image.u8", image)
+
+    def meshes(self, inverse):
+        """The points of the mesh that is mapped from and of the one that is mapped to."""
+        return (self.target, self.source) if inverse else (self.source, self.target)
+
+    @staticmethod
+    def _in_space(points):
+        return numpy.column_stack([points, numpy.zeros(len(points))])
+
+    def _write(self, name, array):
+        array.tofile(self.folder / name)
