@@ -17,7 +17,8 @@ set(kernel_headers
   Kernel/LinearChart.h
   Kernel/OneSidedDerivative.h
   Kernel/RootFinding.h
-  Kernel/SmoothChart.h)
+  Kernel/SmoothChart.h
+  Kernel/Vectorize.h)
 
 # From VTK's meshes to the kernel and back.
 set(mesh_sources

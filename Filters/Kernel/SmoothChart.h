@@ -41,6 +41,74 @@ struct Neighbor
   EdgeView View;
 };
 
+/// What the chart needs to know of an edge's strip. All zero but kappa on the boundary.
+struct SmoothStrip
+{
+  /// The components of D_k along the corners after and before k in cyclic order. The three sum to 0.
+  double OffsetNext = 0.0;
+  double OffsetPrevious = 0.0;
+  /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller neighbour.
+  double Kappa = 1.0;
+  /// In (0, 1]; 0 on the boundary, where there is no strip.
+  double Tau = 0.0;
+
+  SmoothStrip() = default;
+
+  /// @a own is what the edge sees of its triangle, @a neighbor of the one on its other side.
+  SmoothStrip(const EdgeView& own, const EdgeView& neighbor);
+
+  /// Whether l is in the strip, if it is that of edge k: 0 <= l_k / (tau q) < 1.
+  bool Contains(double k, double next, double previous) const
+  {
+    return k * (next + previous) < this->Tau * next * previous;
+  }
+};
+
+/// The strips of a triangle's edges; element k belongs to the edge opposite corner k.
+using SmoothStrips = std::array<SmoothStrip, 3>;
+
+/// A triangle's strips. views[k] is what the edge opposite corner k sees of this triangle, neighbors[k]
+/// what lies on its other side. Both triangles at an edge must be given the same two views of it (one
+/// reversed).
+SmoothStrips MakeSmoothStrips(
+  const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
+
+/// Points of strips in arrays, so that the processor can deal with several at once. Each is in the strip
+/// of an edge opposite a corner k in a source triangle, or in the target triangle's, or in both.
+struct SmoothLanes
+{
+  static constexpr int Capacity = 256;
+
+  /// The barycentric coordinates with respect to k, the next corner and the previous one: of the affine
+  /// chart of the source, then of the reference, then of the affine chart of the target.
+  double L[3][Capacity];
+  /// SmoothStrip's numbers in source and target.
+  double OffsetNext[2][Capacity];
+  double OffsetPrevious[2][Capacity];
+  double Kappa[2][Capacity];
+  double Tau[2][Capacity];
+
+  void Set(int lane, double k, double next, double previous, const SmoothStrip& source,
+    const SmoothStrip& target)
+  {
+    this->L[0][lane] = k;
+    this->L[1][lane] = next;
+    this->L[2][lane] = previous;
+    const SmoothStrip* strips[2] = { &source, &target };
+    for (int side = 0; side < 2; ++side)
+    {
+      this->OffsetNext[side][lane] = strips[side]->OffsetNext;
+      this->OffsetPrevious[side][lane] = strips[side]->OffsetPrevious;
+      this->Kappa[side][lane] = strips[side]->Kappa;
+      this->Tau[side][lane] = strips[side]->Tau;
+    }
+  }
+};
+
+/// Takes the first @a count points from the source's chart to the target's: to the same bits as
+/// SmoothChart's ToReference and ToPoint.
+void MapSmoothLanes(SmoothLanes& lanes, int count);
+
 /// The chart of the Smooth system.
 class SmoothChart
 {
@@ -48,10 +116,17 @@ public:
   using Reference = Barycentric;
   using Direction = Barycentric;
 
-  /// views[k] is what the edge opposite corner k sees of this triangle, neighbors[k] what lies on its
-  /// other side. Both triangles at an edge must be given the same two views of it (one reversed).
+  SmoothChart(const TriangleShape& shape, const SmoothStrips& strips)
+    : Shape(shape)
+    , Strips(strips)
+  {
+  }
+
   SmoothChart(const TriangleShape& shape, const EdgeViews& views,
-    const std::array<Neighbor, 3>& neighbors);
+    const std::array<Neighbor, 3>& neighbors)
+    : SmoothChart(shape, MakeSmoothStrips(views, neighbors))
+  {
+  }
 
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& l) const;
@@ -76,21 +151,11 @@ public:
   double StripWidth(int edge) const { return this->Strips[edge].Tau; }
 
 private:
-  struct Strip
-  {
-    Barycentric Offset{}; ///< d, the components of D_k along the corners; they sum to 0
-    /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller neighbour.
-    double Kappa = 1.0;
-    double Tau = 0.0;
-  };
-
-  class StripFunction;
-
   /// The strip that l is in, or -1.
   int StripAt(const Barycentric& l) const;
 
   TriangleShape Shape;
-  std::array<Strip, 3> Strips;
+  SmoothStrips Strips;
 };
 
 } // namespace homeomorphism

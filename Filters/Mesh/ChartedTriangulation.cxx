@@ -83,12 +83,10 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   }
   else if (system == CoordinateSystem::Smooth)
   {
-    this->SmoothCharts =
-      MakeCharts(triangulation, SmoothChart({}, {}, {}), [&](TriangleIndex t) {
-        return SmoothChart(embedding.GetShape(t),
-          embedding.GetViews(triangulation.GetCorners(t)),
-          UnfoldNeighbors(triangulation, embedding, t));
-      });
+    this->Strips = MakeCharts(triangulation, SmoothStrips(), [&](TriangleIndex t) {
+      return MakeSmoothStrips(embedding.GetViews(triangulation.GetCorners(t)),
+        UnfoldNeighbors(triangulation, embedding, t));
+    });
   }
 }
 

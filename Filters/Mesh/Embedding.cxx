@@ -377,7 +377,6 @@ EdgeViews Embedding::GetViews(const Triangulation::Corners& corners) const
 void Embedding::ComputeFrames(const Triangulation& triangulation)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  this->Shapes.resize(count);
   if (this->Planar)
   {
     this->PlaneFrames.resize(count);
@@ -395,33 +394,38 @@ void Embedding::ComputeFrames(const Triangulation& triangulation)
       }
       const Triangulation::Corners& corners = triangulation.GetCorners(t);
       const EdgeViews views = this->GetViews(corners);
-      this->Shapes[t] = MakeShape(views, FindApex(views));
+      const TriangleShape shape = MakeShape(views, FindApex(views));
       if (this->Planar)
       {
-        this->ComputePlaneFrame(t, corners);
+        this->ComputePlaneFrame(t, corners, shape);
       }
       else
       {
-        this->ComputeSpaceFrame(t, corners);
+        this->ComputeSpaceFrame(t, corners, shape);
       }
     }
   });
 }
 
-void Embedding::ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
+void Embedding::ComputePlaneFrame(
+  TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape)
 {
-  const TriangleShape& shape = this->Shapes[triangle];
   PlaneFrame& frame = this->PlaneFrames[triangle];
   frame.Origin = this->PlanePoints[corners[NextCorner(shape.Apex)]];
   const Vector2 edge = this->PlanePoints[corners[PreviousCorner(shape.Apex)]] - frame.Origin;
   frame.Tangent = { edge.x / shape.Base, edge.y / shape.Base };
+  frame.Base = shape.Base;
+  frame.ApexX = shape.ApexX;
+  frame.Height = shape.Height;
+  frame.Apex = shape.Apex;
   frame.Side = this->GetOrientation(corners);
 }
 
-void Embedding::ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
+void Embedding::ComputeSpaceFrame(
+  TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape)
 {
-  const TriangleShape& shape = this->Shapes[triangle];
   SpaceFrame& frame = this->SpaceFrames[triangle];
+  frame.Shape = shape;
   frame.Origin = this->SpacePoints[corners[NextCorner(shape.Apex)]];
   frame.Tangent = Scaled(
     Difference(this->SpacePoints[corners[PreviousCorner(shape.Apex)]], frame.Origin),
@@ -438,8 +442,7 @@ FramePoint Embedding::ToFrame(TriangleIndex triangle, const Vector3& working) co
   if (this->Planar)
   {
     const PlaneFrame& frame = this->PlaneFrames[triangle];
-    const Vector2 d = Vector2{ working[0], working[1] } - frame.Origin;
-    return { { Dot(d, frame.Tangent), frame.Side * Cross(frame.Tangent, d) },
+    return { frame.ToFrame({ working[0], working[1] }),
       this->Columnar ? working[2] : frame.Side * working[2] };
   }
   const SpaceFrame& frame = this->SpaceFrames[triangle];
@@ -449,16 +452,14 @@ FramePoint Embedding::ToFrame(TriangleIndex triangle, const Vector3& working) co
 
 Vector3 Embedding::FromFrame(TriangleIndex triangle, const FramePoint& point) const
 {
-  const double x = point.InPlane.x;
   if (this->Planar)
   {
     const PlaneFrame& frame = this->PlaneFrames[triangle];
-    const double y = frame.Side * point.InPlane.y;
-    return { frame.Origin.x + (x * frame.Tangent.x - y * frame.Tangent.y),
-      frame.Origin.y + (x * frame.Tangent.y + y * frame.Tangent.x),
-      this->Columnar ? point.Offset : frame.Side * point.Offset };
+    const Vector2 inPlane = frame.FromFrame(point.InPlane);
+    return { inPlane.x, inPlane.y, this->Columnar ? point.Offset : frame.Side * point.Offset };
   }
   const SpaceFrame& frame = this->SpaceFrames[triangle];
+  const double x = point.InPlane.x;
   const double y = point.InPlane.y;
   Vector3 result;
   for (int axis = 0; axis < 3; ++axis)

@@ -28,6 +28,35 @@ struct FramePoint
   double Offset = 0.0;
 };
 
+/// Frame and shape of a triangle in the plane: all that locating and mapping a point need to know of it.
+struct alignas(64) PlaneFrame
+{
+  Vector2 Origin;
+  Vector2 Tangent;
+  double Base = 1.0;
+  double ApexX = 0.5;
+  double Height = 1.0;
+  std::int32_t Apex = 2;
+  /// 1 if the apex is to the left of the tangent, -1 if to the right.
+  std::int32_t Side = 1;
+
+  TriangleShape Shape() const { return { this->Base, this->ApexX, this->Height, this->Apex }; }
+
+  Vector2 ToFrame(const Vector2& point) const
+  {
+    const Vector2 d = point - this->Origin;
+    return { Dot(d, this->Tangent), this->Side * Cross(this->Tangent, d) };
+  }
+
+  Vector2 FromFrame(const Vector2& point) const
+  {
+    const double y = this->Side * point.y;
+    return { this->Origin.x + (point.x * this->Tangent.x - y * this->Tangent.y),
+      this->Origin.y + (point.x * this->Tangent.y + y * this->Tangent.x) };
+  }
+};
+static_assert(sizeof(PlaneFrame) == 64, "One line of a processor's cache");
+
 /// Positions of a triangulation's points, in a plane or as a surface in 3-space.
 ///
 /// Everything is computed in *working coordinates*: those of the input times a power of two, Scale,
@@ -100,7 +129,16 @@ public:
   /// What each edge sees of the triangle.
   EdgeViews GetViews(const Triangulation::Corners& corners) const;
 
-  const TriangleShape& GetShape(TriangleIndex triangle) const { return this->Shapes[triangle]; }
+  TriangleShape GetShape(TriangleIndex triangle) const
+  {
+    return this->Planar ? this->PlaneFrames[triangle].Shape() : this->SpaceFrames[triangle].Shape;
+  }
+
+  /// The frame of a triangle of a planar mesh.
+  const PlaneFrame& GetPlaneFrame(TriangleIndex triangle) const
+  {
+    return this->PlaneFrames[triangle];
+  }
 
   FramePoint ToFrame(TriangleIndex triangle, const Vector3& working) const;
   Vector3 FromFrame(TriangleIndex triangle, const FramePoint& point) const;
@@ -116,14 +154,6 @@ public:
   }
 
 private:
-  /// Frame of a triangle in the plane.
-  struct PlaneFrame
-  {
-    Vector2 Origin;
-    Vector2 Tangent;
-    /// 1 if the apex is to the left of the tangent, -1 if to the right.
-    double Side;
-  };
   /// Frame of a triangle in 3-space.
   struct SpaceFrame
   {
@@ -131,12 +161,15 @@ private:
     Vector3 Tangent;
     Vector3 Inward;
     Vector3 Normal;
+    TriangleShape Shape;
   };
 
   void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
     const Embedding* companion);
-  void ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
-  void ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
+  void ComputePlaneFrame(
+    TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape);
+  void ComputeSpaceFrame(
+    TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape);
 
   bool Planar = false;
   bool Columnar = false;
@@ -156,7 +189,6 @@ private:
   std::vector<Vector2> PlanePoints;
   // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times Scale.
   std::vector<Vector3> SpacePoints;
-  std::vector<TriangleShape> Shapes;
   std::vector<PlaneFrame> PlaneFrames;
   std::vector<SpaceFrame> SpaceFrames;
 };
