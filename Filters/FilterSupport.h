@@ -11,9 +11,12 @@
 #include "Mesh/HomeomorphismCache.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkArrayDispatch.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
@@ -33,6 +36,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <type_traits>
 
 namespace homeomorphism
 {
@@ -75,6 +79,49 @@ inline double PrecisionOfType(int dataType)
   return 0.5 *
     (dataType == VTK_FLOAT ? static_cast<double>(std::numeric_limits<float>::epsilon())
                            : std::numeric_limits<double>::epsilon());
+}
+
+/// Reads a block's points, of which the first is tuple @a first of an array of 3 components.
+inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
+{
+  const auto read = [first, &block](auto* typed) {
+    const auto tuples = vtk::DataArrayTupleRange<3>(typed, first, first + block.Count);
+    int i = 0;
+    for (const auto tuple : tuples)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        block.Points[i][axis] = static_cast<double>(tuple[axis]);
+      }
+      ++i;
+    }
+  };
+  if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, read))
+  {
+    read(array);
+  }
+}
+
+/// Writes a block's points to an array of 3 components.
+inline void WritePoints(const PointBlock& block, vtkIdType first, vtkDataArray* array)
+{
+  const auto write = [first, &block](auto* typed) {
+    using Value = vtk::GetAPIType<std::remove_pointer_t<decltype(typed)>>;
+    auto tuples = vtk::DataArrayTupleRange<3>(typed, first, first + block.Count);
+    int i = 0;
+    for (auto tuple : tuples)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        tuple[axis] = static_cast<Value>(block.Points[i][axis]);
+      }
+      ++i;
+    }
+  };
+  if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, write))
+  {
+    write(array);
+  }
 }
 
 /// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported

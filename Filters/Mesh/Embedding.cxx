@@ -109,7 +109,8 @@ Embedding::Embedding(
   }
   if (largest > 0.0)
   {
-    this->Scale = 1.0 / PowerOfTwoNear(largest);
+    this->InverseScale = PowerOfTwoNear(largest);
+    this->Scale = 1.0 / this->InverseScale;
   }
   Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
   Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
@@ -254,47 +255,22 @@ void Embedding::FindPlane(const std::vector<Vector3>& points,
   this->PlaneDistance = Dot3(normal, origin);
 }
 
-Vector3 Embedding::ToWorking(const double point[3]) const
+Vector3 Embedding::ToTiltedPlane(const Vector3& scaled) const
 {
-  const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
-  if (!this->Planar)
-  {
-    return p;
-  }
-  if (this->AxisParallel)
-  {
-    return { p[this->AxisOrder[0]], p[this->AxisOrder[1]],
-      this->NormalSign * p[this->AxisOrder[2]] - this->PlaneDistance };
-  }
-  return { Dot3(this->PlaneAxes[0], p), Dot3(this->PlaneAxes[1], p),
-    Dot3(this->PlaneAxes[2], p) - this->PlaneDistance };
+  return { Dot3(this->PlaneAxes[0], scaled), Dot3(this->PlaneAxes[1], scaled),
+    Dot3(this->PlaneAxes[2], scaled) - this->PlaneDistance };
 }
 
-void Embedding::FromWorking(const Vector3& working, double point[3]) const
+Vector3 Embedding::FromTiltedPlane(const Vector3& working) const
 {
-  const double unscale = 1.0 / this->Scale;
-  if (!this->Planar)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      point[axis] = working[axis] * unscale;
-    }
-    return;
-  }
   const double height = working[2] + this->PlaneDistance;
-  if (this->AxisParallel)
-  {
-    point[this->AxisOrder[0]] = working[0] * unscale;
-    point[this->AxisOrder[1]] = working[1] * unscale;
-    point[this->AxisOrder[2]] = this->NormalSign * height * unscale;
-    return;
-  }
+  Vector3 scaled;
   for (int axis = 0; axis < 3; ++axis)
   {
-    point[axis] = (working[0] * this->PlaneAxes[0][axis] + working[1] * this->PlaneAxes[1][axis] +
-                    height * this->PlaneAxes[2][axis]) *
-      unscale;
+    scaled[axis] = working[0] * this->PlaneAxes[0][axis] + working[1] * this->PlaneAxes[1][axis] +
+      height * this->PlaneAxes[2][axis];
   }
+  return scaled;
 }
 
 bool Embedding::IsMeshPoint(std::int32_t meshPoint, const double point[3]) const
@@ -313,11 +289,10 @@ void Embedding::FromMeshPoint(std::int32_t meshPoint, double offset, double poin
     this->FromWorking(working, point);
     return;
   }
-  const double unscale = 1.0 / this->Scale;
   for (int axis = 0; axis < 3; ++axis)
   {
-    point[axis] =
-      (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) * unscale;
+    point[axis] = (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) *
+      this->InverseScale;
   }
 }
 

@@ -93,8 +93,33 @@ public:
   /// Relative rounding error of the coordinates as they were stored: half an ulp of float or double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
 
-  Vector3 ToWorking(const double point[3]) const;
-  void FromWorking(const Vector3& working, double point[3]) const;
+  Vector3 ToWorking(const double point[3]) const
+  {
+    const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
+    if (this->AxisParallel)
+    {
+      return { p[this->AxisOrder[0]], p[this->AxisOrder[1]],
+        this->NormalSign * p[this->AxisOrder[2]] - this->PlaneDistance };
+    }
+    return this->Planar ? this->ToTiltedPlane(p) : p;
+  }
+
+  void FromWorking(const Vector3& working, double point[3]) const
+  {
+    if (this->AxisParallel)
+    {
+      const double height = this->NormalSign * (working[2] + this->PlaneDistance);
+      point[this->AxisOrder[0]] = working[0] * this->InverseScale;
+      point[this->AxisOrder[1]] = working[1] * this->InverseScale;
+      point[this->AxisOrder[2]] = height * this->InverseScale;
+      return;
+    }
+    const Vector3 p = this->Planar ? this->FromTiltedPlane(working) : working;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = p[axis] * this->InverseScale;
+    }
+  }
 
   /// Whether a place is a point of the mesh, bit for bit.
   bool IsMeshPoint(std::int32_t meshPoint, const double point[3]) const;
@@ -164,6 +189,8 @@ private:
     TriangleShape Shape;
   };
 
+  Vector3 ToTiltedPlane(const Vector3& scaled) const;
+  Vector3 FromTiltedPlane(const Vector3& working) const;
   void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
     const Embedding* companion);
   void ComputePlaneFrame(
@@ -176,6 +203,7 @@ private:
   /// Whether the plane is parallel to two axes: no rounding on the way to working coordinates.
   bool AxisParallel = false;
   double Scale = 1.0;
+  double InverseScale = 1.0;
   double LargestCoordinate = 0.0;
   double Diagonal = 0.0;
   double CoordinatePrecision = 0.0;

@@ -45,6 +45,28 @@ struct Jacobian
   }
 };
 
+/// What helps to find the next of many points; it changes how fast, never what is found.
+struct LocationHint
+{
+  TriangleIndex Triangle = -1;
+  /// For how many more blocks points are taken to be so far from each other that the last one's triangle
+  /// is no help.
+  int ScatteredBlocks = 0;
+};
+
+/// Some points that are located and mapped together, which takes a fraction of the time.
+struct PointBlock
+{
+  static constexpr int Capacity = SmoothLanes::Capacity;
+
+  int Count = 0;
+  /// The points; after MapBlock, the images of those that are inside.
+  double Points[Capacity][3];
+  Location Places[Capacity];
+  /// Barycentric coordinates of the places that are no corners.
+  Barycentric Affine[Capacity];
+};
+
 /// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
 /// coordinates of a single one. Immutable; any number of threads may use it.
 class Homeomorphism
@@ -70,6 +92,13 @@ public:
   /// The image of a place of @a from's domain. Corners go to corners exactly.
   void MapPoint(Side from, const Location& place, double image[3]) const;
 
+  /// Locates the points of a block: to the same bits as Locate.
+  void LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const;
+
+  /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose place has
+  /// no triangle stay.
+  void MapBlock(Side from, PointBlock& block) const;
+
   /// The derivative at a place; on an edge, the limit from the place's triangle.
   Jacobian GetJacobian(Side from, const Location& place) const;
 
@@ -86,6 +115,13 @@ public:
 
 private:
   Homeomorphism() = default;
+
+  /// A point's place, given in both coordinates.
+  Location Locate(Side side, const double point[3], const Vector3& working, double reach,
+    TriangleIndex hint) const;
+
+  /// The distance of a place's image from the plane of its triangle.
+  double OffsetOfImage(Side from, const Location& place) const;
 
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
