@@ -84,17 +84,11 @@ inline double PrecisionOfType(int dataType)
 /// Reads a block's points, of which the first is tuple @a first of an array of 3 components.
 inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
 {
-  const auto read = [first, &block](auto* typed) {
-    const auto tuples = vtk::DataArrayTupleRange<3>(typed, first, first + block.Count);
-    int i = 0;
-    for (const auto tuple : tuples)
-    {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        block.Points[i][axis] = static_cast<double>(tuple[axis]);
-      }
-      ++i;
-    }
+  double* coordinates = &block.Points[0][0];
+  const auto read = [first, coordinates, &block](auto* typed) {
+    const auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
+    std::transform(values.begin(), values.end(), coordinates,
+      [](auto value) { return static_cast<double>(value); });
   };
   if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, read))
   {
@@ -105,18 +99,12 @@ inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
 /// Writes a block's points to an array of 3 components.
 inline void WritePoints(const PointBlock& block, vtkIdType first, vtkDataArray* array)
 {
-  const auto write = [first, &block](auto* typed) {
+  const double* coordinates = &block.Points[0][0];
+  const auto write = [first, coordinates, &block](auto* typed) {
     using Value = vtk::GetAPIType<std::remove_pointer_t<decltype(typed)>>;
-    auto tuples = vtk::DataArrayTupleRange<3>(typed, first, first + block.Count);
-    int i = 0;
-    for (auto tuple : tuples)
-    {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        tuple[axis] = static_cast<Value>(block.Points[i][axis]);
-      }
-      ++i;
-    }
+    auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
+    std::transform(coordinates, coordinates + 3 * block.Count, values.begin(),
+      [](double value) { return static_cast<Value>(value); });
   };
   if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, write))
   {

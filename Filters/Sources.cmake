@@ -64,9 +64,10 @@ set(support_headers
   Stars.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results
-# would change from one machine to another.
+# would change from one machine to another. Nobody asks for floating-point exceptions or errno: without
+# them, loops over several points become vector instructions.
 set(floating_point_options
-  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off;-fno-trapping-math;-fno-math-errno>)
 
 # Only in a build of our own: inside VTK, VTK decides.
 set(warning_options)

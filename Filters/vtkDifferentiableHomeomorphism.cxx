@@ -207,24 +207,41 @@ private:
     }
     const vtkIdType done = RunInBlocks(
       this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
-        TriangleIndex hint = -1;
-        for (vtkIdType i = begin; i < end; ++i)
+        LocationHint hint;
+        PointBlock block;
+        for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
         {
-          double point[3];
-          this->Input->GetPoint(i, point);
-          // What is hidden in the input is not there: above all what an earlier map found outside.
-          const bool hidden =
-            ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0;
-          const Location place =
-            hidden ? Location{} : this->Map.Locate(this->From, point, reach, hint);
-          hint = place.Triangle;
-          if (place.Triangle >= 0)
+          block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+          if (inPoints)
           {
-            this->Map.MapPoint(this->From, place, point);
-            this->Mask->SetValue(i, 1);
-            this->SetDerived(i, place);
+            ReadPoints(inPoints->GetData(), first, block);
           }
-          outPoints->SetPoint(i, point);
+          else
+          {
+            for (int i = 0; i < block.Count; ++i)
+            {
+              this->Input->GetPoint(first + i, block.Points[i]);
+            }
+          }
+          this->Map.LocateBlock(this->From, block, reach, hint);
+          for (int i = 0; i < block.Count && ghosts; ++i)
+          {
+            // What is hidden in the input is not there: above all what an earlier map found outside.
+            if ((ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT) != 0)
+            {
+              block.Triangles[i] = -1;
+            }
+          }
+          this->Map.MapBlock(this->From, block);
+          WritePoints(block, first, outPoints->GetData());
+          for (int i = 0; i < block.Count; ++i)
+          {
+            if (block.Triangles[i] >= 0)
+            {
+              this->Mask->SetValue(first + i, 1);
+              this->SetDerived(first + i, block.GetPlace(i));
+            }
+          }
         }
       });
     // Aborted: what was not reached stays where it is, marked as outside.

@@ -47,8 +47,15 @@ public:
   Location MapPoint(Side from, const Real in[3], Real out[3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
-    const Location place = this->Locate(
-      from, point, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), -1);
+    // Callers that go from point to point, as vtkImageReslice does, mostly stay in a triangle. Each thread
+    // remembers its last one; that it may be one of another mesh or side only costs time.
+    thread_local TriangleIndex last = -1;
+    const bool isHint = this->Map && last >= 0 &&
+      last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
+    const Location place =
+      this->Locate(from, point, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()),
+        isHint ? last : -1);
+    last = place.Triangle;
     double image[3];
     this->MapPlace(from, place, image);
     const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
@@ -252,11 +259,11 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
       if (internals.Map)
       {
         ReadPoints(inPts->GetData(), first, block);
-        internals.Map->LocateBlock(from, block, reach, hint);
+        const int outside = internals.Map->LocateBlock(from, block, reach, hint);
         internals.Map->MapBlock(from, block);
-        for (int i = 0; i < block.Count; ++i)
+        for (int i = 0; i < block.Count && outside > 0; ++i)
         {
-          if (block.Places[i].Triangle < 0)
+          if (block.Triangles[i] < 0)
           {
             std::fill_n(block.Points[i], 3, internals.OutsideCoordinate);
           }
@@ -267,7 +274,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
       {
         double derivative[3][3];
         internals.GetDerivative(
-          from, internals.Map ? block.Places[i] : Location{}, derivative);
+          from, internals.Map ? block.GetPlace(i) : Location{}, derivative);
         const TensorTransport transport(&derivative[0][0]);
         for (const Carried& array : carried)
         {

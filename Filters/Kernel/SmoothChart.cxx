@@ -7,6 +7,7 @@
 #include "Vectorize.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace homeomorphism
 {
@@ -28,9 +29,9 @@ struct StripFunction
     : K(k)
     , Tau(tau)
   {
-    const double sum = next + previous;
-    this->ShareNext = next / sum;
-    this->SharePrevious = previous / sum;
+    const double overSum = 1.0 / (next + previous);
+    this->ShareNext = next * overSum;
+    this->SharePrevious = previous * overSum;
     double u = k / (tau * next * this->SharePrevious);
     u = u > 0.0 ? u : 0.0;
     u = u < 1.0 ? u : 1.0;
@@ -123,8 +124,11 @@ struct StripEquation
     double moved = beta - step;
     moved = moved > lower ? moved : middle;
     moved = moved < upper ? moved : middle;
-    const double magnitude = step < 0.0 ? -step : step;
-    const double enough = magnitude <= 0x1p-30 * beta || middle == lower || middle == upper ? 1.0 : 0.0;
+    const double magnitude = std::abs(step);
+    // No branches, with which the lanes could not keep step.
+    double enough = magnitude <= 0x1p-30 * beta ? 1.0 : 0.0;
+    enough = middle == lower ? 1.0 : enough;
+    enough = middle == upper ? 1.0 : enough;
     moved = magnitude <= 0x1p-53 * beta ? beta : moved;
     this->Beta[lane] = this->Done[lane] > 0.0 ? beta : moved;
     this->Done[lane] = this->Done[lane] > enough ? this->Done[lane] : enough;
@@ -199,17 +203,128 @@ SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor,
   return strips;
 }
 
+namespace
+{
+
+/// One point: less of the strips has to be fetched from memory than for several at once.
+void SetSmoothLane(SmoothLanes& lanes, int i, const double* const coordinates[3],
+  const SmoothStrips& source, const SmoothStrips& target)
+{
+  const double l[3] = { coordinates[0][i], coordinates[1][i], coordinates[2][i] };
+  const int lesser = l[1] < l[0] ? 1 : 0;
+  const int corner = l[2] < l[lesser] ? 2 : lesser;
+  lanes.Corner[i] = corner;
+  lanes.L[0][i] = l[corner];
+  lanes.L[1][i] = l[NextCorner(corner)];
+  lanes.L[2][i] = l[PreviousCorner(corner)];
+  const SmoothStrips* sides[2] = { &source, &target };
+  for (int side = 0; side < 2; ++side)
+  {
+    const SmoothStrip& strip = (*sides[side])[corner];
+    lanes.OffsetNext[side][i] = strip.OffsetNext;
+    lanes.OffsetPrevious[side][i] = strip.OffsetPrevious;
+    lanes.Kappa[side][i] = strip.Kappa;
+    lanes.Tau[side][i] = strip.Tau;
+  }
+}
+
+} // namespace
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
+  const SmoothStrips& source, const SmoothStrips& target)
+{
+  if (end - begin < 3)
+  {
+    for (int i = begin; i < end; ++i)
+    {
+      SetSmoothLane(lanes, i, coordinates, source, target);
+    }
+    return;
+  }
+  const int stop = begin + InWholeVectors(end - begin);
+  const double* first = coordinates[0];
+  const double* second = coordinates[1];
+  const double* third = coordinates[2];
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    const double a = first[i];
+    const double b = second[i];
+    const double c = third[i];
+    const double lesser = b < a ? b : a;
+    const std::int64_t corner = c < lesser ? 2 : (b < a ? 1 : 0);
+    lanes.Corner[i] = corner;
+    lanes.L[0][i] = c < lesser ? c : lesser;
+    lanes.L[1][i] = corner == 0 ? b : (corner == 1 ? c : a);
+    lanes.L[2][i] = corner == 0 ? c : (corner == 1 ? a : b);
+  }
+  const SmoothStrips* sides[2] = { &source, &target };
+  for (int side = 0; side < 2; ++side)
+  {
+    const SmoothStrip s0 = (*sides[side])[0];
+    const SmoothStrip s1 = (*sides[side])[1];
+    const SmoothStrip s2 = (*sides[side])[2];
+    HOMEOMORPHISM_LANES
+    for (int i = begin; i < stop; ++i)
+    {
+      const bool is0 = lanes.Corner[i] == 0;
+      const bool is1 = lanes.Corner[i] == 1;
+      lanes.OffsetNext[side][i] =
+        is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
+      lanes.OffsetPrevious[side][i] =
+        is0 ? s0.OffsetPrevious : (is1 ? s1.OffsetPrevious : s2.OffsetPrevious);
+      lanes.Kappa[side][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
+      lanes.Tau[side][i] = is0 ? s0.Tau : (is1 ? s1.Tau : s2.Tau);
+    }
+  }
+}
+
+void FillSmoothLanes(SmoothLanes& lanes, int begin, int end)
+{
+  for (int i = begin; i < end; ++i)
+  {
+    lanes.Corner[i] = 0;
+    for (double* l : lanes.L)
+    {
+      l[i] = 1.0 / 3.0;
+    }
+    for (int side = 0; side < 2; ++side)
+    {
+      lanes.OffsetNext[side][i] = 0.0;
+      lanes.OffsetPrevious[side][i] = 0.0;
+      lanes.Kappa[side][i] = 1.0;
+      lanes.Tau[side][i] = 0.0;
+    }
+  }
+}
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void GetSmoothLanes(
+  const SmoothLanes& lanes, int begin, int end, double* const coordinates[3])
+{
+  const int stop = begin + InWholeVectors(end - begin);
+  double* first = coordinates[0];
+  double* second = coordinates[1];
+  double* third = coordinates[2];
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    const bool is0 = lanes.Corner[i] == 0;
+    const bool is1 = lanes.Corner[i] == 1;
+    first[i] = is0 ? lanes.L[0][i] : (is1 ? lanes.L[2][i] : lanes.L[1][i]);
+    second[i] = is0 ? lanes.L[1][i] : (is1 ? lanes.L[0][i] : lanes.L[2][i]);
+    third[i] = is0 ? lanes.L[2][i] : (is1 ? lanes.L[1][i] : lanes.L[0][i]);
+  }
+}
+
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 void MapSmoothLanes(SmoothLanes& lanes, int count)
 {
-  constexpr int width = 32;
+  constexpr int width = 16;
   static_assert(SmoothLanes::Capacity % width == 0, "whole groups of lanes");
-  // What fills the last group is in no strip.
   const int end = (count + width - 1) / width * width;
-  for (int lane = count; lane < end; ++lane)
-  {
-    lanes.Set(lane, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, SmoothStrip(), SmoothStrip());
-  }
+  FillSmoothLanes(lanes, count, end);
   for (int first = 0; first < end; first += width)
   {
     double* k = lanes.L[0] + first;

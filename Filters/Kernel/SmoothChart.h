@@ -25,8 +25,10 @@
 
 #include "CoordinateSystem.h"
 #include "Geometry.h"
+#include "Vectorize.h"
 
 #include <array>
+#include <cstdint>
 
 namespace homeomorphism
 {
@@ -73,41 +75,43 @@ using SmoothStrips = std::array<SmoothStrip, 3>;
 SmoothStrips MakeSmoothStrips(
   const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
 
-/// Points of strips in arrays, so that the processor can deal with several at once. Each is in the strip
-/// of an edge opposite a corner k in a source triangle, or in the target triangle's, or in both.
+/// Points in arrays, so that the processor can deal with several at once.
 struct SmoothLanes
 {
   static constexpr int Capacity = 256;
+  /// With the room that whole vectors take.
+  static constexpr int Size = Capacity + WidestVector;
 
+  /// k, the corner with the least coordinate: only of the edge opposite to it can a strip contain the point.
+  std::int64_t Corner[Size];
   /// The barycentric coordinates with respect to k, the next corner and the previous one: of the affine
   /// chart of the source, then of the reference, then of the affine chart of the target.
-  double L[3][Capacity];
+  double L[3][Size];
   /// SmoothStrip's numbers in source and target.
-  double OffsetNext[2][Capacity];
-  double OffsetPrevious[2][Capacity];
-  double Kappa[2][Capacity];
-  double Tau[2][Capacity];
+  double OffsetNext[2][Size];
+  double OffsetPrevious[2][Size];
+  double Kappa[2][Size];
+  double Tau[2][Size];
 
-  void Set(int lane, double k, double next, double previous, const SmoothStrip& source,
-    const SmoothStrip& target)
-  {
-    this->L[0][lane] = k;
-    this->L[1][lane] = next;
-    this->L[2][lane] = previous;
-    const SmoothStrip* strips[2] = { &source, &target };
-    for (int side = 0; side < 2; ++side)
-    {
-      this->OffsetNext[side][lane] = strips[side]->OffsetNext;
-      this->OffsetPrevious[side][lane] = strips[side]->OffsetPrevious;
-      this->Kappa[side][lane] = strips[side]->Kappa;
-      this->Tau[side][lane] = strips[side]->Tau;
-    }
-  }
 };
 
+/// Puts points of one triangle into the lanes from @a begin to before @a end. @a coordinates[corner] points
+/// to arrays of the barycentric coordinates of the source's affine chart, one for each lane. Up to
+/// WidestVector - 1 lanes after the last are spoilt.
+void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
+  const SmoothStrips& source, const SmoothStrips& target);
+
+/// Fills lanes with a point that the map leaves where it is.
+void FillSmoothLanes(SmoothLanes& lanes, int begin, int end);
+
 /// Takes the first @a count points from the source's chart to the target's: to the same bits as
-/// SmoothChart's ToReference and ToPoint.
+/// SmoothChart's ToReference and ToPoint. Lanes up to the next multiple of 32 are filled.
 void MapSmoothLanes(SmoothLanes& lanes, int count);
+
+/// Takes the coordinates out of the lanes, into arrays as in SetSmoothLanes, where they spoil what comes
+/// after.
+void GetSmoothLanes(
+  const SmoothLanes& lanes, int begin, int end, double* const coordinates[3]);
 
 /// The chart of the Smooth system.
 class SmoothChart

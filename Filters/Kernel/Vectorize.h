@@ -26,6 +26,21 @@
 #define HOMEOMORPHISM_ALWAYS_INLINE inline
 #endif
 
+namespace homeomorphism
+{
+
+/// The most numbers that one instruction deals with. Arrays have so many elements more than are used, and
+/// loops run to whole multiples, writing what is overwritten or never read: what remains after whole vectors
+/// would take longer than they do.
+constexpr int WidestVector = 8;
+
+constexpr int InWholeVectors(int count)
+{
+  return (count + WidestVector - 1) & ~(WidestVector - 1);
+}
+
+} // namespace homeomorphism
+
 /// Before a loop over lanes, whose passes do not depend on each other.
 #if defined(__clang__)
 #define HOMEOMORPHISM_LANES _Pragma("clang loop vectorize(enable)")

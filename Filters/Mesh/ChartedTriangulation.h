@@ -62,9 +62,9 @@ public:
   {
     return SmoothChart(this->Geometry.GetShape(triangle), this->Strips[triangle]);
   }
-  const SmoothStrip& GetSmoothStrip(TriangleIndex triangle, int edge) const
+  const SmoothStrips& GetSmoothStrips(TriangleIndex triangle) const
   {
-    return this->Strips[triangle][edge];
+    return this->Strips[triangle];
   }
 
   /// Calls visit(chart) with the triangle's chart, whatever its type, and returns what it returns.

@@ -95,12 +95,12 @@ public:
 
   Vector3 ToWorking(const double point[3]) const
   {
-    const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
     if (this->AxisParallel)
     {
-      return { p[this->AxisOrder[0]], p[this->AxisOrder[1]],
-        this->NormalSign * p[this->AxisOrder[2]] - this->PlaneDistance };
+      return { point[this->AxisOrder[0]] * this->Scale, point[this->AxisOrder[1]] * this->Scale,
+        this->NormalSign * (point[this->AxisOrder[2]] * this->Scale) - this->PlaneDistance };
     }
+    const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
     return this->Planar ? this->ToTiltedPlane(p) : p;
   }
 
@@ -159,10 +159,29 @@ public:
     return this->Planar ? this->PlaneFrames[triangle].Shape() : this->SpaceFrames[triangle].Shape;
   }
 
+  /// The corner opposite a triangle's longest edge.
+  int GetApex(TriangleIndex triangle) const
+  {
+    return this->Planar ? this->PlaneFrames[triangle].Apex : this->SpaceFrames[triangle].Shape.Apex;
+  }
+
   /// The frame of a triangle of a planar mesh.
   const PlaneFrame& GetPlaneFrame(TriangleIndex triangle) const
   {
     return this->PlaneFrames[triangle];
+  }
+
+  /// Asks for a triangle's frame, without waiting for it.
+  void PrefetchFrame(TriangleIndex triangle) const
+  {
+    if (this->Planar)
+    {
+      Prefetch(&this->PlaneFrames[triangle]);
+    }
+    else
+    {
+      Prefetch(&this->SpaceFrames[triangle]);
+    }
   }
 
   FramePoint ToFrame(TriangleIndex triangle, const Vector3& working) const;

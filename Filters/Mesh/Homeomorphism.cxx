@@ -5,6 +5,8 @@
 
 #include "MeshValidation.h"
 
+#include "Kernel/Vectorize.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +14,65 @@
 
 namespace homeomorphism
 {
+namespace
+{
+
+/// Places points from @a begin on in a triangle's frame, up to the first that is not for certain in its
+/// interior or higher over the plane than @a highest. Returns the number of that one, @a end if there is none.
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+int FindRun(const PlaneFrame& frame, const double working[3][PointBlock::Size], int begin, int end,
+  double highest, PointBlock& block)
+{
+  const PlaneFrame f = frame;
+  const double* x = working[0];
+  const double* y = working[1];
+  const double* height = working[2];
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::int64_t isIn[PointBlock::Size];
+  const int stop = begin + InWholeVectors(end - begin);
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    const PlaneRelation relation(f, { x[i], y[i] });
+    block.InPlane[0][i] = relation.InPlane.x;
+    block.InPlane[1][i] = relation.InPlane.y;
+    block.Apex[i] = relation.Apex;
+    block.First[i] = relation.First;
+    block.Second[i] = relation.Second;
+    // A height that is not a number is too high. No branches, which would keep points apart.
+    const double margin = std::abs(height[i]) <= highest ? relation.Margin : infinity;
+    isIn[i] = relation.Least > margin ? 1 : 0;
+  }
+  int inside = begin;
+  while (inside < end && isIn[inside] != 0)
+  {
+    ++inside;
+  }
+  return inside;
+}
+
+/// From barycentric coordinates, arrays by corner, to a plane.
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const coordinates[3],
+  double plane[2][PointBlock::Size])
+{
+  const PlaneFrame f = frame;
+  const double* apex = coordinates[f.Apex];
+  const double* second = coordinates[PreviousCorner(f.Apex)];
+  const double side = f.Side;
+  const int stop = begin + InWholeVectors(end - begin);
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    // As in TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
+    const double x = f.Base * second[i] + f.ApexX * apex[i];
+    const double y = side * (f.Height * apex[i]);
+    plane[0][i] = f.Origin.x + (x * f.Tangent.x - y * f.Tangent.y);
+    plane[1][i] = f.Origin.y + (x * f.Tangent.y + y * f.Tangent.x);
+  }
+}
+
+} // namespace
 
 std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
   vtkPolyData* target, const HomeomorphismOptions& options, MeshProblems& problems)
@@ -102,58 +163,107 @@ Location Homeomorphism::Locate(Side side, const double point[3], const Vector3& 
   return place;
 }
 
-void Homeomorphism::LocateBlock(
+int Homeomorphism::LocateBlock(
   Side side, PointBlock& block, double reach, LocationHint& hint) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
+  const Triangulation& topology = this->Pair->GetTriangulation();
   const PointLocation& location = this->Pair->GetLocation(side);
+  // From triangle to adjacent triangle before a point is looked for with more care.
+  constexpr int MaximumSteps = 4;
   const bool planar = embedding.IsPlanar();
   const bool columnar = embedding.IsColumnar();
   const bool scattered = planar && hint.ScatteredBlocks > 0;
   TriangleIndex seeds[PointBlock::Capacity];
-  if (scattered)
+  double working[3][PointBlock::Size];
+  for (int i = 0; i < block.Count; ++i)
   {
-    // Memory is slow to answer but takes many questions at a time.
-    for (int i = 0; i < block.Count; ++i)
+    const Vector3 point = embedding.ToWorking(block.Points[i]);
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const Vector3 working = embedding.ToWorking(block.Points[i]);
-      seeds[i] = location.GetSeed({ working[0], working[1] });
+      working[axis][i] = point[axis];
+    }
+    if (scattered)
+    {
+      // Memory is slow to answer but takes many questions at a time.
+      seeds[i] = location.GetSeed({ point[0], point[1] });
       if (seeds[i] >= 0)
       {
-        Prefetch(&embedding.GetPlaneFrame(seeds[i]));
-        this->Pair->GetTriangulation().PrefetchAcross(seeds[i]);
+        embedding.PrefetchFrame(seeds[i]);
+        topology.PrefetchAcross(seeds[i]);
       }
     }
   }
   int jumps = 0;
-  for (int i = 0; i < block.Count; ++i)
+  int outside = 0;
+  int steps = 0;
+  TriangleIndex start = hint.Triangle;
+  for (int i = 0; i < block.Count;)
   {
-    const Vector3 working = embedding.ToWorking(block.Points[i]);
-    Location& place = block.Places[i];
-    const TriangleIndex start = scattered ? seeds[i] : hint.Triangle;
-    if (planar && start >= 0 && (columnar || std::abs(working[2]) <= reach))
+    start = scattered && steps == 0 ? seeds[i] : start;
+    if (planar && start >= 0 && steps < MaximumSteps)
     {
+      // Points in a row are often in one triangle: as many are tried as there were last time, and more.
+      const int end =
+        scattered ? i + 1 : std::min(block.Count, i + std::max(WidestVector, 2 * hint.RunLength));
       const PlaneFrame& frame = embedding.GetPlaneFrame(start);
-      const PlaneRelation relation(frame, { working[0], working[1] });
-      if (relation.IsInside() && std::isfinite(working[2]))
+      const double highest = columnar ? std::numeric_limits<double>::max() : reach;
+      const int inside = FindRun(frame, working, i, end, highest, block);
+      for (int k = i; k < inside; ++k)
       {
-        place.Triangle = start;
-        place.Point = { relation.InPlane, columnar ? working[2] : 0.0 };
-        place.Corner = -1;
-        block.Affine[i][frame.Apex] = relation.Apex;
-        block.Affine[i][NextCorner(frame.Apex)] = relation.First;
-        block.Affine[i][PreviousCorner(frame.Apex)] = relation.Second;
+        block.Triangles[k] = start;
+        block.Corners[k] = -1;
+        block.Offsets[k] = columnar ? working[2][k] : 0.0;
+      }
+      if (inside > i)
+      {
         hint.Triangle = start;
+        hint.RunLength = std::min(inside - i, 32);
+        steps = 0;
+        i = inside;
+      }
+      if (inside == end)
+      {
         continue;
       }
-      jumps += relation.Least < -4.0 * frame.Height;
+      // The next point is elsewhere: beyond which edge is known already.
+      const double least = std::min({ block.Apex[i], block.First[i], block.Second[i] });
+      const bool isNear = least < -1e-9 && least > -4.0;
+      const int edge = least == block.Apex[i]
+        ? frame.Apex
+        : (least == block.First[i] ? NextCorner(frame.Apex) : PreviousCorner(frame.Apex));
+      jumps += steps == 0 && least < -4.0;
+      ++steps;
+      const TriangleIndex next = isNear ? topology.GetAcross(start, edge).Triangle : -1;
+      if (next >= 0)
+      {
+        start = next;
+        continue;
+      }
     }
-    place = this->Locate(side, block.Points[i], working, reach, start);
+    steps = 0;
+    const Location place = this->Locate(side, block.Points[i],
+      { working[0][i], working[1][i], working[2][i] }, reach, start);
+    block.Triangles[i] = place.Triangle;
+    block.Corners[i] = place.Corner;
+    block.InPlane[0][i] = place.Point.InPlane.x;
+    block.InPlane[1][i] = place.Point.InPlane.y;
+    block.Offsets[i] = place.Point.Offset;
     if (place.Triangle >= 0)
     {
-      block.Affine[i] = embedding.GetShape(place.Triangle).ToBarycentric(place.Point.InPlane);
+      const TriangleShape shape = embedding.GetShape(place.Triangle);
+      const Barycentric l = shape.ToBarycentric(place.Point.InPlane);
+      block.Apex[i] = l[shape.Apex];
+      block.First[i] = l[NextCorner(shape.Apex)];
+      block.Second[i] = l[PreviousCorner(shape.Apex)];
       hint.Triangle = place.Triangle;
+      start = place.Triangle;
     }
+    else
+    {
+      ++outside;
+    }
+    ++i;
   }
   if (hint.ScatteredBlocks > 0)
   {
@@ -163,84 +273,110 @@ void Homeomorphism::LocateBlock(
   {
     hint.ScatteredBlocks = 16;
   }
+  return outside;
 }
 
 void Homeomorphism::MapBlock(Side from, PointBlock& block) const
 {
+  const Embedding& source = this->Pair->GetEmbedding(from);
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
+  // Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of it.
+  const auto forEachRun = [&block](auto&& use, auto&& useOther) {
+    for (int begin = 0; begin < block.Count;)
+    {
+      const TriangleIndex t = block.Triangles[begin];
+      int end = begin + 1;
+      if (t < 0 || block.Corners[begin] >= 0)
+      {
+        useOther(begin);
+      }
+      else
+      {
+        while (end < block.Count && block.Triangles[end] == t && block.Corners[end] < 0)
+        {
+          ++end;
+        }
+        use(begin, end, t);
+      }
+      begin = end;
+    }
+  };
+  const auto byCorner = [&](TriangleIndex t) {
+    std::array<double*, 3> coordinates;
+    const int apex = source.GetApex(t);
+    coordinates[apex] = block.Apex;
+    coordinates[NextCorner(apex)] = block.First;
+    coordinates[PreviousCorner(apex)] = block.Second;
+    return coordinates;
+  };
   if (charts.GetSystem() == CoordinateSystem::Smooth)
   {
+    // Memory is slow to answer but takes many questions at a time.
+    forEachRun(
+      [&](int begin, int, TriangleIndex t) {
+        const std::array<double*, 3> l = byCorner(t);
+        const int lesser = l[1][begin] < l[0][begin] ? 1 : 0;
+        const int corner = l[2][begin] < l[lesser][begin] ? 2 : lesser;
+        Prefetch(&charts.GetSmoothStrips(t)[corner]);
+        Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
+        target.PrefetchFrame(t);
+      },
+      [](int) {});
     SmoothLanes lanes;
-    std::array<std::pair<int, int>, PointBlock::Capacity> pointAndCorner;
-    int count = 0;
-    for (int i = 0; i < block.Count; ++i)
-    {
-      const TriangleIndex t = block.Places[i].Triangle;
-      if (t < 0)
-      {
-        continue;
-      }
-      // Only of the edge that is nearest by barycentric coordinates can a strip contain the point.
-      const Barycentric& l = block.Affine[i];
-      const int lesser = l[1] < l[0] ? 1 : 0;
-      const int k = l[2] < l[lesser] ? 2 : lesser;
-      const double next = l[NextCorner(k)];
-      const double previous = l[PreviousCorner(k)];
-      const SmoothStrip& strip = charts.GetSmoothStrip(t, k);
-      const SmoothStrip& other = otherCharts.GetSmoothStrip(t, k);
-      if (strip.Contains(l[k], next, previous) || other.Contains(l[k], next, previous))
-      {
-        lanes.Set(count, l[k], next, previous, strip, other);
-        pointAndCorner[count++] = { i, k };
-      }
-    }
-    MapSmoothLanes(lanes, count);
-    for (int lane = 0; lane < count; ++lane)
-    {
-      const int k = pointAndCorner[lane].second;
-      Barycentric& l = block.Affine[pointAndCorner[lane].first];
-      l[k] = lanes.L[0][lane];
-      l[NextCorner(k)] = lanes.L[1][lane];
-      l[PreviousCorner(k)] = lanes.L[2][lane];
-    }
+    forEachRun(
+      [&](int begin, int end, TriangleIndex t) {
+        SetSmoothLanes(lanes, begin, end, byCorner(t).data(), charts.GetSmoothStrips(t),
+          otherCharts.GetSmoothStrips(t));
+      },
+      [&](int other) { FillSmoothLanes(lanes, other, other + 1); });
+    MapSmoothLanes(lanes, block.Count);
+    forEachRun(
+      [&](int begin, int end, TriangleIndex t) {
+        GetSmoothLanes(lanes, begin, end, byCorner(t).data());
+      },
+      [](int) {});
   }
-  for (int i = 0; i < block.Count; ++i)
-  {
-    const Location& place = block.Places[i];
-    const TriangleIndex t = place.Triangle;
-    if (t < 0)
-    {
-      continue;
-    }
-    if (place.Corner >= 0 || charts.GetSystemOf(t) == CoordinateSystem::Contour)
-    {
-      this->MapPoint(from, place, block.Points[i]);
-      continue;
-    }
-    const double offset = this->OffsetOfImage(from, place);
-    const Barycentric& l = block.Affine[i];
-    if (target.IsPlanar())
-    {
-      const PlaneFrame& frame = target.GetPlaneFrame(t);
-      const Vector2 inPlane = frame.FromFrame(frame.Shape().FromBarycentric(l));
-      target.FromWorking(
-        { inPlane.x, inPlane.y, target.IsColumnar() ? offset : frame.Side * offset },
-        block.Points[i]);
-      continue;
-    }
-    target.FromWorking(
-      target.FromFrame(t, { target.GetShape(t).FromBarycentric(l), offset }), block.Points[i]);
-  }
-}
-
-double Homeomorphism::OffsetOfImage(Side from, const Location& place) const
-{
-  // Distances from a plane are lengths of the input's space, not of either working space.
-  return place.Point.Offset == 0.0 ? 0.0
-                                   : place.Point.Offset / this->Pair->GetEmbedding(from).GetScale() *
-      this->Pair->GetEmbedding(Opposite(from)).GetScale();
+  forEachRun(
+    [&](int begin, int end, TriangleIndex t) {
+      if (charts.GetSystemOf(t) == CoordinateSystem::Contour)
+      {
+        for (int i = begin; i < end; ++i)
+        {
+          this->MapPoint(from, block.GetPlace(i), block.Points[i]);
+        }
+        return;
+      }
+      const std::array<double*, 3> coordinates = byCorner(t);
+      if (target.IsPlanar())
+      {
+        const PlaneFrame& frame = target.GetPlaneFrame(t);
+        const double side = target.IsColumnar() ? 1.0 : frame.Side;
+        double mapped[2][PointBlock::Size];
+        LeaveFrame(frame, begin, end, coordinates.data(), mapped);
+        for (int i = begin; i < end; ++i)
+        {
+          const double offset = side * this->OffsetOfImage(from, block.Offsets[i]);
+          target.FromWorking({ mapped[0][i], mapped[1][i], offset }, block.Points[i]);
+        }
+        return;
+      }
+      for (int i = begin; i < end; ++i)
+      {
+        const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
+        target.FromWorking(
+          target.FromFrame(t, { target.GetShape(t).FromBarycentric(l),
+                                this->OffsetOfImage(from, block.Offsets[i]) }),
+          block.Points[i]);
+      }
+    },
+    [&](int other) {
+      if (block.Triangles[other] >= 0)
+      {
+        this->MapPoint(from, block.GetPlace(other), block.Points[other]);
+      }
+    });
 }
 
 template <typename Use>
@@ -262,7 +398,7 @@ auto Homeomorphism::VisitCharts(Side from, TriangleIndex triangle, Use&& use) co
 void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) const
 {
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
-  const double offset = this->OffsetOfImage(from, place);
+  const double offset = this->OffsetOfImage(from, place.Point.Offset);
   if (place.Corner >= 0)
   {
     target.FromMeshPoint(

@@ -49,6 +49,8 @@ struct Jacobian
 struct LocationHint
 {
   TriangleIndex Triangle = -1;
+  /// How many points in a row were in one triangle lately.
+  int RunLength = 1;
   /// For how many more blocks points are taken to be so far from each other that the last one's triangle
   /// is no help.
   int ScatteredBlocks = 0;
@@ -58,13 +60,28 @@ struct LocationHint
 struct PointBlock
 {
   static constexpr int Capacity = SmoothLanes::Capacity;
+  static constexpr int Size = SmoothLanes::Size;
 
   int Count = 0;
   /// The points; after MapBlock, the images of those that are inside.
   double Points[Capacity][3];
-  Location Places[Capacity];
-  /// Barycentric coordinates of the places that are no corners.
-  Barycentric Affine[Capacity];
+
+  /// The places (see Location), each number in an array of its own.
+  TriangleIndex Triangles[Capacity];
+  int Corners[Capacity];
+  double InPlane[2][Size];
+  double Offsets[Capacity];
+  /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one before it.
+  /// MapBlock uses them up.
+  double Apex[Size];
+  double First[Size];
+  double Second[Size];
+
+  Location GetPlace(int i) const
+  {
+    return { this->Triangles[i], { { this->InPlane[0][i], this->InPlane[1][i] }, this->Offsets[i] },
+      this->Corners[i] };
+  }
 };
 
 /// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
@@ -92,8 +109,8 @@ public:
   /// The image of a place of @a from's domain. Corners go to corners exactly.
   void MapPoint(Side from, const Location& place, double image[3]) const;
 
-  /// Locates the points of a block: to the same bits as Locate.
-  void LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const;
+  /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
+  int LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const;
 
   /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose place has
   /// no triangle stay.
@@ -120,8 +137,15 @@ private:
   Location Locate(Side side, const double point[3], const Vector3& working, double reach,
     TriangleIndex hint) const;
 
-  /// The distance of a place's image from the plane of its triangle.
-  double OffsetOfImage(Side from, const Location& place) const;
+  /// The distance of a place's image from the plane of its triangle. Distances from a plane are lengths of
+  /// the input's space, not of either working space.
+  double OffsetOfImage(Side from, double offset) const
+  {
+    return offset == 0.0
+      ? 0.0
+      : offset / this->Pair->GetEmbedding(from).GetScale() *
+        this->Pair->GetEmbedding(Opposite(from)).GetScale();
+  }
 
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;

@@ -11,6 +11,8 @@
 #include "Embedding.h"
 #include "Triangulation.h"
 
+#include "Kernel/Vectorize.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,7 +44,7 @@ struct PlaneRelation
   double Least;
   double Margin;
 
-  PlaneRelation(const PlaneFrame& frame, const Vector2& point)
+  HOMEOMORPHISM_ALWAYS_INLINE PlaneRelation(const PlaneFrame& frame, const Vector2& point)
   {
     const Vector2 d = point - frame.Origin;
     this->InPlane = { Dot(d, frame.Tangent), frame.Side * Cross(frame.Tangent, d) };
@@ -50,7 +52,9 @@ struct PlaneRelation
     this->Apex = this->InPlane.y / frame.Height;
     this->Second = (this->InPlane.x - frame.ApexX * this->Apex) / frame.Base;
     this->First = 1.0 - this->Apex - this->Second;
-    this->Least = std::min({ this->Apex, this->First, this->Second }) * frame.Height;
+    double least = this->Apex < this->First ? this->Apex : this->First;
+    least = least < this->Second ? least : this->Second;
+    this->Least = least * frame.Height;
     // With u half an ulp of 1, the error of y is at most 5 u |d| (a rounded difference, a tangent rounded
     // twice, a product, a sum), hence that of the apex' coordinate, with the height's 8 u, 13 u |d| / height;
     // that of the second at most 30 u |d| / height (x, the apex' coordinate, and 8 u base of the apex'
