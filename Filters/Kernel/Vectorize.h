@@ -17,6 +17,15 @@
 #define HOMEOMORPHISM_FOR_WIDE_VECTORS
 #endif
 
+/// The same for functions that construct something for each triangle, with std::fma, which is one instruction
+/// where the processor has it.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&            \
+  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define HOMEOMORPHISM_WITH_FMA __attribute__((target_clones("arch=haswell", "default")))
+#else
+#define HOMEOMORPHISM_WITH_FMA
+#endif
+
 /// Before a function used by one of those: it becomes part of it.
 #if defined(__GNUC__)
 #define HOMEOMORPHISM_ALWAYS_INLINE inline __attribute__((always_inline))

@@ -249,7 +249,7 @@ private:
     {
       bounds.Add(boxOf(t));
     }
-    constexpr int bits = Dimension == 2 ? 31 : 21;
+    constexpr int bits = Dimension == 2 ? 22 : 21;
     std::array<double, Dimension> scale;
     for (int axis = 0; axis < Dimension; ++axis)
     {

@@ -34,6 +34,13 @@ double AccurateDot3(const Vector3& a, const Vector3& b)
   return sum + lost;
 }
 
+double SpaceEdgeLength(const Vector3& start, const Vector3& end)
+{
+  const Vector3 d = Difference(end, start);
+  const double scale = PowerOfTwoNear(Length(d));
+  return scale * Length(Scaled(d, 1.0 / scale));
+}
+
 EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vector3& opposite)
 {
   const double scale = PowerOfTwoNear(Length(Difference(end, start)));
@@ -44,29 +51,20 @@ EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vecto
     scale * Length(Cross3(edge, other)) / length };
 }
 
-/// The corner opposite the longest edge; the first of equals.
-int FindApex(const EdgeViews& views)
+TriangleShape MakeShape(const EdgeView& base, int apex)
 {
-  int apex = 0;
-  for (int k = 1; k < 3; ++k)
-  {
-    if (views[k].Length > views[apex].Length)
-    {
-      apex = k;
-    }
-  }
-  return apex;
-}
-
-TriangleShape MakeShape(const EdgeViews& views, int apex)
-{
-  const EdgeView& base = views[apex];
   TriangleShape shape;
   shape.Apex = apex;
   shape.Base = base.Length;
   shape.ApexX = std::min(base.Length, std::max(0.0, base.Foot * base.Length));
   shape.Height = base.Height;
   return shape;
+}
+
+HOMEOMORPHISM_WITH_FMA
+EdgeView PlaneView(const Vector2& start, const Vector2& end, const Vector2& opposite)
+{
+  return ViewFromEdge(start, end, opposite);
 }
 
 } // namespace
@@ -308,11 +306,10 @@ bool Embedding::HasNoArea(const Triangulation::Corners& corners) const
   {
     return this->GetOrientation(corners) == 0;
   }
-  const EdgeViews views = this->GetViews(corners);
   const double least =
     8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
   // Written so that a view spoilt by an edge of no length counts as no area.
-  return !(views[FindApex(views)].Height > least);
+  return !(this->GetView(corners, this->FindApex(corners)).Height > least);
 }
 
 bool Embedding::IsFinite(const Triangulation::Corners& corners) const
@@ -338,15 +335,38 @@ bool Embedding::IsConcordant(const Triangulation::Corners& corners) const
 
 EdgeViews Embedding::GetViews(const Triangulation::Corners& corners) const
 {
-  if (this->Planar)
+  return { this->GetView(corners, 0), this->GetView(corners, 1), this->GetView(corners, 2) };
+}
+
+EdgeView Embedding::GetView(const Triangulation::Corners& corners, int edge) const
+{
+  const std::int32_t start = corners[NextCorner(edge)];
+  const std::int32_t end = corners[PreviousCorner(edge)];
+  return this->Planar
+    ? PlaneView(
+        this->PlanePoints[start], this->PlanePoints[end], this->PlanePoints[corners[edge]])
+    : ViewFromSpaceEdge(
+        this->SpacePoints[start], this->SpacePoints[end], this->SpacePoints[corners[edge]]);
+}
+
+int Embedding::FindApex(const Triangulation::Corners& corners) const
+{
+  int apex = 0;
+  double longest = -1.0;
+  for (int k = 0; k < 3; ++k)
   {
-    return ViewsFromEdges(this->PlanePoints[corners[0]], this->PlanePoints[corners[1]],
-      this->PlanePoints[corners[2]]);
+    const std::int32_t start = corners[NextCorner(k)];
+    const std::int32_t end = corners[PreviousCorner(k)];
+    const double length = this->Planar
+      ? EdgeLength(this->PlanePoints[start], this->PlanePoints[end])
+      : SpaceEdgeLength(this->SpacePoints[start], this->SpacePoints[end]);
+    if (length > longest)
+    {
+      longest = length;
+      apex = k;
+    }
   }
-  const Vector3& a = this->SpacePoints[corners[0]];
-  const Vector3& b = this->SpacePoints[corners[1]];
-  const Vector3& c = this->SpacePoints[corners[2]];
-  return { ViewFromSpaceEdge(b, c, a), ViewFromSpaceEdge(c, a, b), ViewFromSpaceEdge(a, b, c) };
+  return apex;
 }
 
 void Embedding::ComputeFrames(const Triangulation& triangulation)
@@ -368,8 +388,8 @@ void Embedding::ComputeFrames(const Triangulation& triangulation)
         continue;
       }
       const Triangulation::Corners& corners = triangulation.GetCorners(t);
-      const EdgeViews views = this->GetViews(corners);
-      const TriangleShape shape = MakeShape(views, FindApex(views));
+      const int apex = this->FindApex(corners);
+      const TriangleShape shape = MakeShape(this->GetView(corners, apex), apex);
       if (this->Planar)
       {
         this->ComputePlaneFrame(t, corners, shape);

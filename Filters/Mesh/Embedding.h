@@ -153,6 +153,8 @@ public:
   bool IsConcordant(const Triangulation::Corners& corners) const;
   /// What each edge sees of the triangle.
   EdgeViews GetViews(const Triangulation::Corners& corners) const;
+  /// What the edge opposite one of the corners sees, to the same bits.
+  EdgeView GetView(const Triangulation::Corners& corners, int edge) const;
 
   TriangleShape GetShape(TriangleIndex triangle) const
   {
@@ -210,6 +212,8 @@ private:
 
   Vector3 ToTiltedPlane(const Vector3& scaled) const;
   Vector3 FromTiltedPlane(const Vector3& working) const;
+  /// The corner opposite the longest edge; the first of equals.
+  int FindApex(const Triangulation::Corners& corners) const;
   void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
     const Embedding* companion);
   void ComputePlaneFrame(
