@@ -4,6 +4,7 @@
 #include "SmoothChart.h"
 
 #include "ContourChart.h"
+#include "RootFinding.h"
 #include "Vectorize.h"
 
 #include <algorithm>
@@ -85,70 +86,28 @@ struct StripFunction
 
 /// The strip's equation for some points at once: affine = l + d B(l), so with beta = B(l),
 /// beta = B(affine - d beta). The difference of the sides increases with beta, because its slope is the
-/// determinant ratio. Newton's steps start from B(affine), stay inside a bracket that every step narrows,
-/// and halve it where they lead out. They end with one that is so small that its error, about its square,
-/// is below rounding; a point that is done waits for the others, so that its result does not depend on
-/// them.
+/// determinant ratio. B(affine) is a first guess.
 template <int Width>
-struct StripEquation
+struct StripEquation : RootLanes<Width, false>
 {
-  double Beta[Width];
-  double Lower[Width];
-  double Upper[Width];
-  double Done[Width];
-
-  /// B <= tau q max(u W) <= (1 / 4) (16 / 81).
-  static constexpr double Bound = 0.05;
-
-  HOMEOMORPHISM_ALWAYS_INLINE void Start(int lane, double k, double next, double previous, double tau)
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double k, double next, double previous, double tau)
   {
-    const double value = StripFunction(k, next, previous, tau).Value();
-    this->Beta[lane] = value;
-    this->Lower[lane] = 0.0;
-    this->Upper[lane] = Bound;
-    this->Done[lane] = 0.0;
+    // B <= tau q max(u W) <= (1 / 4) (16 / 81).
+    constexpr double bound = 0.05;
+    this->Start(lane, 0.0, bound, StripFunction(k, next, previous, tau).Value());
   }
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Step(int lane, double k, double next, double previous, double kappa,
-    double offsetNext, double offsetPrevious, double tau)
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double k, double next, double previous,
+    double kappa, double offsetNext, double offsetPrevious, double tau)
   {
-    const double beta = this->Beta[lane];
+    const double beta = this->Root[lane];
     const StripFunction function(k - (kappa - 1.0) * beta, next - offsetNext * beta,
       previous - offsetPrevious * beta, tau);
-    const double residual = function.Residual(beta, k, kappa);
-    const double slope = function.DeterminantRatio(kappa, offsetNext, offsetPrevious);
-    const double step = residual / slope;
-    const double lower = residual < 0.0 ? beta : this->Lower[lane];
-    const double upper = residual > 0.0 ? beta : this->Upper[lane];
-    const double middle = 0.5 * (lower + upper);
-    double moved = beta - step;
-    moved = moved > lower ? moved : middle;
-    moved = moved < upper ? moved : middle;
-    const double magnitude = std::abs(step);
-    // No branches, with which the lanes could not keep step.
-    double enough = magnitude <= 0x1p-30 * beta ? 1.0 : 0.0;
-    enough = middle == lower ? 1.0 : enough;
-    enough = middle == upper ? 1.0 : enough;
-    moved = magnitude <= 0x1p-53 * beta ? beta : moved;
-    this->Beta[lane] = this->Done[lane] > 0.0 ? beta : moved;
-    this->Done[lane] = this->Done[lane] > enough ? this->Done[lane] : enough;
-    this->Lower[lane] = lower;
-    this->Upper[lane] = upper;
-  }
-
-  HOMEOMORPHISM_ALWAYS_INLINE bool AllDone() const
-  {
-    double done = 1.0;
-    for (int lane = 0; lane < Width; ++lane)
-    {
-      done = this->Done[lane] < done ? this->Done[lane] : done;
-    }
-    return done > 0.0;
+    // The relative second derivative times beta is below 2^12 even where tau is as small as in needles.
+    this->Step(lane, function.Residual(beta, k, kappa),
+      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-30);
   }
 };
-
-/// Halving alone reaches the smallest root that matters, an ulp of 1 cubed, well before this many steps.
-constexpr int MaximumSteps = 250;
 
 Barycentric Moved(const Barycentric& l, int k, const SmoothStrip& strip, double factor)
 {
@@ -339,23 +298,23 @@ void MapSmoothLanes(SmoothLanes& lanes, int count)
       HOMEOMORPHISM_LANES
       for (int i = 0; i < width; ++i)
       {
-        equation.Start(i, k[i], next[i], previous[i], tau[i]);
+        equation.Set(i, k[i], next[i], previous[i], tau[i]);
       }
-      for (int step = 0; step < MaximumSteps && !equation.AllDone(); ++step)
+      for (int step = 0; !equation.IsDone(step); ++step)
       {
         HOMEOMORPHISM_LANES
         for (int i = 0; i < width; ++i)
         {
-          equation.Step(
+          equation.Evaluate(
             i, k[i], next[i], previous[i], kappa[i], offsetNext[i], offsetPrevious[i], tau[i]);
         }
       }
       HOMEOMORPHISM_LANES
       for (int i = 0; i < width; ++i)
       {
-        k[i] -= (kappa[i] - 1.0) * equation.Beta[i];
-        next[i] -= offsetNext[i] * equation.Beta[i];
-        previous[i] -= offsetPrevious[i] * equation.Beta[i];
+        k[i] -= (kappa[i] - 1.0) * equation.Root[i];
+        next[i] -= offsetNext[i] * equation.Root[i];
+        previous[i] -= offsetPrevious[i] * equation.Root[i];
       }
     }
     const double* offsetNext = lanes.OffsetNext[1] + first;
@@ -398,13 +357,13 @@ SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
   const double next = affine[NextCorner(k)];
   const double previous = affine[PreviousCorner(k)];
   StripEquation<1> equation;
-  equation.Start(0, affine[k], next, previous, strip.Tau);
-  for (int step = 0; step < MaximumSteps && !equation.AllDone(); ++step)
+  equation.Set(0, affine[k], next, previous, strip.Tau);
+  for (int step = 0; !equation.IsDone(step); ++step)
   {
-    equation.Step(0, affine[k], next, previous, strip.Kappa, strip.OffsetNext, strip.OffsetPrevious,
+    equation.Evaluate(0, affine[k], next, previous, strip.Kappa, strip.OffsetNext, strip.OffsetPrevious,
       strip.Tau);
   }
-  return Moved(affine, k, strip, -equation.Beta[0]);
+  return Moved(affine, k, strip, -equation.Root[0]);
 }
 
 Vector2 SmoothChart::ToPoint(const Reference& l) const

@@ -311,6 +311,8 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
     coordinates[PreviousCorner(apex)] = block.Second;
     return coordinates;
   };
+  // Of points in contours, their images in the frame of the target's triangle.
+  double images[2][PointBlock::Capacity];
   if (charts.GetSystem() == CoordinateSystem::Smooth)
   {
     // Memory is slow to answer but takes many questions at a time.
@@ -338,13 +340,41 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
       },
       [](int) {});
   }
+  else if (charts.GetSystem() == CoordinateSystem::Contour)
+  {
+    std::array<const ContourChart*, PointBlock::Capacity> froms{};
+    std::array<const ContourChart*, PointBlock::Capacity> tos{};
+    Vector2 points[PointBlock::Capacity];
+    int numbers[PointBlock::Capacity];
+    int count = 0;
+    for (int i = 0; i < block.Count; ++i)
+    {
+      const TriangleIndex t = block.Triangles[i];
+      if (t >= 0 && block.Corners[i] < 0 && charts.GetSystemOf(t) == CoordinateSystem::Contour)
+      {
+        froms[count] = &charts.GetContourChart(t);
+        tos[count] = &otherCharts.GetContourChart(t);
+        points[count] = { block.InPlane[0][i], block.InPlane[1][i] };
+        numbers[count++] = i;
+      }
+    }
+    ContourChart::MapPoints(froms.data(), tos.data(), points, count);
+    for (int n = 0; n < count; ++n)
+    {
+      images[0][numbers[n]] = points[n].x;
+      images[1][numbers[n]] = points[n].y;
+    }
+  }
   forEachRun(
     [&](int begin, int end, TriangleIndex t) {
       if (charts.GetSystemOf(t) == CoordinateSystem::Contour)
       {
         for (int i = begin; i < end; ++i)
         {
-          this->MapPoint(from, block.GetPlace(i), block.Points[i]);
+          const Vector2 image{ images[0][i], images[1][i] };
+          target.FromWorking(
+            target.FromFrame(t, { image, this->OffsetOfImage(from, block.Offsets[i]) }),
+            block.Points[i]);
         }
         return;
       }
