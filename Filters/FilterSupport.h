@@ -287,6 +287,25 @@ inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkId
   return ghosts;
 }
 
+/// Number of points that @a mask leaves out, those of @a data that belong to another piece excepted.
+inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
+{
+  const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
+  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+    data->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (ghosts && ghosts->GetNumberOfValues() != numberOfPoints)
+  {
+    ghosts = nullptr;
+  }
+  vtkIdType outside = 0;
+  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  {
+    outside += !mask->GetValue(i) &&
+      !(ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT));
+  }
+  return outside;
+}
+
 /// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use them or
 /// points that do not exist. @a cells has the output's cells.
 inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet* output)

@@ -4,6 +4,7 @@
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include "FilterSupport.h"
+#include "ProcessStatistics.h"
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkCallbackCommand.h"
@@ -280,6 +281,20 @@ vtkDataSet* vtkResampleThroughHomeomorphism::Map(
 int vtkResampleThroughHomeomorphism::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const int success = this->Resample(request, inputs, outputs);
+  this->OwnOutsidePoints = this->NumberOfOutsidePoints;
+  return success;
+}
+
+void vtkResampleThroughHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics own{ { static_cast<double>(this->OwnOutsidePoints) }, {} };
+  this->NumberOfOutsidePoints = static_cast<vtkIdType>(Total(this, own, controller).Sums[0]);
+}
+
+int vtkResampleThroughHomeomorphism::Resample(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
@@ -453,7 +468,7 @@ int vtkResampleThroughHomeomorphism::RequestData(
     }
   }
   result->AddArray(mask);
-  this->NumberOfOutsidePoints = count - valid;
+  this->NumberOfOutsidePoints = CountOutside(grid ? grid : output, mask);
   if (grid)
   {
     PassGhosts(grid->GetPointData(), output->GetPointData());

@@ -73,7 +73,7 @@ for system in "Linear", "Contour", "Smooth":
     save("pieces-mesh-" + system, simple.DifferentiableHomeomorphism(**settings))
     save("pieces-edges-" + system, simple.JacobianContinuity(**settings))
     settings.update({"Source": source, "Target": target})
-    # The first process measures, and answers.
+    # The first process measures.
     continuity.UpdatePropertyInformation()
     counts = [int(continuity.GetPropertyValue("NumberOf" + what))
               for what in ("DifferentiableEdges", "Kinks", "UndecidedEdges")]

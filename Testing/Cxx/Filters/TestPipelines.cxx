@@ -5,9 +5,11 @@
 
 #include "FilterRuns.h"
 
+#include "vtkResampleThroughHomeomorphism.h"
 #include "vtkTriangularCoordinates.h"
 
 #include "vtkCellData.h"
+#include "vtkDummyController.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
@@ -299,6 +301,53 @@ TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
   map->SetDataConnection(sphere->GetOutputPort());
   map->UpdatePiece(1, 2, 0);
   EXPECT_GT(DataOf(map)->GetNumberOfCells(), 0);
+}
+
+TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
+{
+  // Every other point outside belongs to another piece.
+  const MeshPair pair = MakeWidePair(917);
+  const auto cloud = MakeCloud({ { 0, 0, 0 }, { 99, 0, 0 }, { 98, 0, 0 }, { 97, 0, 0 }, { 1, 2, 0 } });
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (const int type : { 0, int(vtkDataSetAttributes::DUPLICATEPOINT), 0,
+         int(vtkDataSetAttributes::HIDDENPOINT), int(vtkDataSetAttributes::DUPLICATEPOINT) })
+  {
+    ghosts->InsertNextValue(static_cast<unsigned char>(type));
+  }
+  cloud->GetPointData()->AddArray(ghosts);
+  const auto map = MakeFilter(Smooth, pair, cloud);
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  coordinates->SetInputData(0, pair.Source);
+  coordinates->SetDataObject(cloud);
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  resample->SetSourceData(pair.Source);
+  resample->SetTargetData(pair.Target);
+  resample->SetGridData(cloud);
+  map->Update();
+  coordinates->Update();
+  resample->Update();
+  // With one process there is nothing to reduce, with a controller or without.
+  vtkNew<vtkDummyController> controller;
+  for (vtkMultiProcessController* reduced :
+    { static_cast<vtkMultiProcessController*>(controller), static_cast<vtkMultiProcessController*>(nullptr) })
+  {
+    EXPECT_EQ(map->GetNumberOfOutsidePoints(), 2);
+    EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 2);
+    EXPECT_EQ(resample->GetNumberOfOutsidePoints(), 2);
+    map->ReduceStatistics(reduced);
+    coordinates->ReduceStatistics(reduced);
+    resample->ReduceStatistics(reduced);
+  }
+  EXPECT_EQ(map->GetNumberOfOutsidePoints(), 2);
+  EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 2);
+  EXPECT_EQ(resample->GetNumberOfOutsidePoints(), 2);
+  // All of them are marked and hidden.
+  vtkDataArray* mask = PointArray(DataOf(map), "ValidPointMask");
+  for (vtkIdType i = 0; i < 5; ++i)
+  {
+    EXPECT_EQ(mask->GetTuple1(i), i == 0 || i == 4 ? 1.0 : 0.0);
+  }
 }
 
 TEST(Pipelines, MeshesMayComeFromFilters)
