@@ -558,6 +558,8 @@ int vtkDifferentiableHomeomorphism::RequestInformation(
 {
   DescribeDataInOutput(
     inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 3, outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
   return 1;
 }
 

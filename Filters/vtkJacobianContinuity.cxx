@@ -266,6 +266,14 @@ int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
+int vtkJacobianContinuity::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
+  return 1;
+}
+
 int vtkJacobianContinuity::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {

@@ -211,6 +211,7 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* outInfo = outputs->GetInformationObject(0);
+  DescribeTimesInOutput(inputs, 4, outInfo);
   if (vtkInformation* gridInfo = inputs[3]->GetInformationObject(0))
   {
     DescribeDataInOutput(gridInfo, outInfo);
@@ -220,17 +221,6 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
     std::max(1, this->SamplingDimensions[1]) - 1, 0, 0 };
   outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  // Values at each time come from the data at that time.
-  if (vtkInformation* dataInfo = inputs[2]->GetInformationObject(0))
-  {
-    for (auto* key : { Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE() })
-    {
-      if (dataInfo->Has(key))
-      {
-        outInfo->CopyEntry(dataInfo, key);
-      }
-    }
-  }
   return 1;
 }
 

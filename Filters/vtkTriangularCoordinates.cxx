@@ -228,6 +228,7 @@ int vtkTriangularCoordinates::RequestInformation(
 {
   DescribeDataInOutput(
     inputs[1]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
   return 1;
 }
 
