@@ -13,6 +13,7 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDummyController.h"
+#include "vtkElevationFilter.h"
 #include "vtkGroupDataSetsFilter.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -311,6 +312,122 @@ TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
   map->SetDataConnection(sphere->GetOutputPort());
   map->UpdatePiece(1, 2, 0);
   EXPECT_GT(DataOf(map)->GetNumberOfCells(), 0);
+}
+
+TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
+{
+  // One source of the mesh and the data cannot be asked for both whole and in pieces. The mesh is a sphere,
+  // mapped onto itself, whose source makes any piece.
+  const auto counts = [](vtkAlgorithm* filter) {
+    std::vector<vtkIdType> cells;
+    for (const int piece : { 0, 1, 2, 0 })
+    {
+      EXPECT_TRUE(filter->UpdatePiece(piece, 3, 0));
+      cells.push_back(DataOf(filter)->GetNumberOfCells());
+    }
+    return cells;
+  };
+  vtkNew<vtkSphereSource> mesh;
+  vtkNew<vtkSphereSource> same;
+  vtkNew<vtkElevationFilter> made;
+  made->SetInputConnection(mesh->GetOutputPort());
+  vtkNew<vtkSphereSource> other;
+  mesh->Update();
+  const vtkIdType whole = mesh->GetOutput()->GetNumberOfCells();
+  const std::vector<vtkIdType> first{ whole, 0, 0, whole };
+  for (vtkAlgorithm* data : { static_cast<vtkAlgorithm*>(mesh), static_cast<vtkAlgorithm*>(made),
+         static_cast<vtkAlgorithm*>(other) })
+  {
+    SCOPED_TRACE(data->GetClassName());
+    vtkNew<vtkDifferentiableHomeomorphism> map;
+    map->SetSourceConnection(mesh->GetOutputPort());
+    map->SetTargetConnection(same->GetOutputPort());
+    map->SetDataConnection(data->GetOutputPort());
+    vtkNew<vtkTriangularCoordinates> coordinates;
+    coordinates->SetInputConnection(0, mesh->GetOutputPort());
+    coordinates->SetDataConnection(data->GetOutputPort());
+    coordinates->GenerateLinesOff();
+    vtkNew<vtkResampleThroughHomeomorphism> resample;
+    resample->SetSourceConnection(mesh->GetOutputPort());
+    resample->SetTargetConnection(same->GetOutputPort());
+    resample->SetGridConnection(data->GetOutputPort());
+    for (vtkAlgorithm* filter : { static_cast<vtkAlgorithm*>(map),
+           static_cast<vtkAlgorithm*>(coordinates), static_cast<vtkAlgorithm*>(resample) })
+    {
+      SCOPED_TRACE(filter->GetClassName());
+      const std::vector<vtkIdType> cells = counts(filter);
+      if (data != other)
+      {
+        EXPECT_EQ(cells, first);
+        continue;
+      }
+      EXPECT_EQ(other->GetOutputInformation(0)->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 3);
+      EXPECT_GT(cells[1], 0);
+      EXPECT_GT(cells[2], 0);
+      EXPECT_EQ(cells[0] + cells[1] + cells[2], whole);
+    }
+    EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
+    EXPECT_EQ(resample->GetNumberOfMeshBuilds(), 1);
+  }
+
+  // What a map made of independent data with the same meshes comes in pieces nevertheless: the first map
+  // asks for its meshes whole as well.
+  vtkNew<vtkDifferentiableHomeomorphism> forth;
+  forth->SetSourceConnection(mesh->GetOutputPort());
+  forth->SetTargetConnection(same->GetOutputPort());
+  forth->SetDataConnection(other->GetOutputPort());
+  vtkNew<vtkDifferentiableHomeomorphism> back;
+  back->SetSourceConnection(mesh->GetOutputPort());
+  back->SetTargetConnection(same->GetOutputPort());
+  back->SetDataConnection(forth->GetOutputPort());
+  back->InverseOn();
+  const std::vector<vtkIdType> cells = counts(back);
+  EXPECT_GT(cells[1], 0);
+  EXPECT_EQ(cells[0] + cells[1] + cells[2], whole);
+  EXPECT_EQ(back->GetNumberOfMeshBuilds(), 1);
+}
+
+TEST(Pipelines, WhatIsMeasuredIsPartOfTheFirstPiece)
+{
+  const MeshPair pair = MakeWidePair(918);
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetSourceData(pair.Source);
+  continuity->SetTargetData(pair.Target);
+  continuity->SetCoordinateSystem(vtkJacobianContinuity::LINEAR);
+  continuity->Update();
+  const vtkIdType edges = continuity->GetOutput()->GetNumberOfCells();
+  ASSERT_GT(edges, 0);
+  const auto map = MakeFilter(Linear, pair);
+  map->MeasureContinuityOn();
+  vtkJacobianContinuity* inner = map->GetJacobianContinuity();
+  for (const int piece : { 1, 0, 2, 0 })
+  {
+    SCOPED_TRACE(piece);
+    for (const int port : { 0, 1 })
+    {
+      continuity->UpdateInformation();
+      vtkInformation* info = continuity->GetOutputInformation(port);
+      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 3);
+    }
+    continuity->Update(0);
+    continuity->Update(1);
+    const vtkIdType share = piece == 0 ? 1 : 0;
+    EXPECT_EQ(continuity->GetOutput(0)->GetNumberOfCells(), share * edges);
+    EXPECT_EQ(continuity->GetOutput(1)->GetNumberOfCells(), share * pair.Source->GetNumberOfCells());
+    EXPECT_EQ(continuity->GetNumberOfKinks(), share * edges);
+    EXPECT_EQ(continuity->GetLargestJump() > 0.0, piece == 0);
+
+    map->UpdateInformation();
+    vtkInformation* info = map->GetOutputInformation(1);
+    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 3);
+    map->Update(1);
+    auto* measured = vtkDataSet::SafeDownCast(map->GetOutputDataObject(1));
+    EXPECT_EQ(measured->GetNumberOfCells(), share * edges);
+  }
+  // It was measured once for all pieces.
+  EXPECT_EQ(inner->GetNumberOfKinks(), edges);
 }
 
 TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
