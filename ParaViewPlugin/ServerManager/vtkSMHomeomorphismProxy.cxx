@@ -26,3 +26,12 @@ void vtkSMHomeomorphismProxy::UpdatePropertyInformationInternal(vtkSMProperty* p
   }
   this->Superclass::UpdatePropertyInformationInternal(property);
 }
+
+void vtkSMHomeomorphismProxy::PostUpdateData(bool using_cache)
+{
+  this->Superclass::PostUpdateData(using_cache);
+  if (!using_cache)
+  {
+    this->UpdatePropertyInformation();
+  }
+}
