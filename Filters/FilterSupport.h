@@ -37,6 +37,7 @@
 #include <set>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace homeomorphism
 {
@@ -141,8 +142,43 @@ inline void AcceptDataSetsAndTrees(vtkInformation* info)
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
 }
 
+/// Tells that an output may change whenever one of the first @a ports inputs does: its time steps and time
+/// range are all of theirs. By default they are those of port 0, and at other times the executive takes
+/// what was made before for good.
+inline void DescribeTimesInOutput(vtkInformationVector** inputs, int ports, vtkInformation* outInfo)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  std::set<double> steps;
+  std::set<double> ends;
+  for (int port = 0; port < ports; ++port)
+  {
+    vtkInformation* info = inputs[port]->GetInformationObject(0);
+    if (info && info->Has(Pipeline::TIME_STEPS()))
+    {
+      const double* values = info->Get(Pipeline::TIME_STEPS());
+      steps.insert(values, values + info->Length(Pipeline::TIME_STEPS()));
+    }
+    if (info && info->Has(Pipeline::TIME_RANGE()))
+    {
+      ends.insert(info->Get(Pipeline::TIME_RANGE()), info->Get(Pipeline::TIME_RANGE()) + 2);
+    }
+  }
+  outInfo->Remove(Pipeline::TIME_STEPS());
+  outInfo->Remove(Pipeline::TIME_RANGE());
+  if (!steps.empty())
+  {
+    const std::vector<double> values(steps.begin(), steps.end());
+    outInfo->Set(Pipeline::TIME_STEPS(), values.data(), static_cast<int>(values.size()));
+  }
+  if (!ends.empty())
+  {
+    const double range[2] = { *ends.begin(), *ends.rbegin() };
+    outInfo->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+}
+
 /// Of a filter whose other inputs are meshes: lets the information of the data's port, if there is
-/// data, describe the output (extent and time steps, which by default come from port 0).
+/// data, describe the output's extent, which by default comes from port 0.
 inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outInfo)
 {
   if (!dataInfo)
@@ -150,15 +186,10 @@ inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outIn
     return;
   }
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  const auto copy = [dataInfo, outInfo](auto* key) {
-    if (dataInfo->Has(key))
-    {
-      outInfo->CopyEntry(dataInfo, key);
-    }
-  };
-  copy(Pipeline::WHOLE_EXTENT());
-  copy(Pipeline::TIME_STEPS());
-  copy(Pipeline::TIME_RANGE());
+  if (dataInfo->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    outInfo->CopyEntry(dataInfo, Pipeline::WHOLE_EXTENT());
+  }
   outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
 }
 
@@ -320,6 +351,25 @@ inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkId
   }
   attributes->AddArray(ghosts);
   return ghosts;
+}
+
+/// Number of points that @a mask leaves out, those of @a data that belong to another piece excepted.
+inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
+{
+  const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
+  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+    data->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (ghosts && ghosts->GetNumberOfValues() != numberOfPoints)
+  {
+    ghosts = nullptr;
+  }
+  vtkIdType outside = 0;
+  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  {
+    outside += !mask->GetValue(i) &&
+      !(ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT));
+  }
+  return outside;
 }
 
 /// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use them or

@@ -53,6 +53,7 @@ set(support_sources
   EdgeCrossings.cxx
   InnerLines.cxx
   MeasuredPlaces.cxx
+  ProcessStatistics.cxx
   Stars.cxx)
 set(support_headers
   AttributeTransport.h
@@ -61,6 +62,7 @@ set(support_headers
   FilterSupport.h
   InnerLines.h
   MeasuredPlaces.h
+  ProcessStatistics.h
   Stars.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results

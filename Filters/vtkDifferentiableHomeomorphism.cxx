@@ -5,6 +5,7 @@
 
 #include "AttributeTransport.h"
 #include "FilterSupport.h"
+#include "ProcessStatistics.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCell.h"
@@ -46,6 +47,7 @@ class vtkDifferentiableHomeomorphism::Internals
 {
 public:
   HomeomorphismCache Cache;
+  ProcessStatistics Own{ { 0.0 }, { 0.0 } };
   std::map<std::string, TransportRule> Transports;
 
   /// Lets Continuity measure the map between the meshes.
@@ -446,7 +448,7 @@ private:
     {
       inside += this->Mask->GetValue(i);
     }
-    this->Self->NumberOfOutsidePoints += this->NumberOfPoints - inside;
+    this->Self->NumberOfOutsidePoints += CountOutside(this->Input, this->Mask);
     if (!this->Self->BlankOutside || inside == this->NumberOfPoints)
     {
       return;
@@ -515,6 +517,14 @@ void vtkDifferentiableHomeomorphism::ClearArrayTransports()
   }
 }
 
+void vtkDifferentiableHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics total = Total(this, this->Internal->Own, controller);
+  this->NumberOfOutsidePoints = static_cast<vtkIdType>(total.Sums[0]);
+  this->NumberOfDiscordantTriangles = static_cast<vtkIdType>(total.Largest[0]);
+  this->Internal->Continuity->ReduceStatistics(controller);
+}
+
 vtkIdType vtkDifferentiableHomeomorphism::GetNumberOfMeshBuilds()
 {
   return this->Internal->Cache.GetNumberOfBuilds();
@@ -565,6 +575,8 @@ int vtkDifferentiableHomeomorphism::RequestInformation(
 {
   DescribeDataInOutput(
     inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 3, outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
   return 1;
 }
 
@@ -584,6 +596,8 @@ int vtkDifferentiableHomeomorphism::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const int success = this->MapData(request, inputs, outputs);
+  this->Internal->Own = { { static_cast<double>(this->NumberOfOutsidePoints) },
+    { static_cast<double>(this->NumberOfDiscordantTriangles) } };
   this->SetProgressShiftScale(0.0, 1.0);
   if (success)
   {

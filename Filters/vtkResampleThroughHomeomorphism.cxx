@@ -4,6 +4,7 @@
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include "FilterSupport.h"
+#include "ProcessStatistics.h"
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkCallbackCommand.h"
@@ -210,6 +211,7 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* outInfo = outputs->GetInformationObject(0);
+  DescribeTimesInOutput(inputs, 4, outInfo);
   if (vtkInformation* gridInfo = inputs[3]->GetInformationObject(0))
   {
     DescribeDataInOutput(gridInfo, outInfo);
@@ -219,17 +221,6 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
     std::max(1, this->SamplingDimensions[1]) - 1, 0, 0 };
   outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  // Values at each time come from the data at that time.
-  if (vtkInformation* dataInfo = inputs[2]->GetInformationObject(0))
-  {
-    for (auto* key : { Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE() })
-    {
-      if (dataInfo->Has(key))
-      {
-        outInfo->CopyEntry(dataInfo, key);
-      }
-    }
-  }
   return 1;
 }
 
@@ -278,6 +269,20 @@ vtkDataSet* vtkResampleThroughHomeomorphism::Map(
 }
 
 int vtkResampleThroughHomeomorphism::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const int success = this->Resample(request, inputs, outputs);
+  this->OwnOutsidePoints = this->NumberOfOutsidePoints;
+  return success;
+}
+
+void vtkResampleThroughHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics own{ { static_cast<double>(this->OwnOutsidePoints) }, {} };
+  this->NumberOfOutsidePoints = static_cast<vtkIdType>(Total(this, own, controller).Sums[0]);
+}
+
+int vtkResampleThroughHomeomorphism::Resample(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
@@ -453,7 +458,7 @@ int vtkResampleThroughHomeomorphism::RequestData(
     }
   }
   result->AddArray(mask);
-  this->NumberOfOutsidePoints = count - valid;
+  this->NumberOfOutsidePoints = CountOutside(grid ? grid : output, mask);
   if (grid)
   {
     PassGhosts(grid->GetPointData(), output->GetPointData());

@@ -40,6 +40,7 @@
 #include "vtkNew.h"                        // for the filter that maps
 
 class vtkDifferentiableHomeomorphism;
+class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKFILTERSHOMEOMORPHISM_EXPORT vtkResampleThroughHomeomorphism : public vtkDataSetAlgorithm
@@ -140,9 +141,17 @@ public:
   vtkBooleanMacro(BlankOutside, bool);
   ///@}
 
-  /// Number of points of the grid that the last execution found without values; -1 if the meshes or the
-  /// data were refused, in which case GetErrorCode() is not 0 either.
+  /// Number of points of the grid, or of the piece of it that was asked for, that the last execution found
+  /// without values, those excepted that vtkGhostType says are another piece's; -1 if the meshes or the
+  /// data were refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
+
+  /// Makes the numbers that this filter counts (NumberOfOutsidePoints) the same in all processes that
+  /// have pieces of the data: the sum, -1 if one of the processes has -1. Each process of @a controller (null: the global controller; if there is
+  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
+  /// error: executing the filter never waits for other processes, this does. They are one process's own
+  /// again after the next execution. In ParaView the plugin does it.
+  void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// How often the meshes have been read and validated since this filter was made.
   vtkIdType GetNumberOfMeshBuilds();
@@ -178,10 +187,15 @@ private:
   vtkResampleThroughHomeomorphism(const vtkResampleThroughHomeomorphism&) = delete;
   void operator=(const vtkResampleThroughHomeomorphism&) = delete;
 
+  int Resample(vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+
   /// Lets the filter that maps map the data in a direction. Returns null, and reports, if it is refused.
   vtkDataSet* Map(vtkDataSet* data, bool inverse, bool carryVectors);
 
   vtkNew<vtkDifferentiableHomeomorphism> Mapping;
+  /// In this process alone.
+  vtkIdType OwnOutsidePoints = 0;
 };
 
 #endif
