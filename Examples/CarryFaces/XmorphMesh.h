@@ -28,7 +28,8 @@ struct XmorphMesh
 XmorphMesh ReadXmorphMesh(const std::string& fileName);
 
 /// Moves the points from the mesh's own units, which end at its last column and row, to the pixels of
-/// a picture of this size as VTK counts them, y upwards.
+/// a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh has no
+/// extent.
 void FitToPicture(XmorphMesh& mesh, int width, int height);
 
 /// The two meshes cut into the same triangles. Each quadrilateral is cut along the diagonal that leaves
