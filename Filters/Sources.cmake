@@ -73,5 +73,7 @@ set(floating_point_options
 set(warning_options)
 if (CMAKE_PROJECT_NAME STREQUAL "DifferentiableHomeomorphism")
   set(warning_options
-    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>)
+    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>
+    # To Clang a part of -Wconversion, to GCC not.
+    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-sign-conversion>)
 endif ()

@@ -28,6 +28,11 @@ XmorphMesh ReadXmorphMesh(const std::string& fileName)
   {
     throw std::runtime_error("Cannot open " + fileName + ".");
   }
+  return ReadXmorphMesh(file, fileName);
+}
+
+XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName)
+{
   int number = 0;
   const auto nextLine = [&]() {
     std::string line;

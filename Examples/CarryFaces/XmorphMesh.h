@@ -11,6 +11,7 @@
 #include "vtkSmartPointer.h"
 
 #include <array>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct XmorphMesh
 /// Reads a mesh file ("M2", then the numbers of columns and rows, then a line "x y label" for each
 /// point). Throws std::runtime_error, naming file and line, if it is not one.
 XmorphMesh ReadXmorphMesh(const std::string& fileName);
+
+/// The same from an open file; the name is for messages.
+XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName);
 
 /// Moves the points from the mesh's own units, which end at its last column and row, to the pixels of
 /// a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh has no

@@ -214,7 +214,7 @@ Outcome RunWithFile(const std::string& name)
   Listener ours;
   ours.ListenTo(filter);
   filter->Update();
-  std::string text = listener.GetText() + (listener.GetText().empty() ? "" : " ") + ours.GetText();
+  std::string text = listener.GetText() + (ours.GetText().empty() ? "" : " ") + ours.GetText();
   const std::size_t path = text.find(name);
   if (path != std::string::npos)
   {
