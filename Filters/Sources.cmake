@@ -56,6 +56,7 @@ set(support_sources
   Stars.cxx)
 set(support_headers
   AttributeTransport.h
+  CellPoints.h
   CoordinateLines.h
   EdgeCrossings.h
   FilterSupport.h

@@ -302,7 +302,7 @@ void FindCoordinates(vtkPolyData* mesh, const Setting& setting)
   coordinates->Update();
 }
 
-void MeasureAndResample(vtkPolyData* meshes[2], const Setting& setting)
+void MeasureAndResample(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& setting)
 {
   vtkNew<vtkJacobianContinuity> continuity;
   continuity->SetInputDataObject(0, meshes[0]);
@@ -315,7 +315,7 @@ void MeasureAndResample(vtkPolyData* meshes[2], const Setting& setting)
   vtkNew<vtkResampleThroughHomeomorphism> resample;
   resample->SetInputDataObject(0, meshes[0]);
   resample->SetInputDataObject(1, meshes[1]);
-  resample->SetInputDataObject(2, meshes[0]);
+  resample->SetInputDataObject(2, setting.Inverse ? cloud : meshes[0]);
   Configure(resample.Get(), setting);
   resample->SetSamplingDimensions(4, 3);
   resample->Update();
@@ -334,6 +334,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
 {
   Input input(bytes, size);
   const int way = input.Below(16);
+  const bool mapsTheMesh = input.Chance(4);
   Setting setting;
   setting.System = input.Below(3);
   setting.Center = input.Below(2);
@@ -371,6 +372,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     vectors->InsertNextTuple3(1.0, input.Number(), -1.0);
   }
   cloud->GetPointData()->SetVectors(vectors);
+  if (input.Chance(4))
+  {
+    const auto points = static_cast<int>(cloud->GetNumberOfPoints());
+    cloud->SetLines(RawCells<vtkTypeInt64Array>(input, input.Below(4), points));
+    cloud->SetPolys(RawCells<vtkTypeInt32Array>(input, input.Below(6), points));
+    vtkNew<vtkDoubleArray> flux;
+    flux->SetName("Flux");
+    flux->SetNumberOfComponents(3);
+    flux->SetNumberOfTuples(input.Chance(8) ? input.Below(20) : cloud->GetNumberOfCells());
+    flux->Fill(1.0);
+    cloud->GetCellData()->SetVectors(flux);
+  }
 
   const bool tame = IsTame(meshes[0]->GetPoints()) && IsTame(meshes[1]->GetPoints()) &&
     IsTame(cloud->GetPoints());
@@ -379,7 +392,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   {
     case 0:
     case 1:
-      MapByFilter(pair, cloud, setting, tame);
+      MapByFilter(
+        pair, mapsTheMesh ? pair[setting.Inverse ? 1 : 0] : cloud.Get(), setting, tame);
       break;
     case 2:
       MapByTransform(pair, cloud->GetPoints(), setting);
@@ -388,7 +402,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       FindCoordinates(meshes[0], setting);
       break;
     case 4:
-      MeasureAndResample(pair, setting);
+      MeasureAndResample(pair, cloud, setting);
       break;
     default:
       MapDirectly(meshes[0], meshes[1], cloud->GetPoints(), setting, tame);

@@ -755,6 +755,99 @@ std::vector<BadInput> Table()
       },
       0);
   });
+  add(dataToMap, "Polygons with fewer than three points, lines with one", {},
+    "The cells pass untouched.", []() {
+      const auto mesh = MakeMesh({ { 1.0, 1.0, 0.0 }, { 1.5, 1.2, 0.0 }, { 50.0, 0.0, 0.0 } }, {});
+      vtkNew<vtkCellArray> polygons;
+      polygons->InsertNextCell({ 0, 1 });
+      polygons->InsertNextCell({ 2 });
+      polygons->InsertNextCell({ 0, 1, 2 });
+      mesh->SetPolys(polygons);
+      vtkNew<vtkCellArray> lines;
+      lines->InsertNextCell({ 1 });
+      mesh->SetLines(lines);
+      mesh->GetCellData()->SetVectors(RandomArray("Flux", 3, 4, 2));
+      return RunWithData(mesh,
+        [](vtkPointSet* output) {
+          vtkDataArray* hidden =
+            output->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName());
+          vtkDataArray* flux = output->GetCellData()->GetArray("Flux");
+          return output->GetNumberOfCells() == 4 && hidden && hidden->GetComponent(0, 0) == 0.0 &&
+            hidden->GetComponent(2, 0) != 0.0 && flux && std::isfinite(flux->GetComponent(0, 0)) &&
+            std::isnan(flux->GetComponent(2, 0));
+        },
+        1);
+    });
+  add(dataToMap, "Lines with one point beside the triangles of a mesh that is its own data", {},
+    "The cells pass untouched.", []() {
+      const MeshPair pair = GoodPair();
+      for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+      {
+        vtkNew<vtkCellArray> lines;
+        lines->InsertNextCell({ 3 });
+        mesh->SetLines(lines);
+        mesh->GetPoints()->InsertNextPoint(90.0, 0.0, 0.0);
+      }
+      const auto filter = MakeFilter(Smooth, pair);
+      Listener listener;
+      listener.ListenTo(filter.Get());
+      vtkPointSet* output = Output(filter);
+      return Outcome{ listener.GetText(),
+        output->GetNumberOfCells() == 33 && filter->GetNumberOfOutsidePoints() == 1 };
+    });
+  const auto resampled = [](vtkDataObject* probed) {
+    const MeshPair pair = GoodPair();
+    vtkNew<vtkResampleThroughHomeomorphism> resample;
+    Listener listener;
+    listener.ListenTo(resample);
+    resample->SetInputDataObject(0, pair.Source);
+    resample->SetInputDataObject(1, pair.Target);
+    resample->SetInputDataObject(2, probed);
+    resample->SetSamplingDimensions(5, 5);
+    resample->Update();
+    auto* output = vtkDataSet::SafeDownCast(resample->GetOutputDataObject(0));
+    return Outcome{ listener.GetText(),
+      output && output->GetNumberOfPoints() == 0 && resample->GetErrorCode() != 0 };
+  };
+  add(dataToMap, "Values wanted of data whose cells have points that do not exist",
+    { "1 cell of the data (cell 1) has points that do not exist." },
+    "vtkResampleThroughHomeomorphism refuses.", [resampled]() {
+      return resampled(
+        MakeMesh({ { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 } }, { { 0, 1, 2 }, { 0, 1, 9 } }));
+    });
+  add(dataToMap, "Values wanted of data whose polygons have too few points",
+    { "1 cell of the data (cell 0) has fewer points than a line or polygon needs." },
+    "vtkResampleThroughHomeomorphism refuses.", [resampled]() {
+      const auto mesh = MakeMesh({ { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 } }, {});
+      mesh->GetPolys()->InsertNextCell({ 0, 1 });
+      mesh->GetPolys()->InsertNextCell({ 0, 1, 2 });
+      return resampled(mesh);
+    });
+  add(dataToMap, "Values wanted of data with a point that is NaN",
+    { "1 point of the data (point 2) has coordinates that are not finite" },
+    "vtkResampleThroughHomeomorphism refuses.", [resampled]() {
+      return resampled(
+        MakeMesh({ { 0, 0, 0 }, { 4, 0, 0 }, { 0, NotANumber, 0 } }, { { 0, 1, 2 } }));
+    });
+  add(dataToMap, "Values wanted of data whose offsets do not fit",
+    { "The offsets of the data's cells do not fit their points." },
+    "vtkResampleThroughHomeomorphism refuses.", [resampled]() {
+      const auto mesh = MakeMesh({ { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 } }, {});
+      vtkNew<vtkTypeInt64Array> offsets;
+      vtkNew<vtkTypeInt64Array> connectivity;
+      for (const int offset : { 0, 3, 700 })
+      {
+        offsets->InsertNextValue(offset);
+      }
+      for (const int id : { 0, 1, 2 })
+      {
+        connectivity->InsertNextValue(id);
+      }
+      vtkNew<vtkCellArray> polygons;
+      polygons->SetData(offsets, connectivity);
+      mesh->SetPolys(polygons);
+      return resampled(mesh);
+    });
   add(dataToMap, "No points", {}, "Nothing comes out.", []() {
     return RunWithData(MakeCloud(std::vector<Point>{}),
       [](vtkPointSet* output) { return output->GetNumberOfPoints() == 0; }, 0);
