@@ -8,6 +8,8 @@
 #ifndef homeomorphism_FilterSupport_h
 #define homeomorphism_FilterSupport_h
 
+#include "CellPoints.h"
+
 #include "Mesh/HomeomorphismCache.h"
 
 #include "vtkAlgorithm.h"
@@ -387,10 +389,11 @@ inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet
       pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
     }
   }
+  const CellPoints cellPoints(cells);
   const auto ids = vtkSmartPointer<vtkIdList>::New();
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
   {
-    cells->GetCellPoints(cell, ids);
+    cellPoints.Get(cell, ids);
     if (std::any_of(ids->begin(), ids->end(), [=](vtkIdType point) {
           return point < 0 || point >= numberOfPoints || !mask->GetValue(point);
         }))

@@ -57,6 +57,7 @@ set(support_sources
   Stars.cxx)
 set(support_headers
   AttributeTransport.h
+  CellPoints.h
   CoordinateLines.h
   EdgeCrossings.h
   FilterSupport.h
@@ -75,5 +76,7 @@ set(floating_point_options
 set(warning_options)
 if (CMAKE_PROJECT_NAME STREQUAL "DifferentiableHomeomorphism")
   set(warning_options
-    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>)
+    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>
+    # To Clang a part of -Wconversion, to GCC not.
+    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-sign-conversion>)
 endif ()

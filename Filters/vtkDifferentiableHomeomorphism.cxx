@@ -286,12 +286,7 @@ private:
   {
     const vtkIdType cells = this->Input->GetNumberOfCells();
     const auto jacobians = NewDoubles("Jacobian", 9, cells);
-    if (cells > 0)
-    {
-      // Builds what GetCellPoints needs, before threads ask for it.
-      vtkNew<vtkIdList> first;
-      this->Input->GetCellPoints(0, first);
-    }
+    const CellPoints cellPoints(this->Input);
     vtkSMPThreadLocalObject<vtkIdList> lists;
     const double pointReach = this->GetReach();
     const Embedding& embedding = this->Map.GetPair().GetEmbedding(this->From);
@@ -300,7 +295,7 @@ private:
       TriangleIndex hint = -1;
       for (vtkIdType i = begin; i < end; ++i)
       {
-        this->Input->GetCellPoints(i, ids);
+        cellPoints.Get(i, ids);
         const vtkIdType count =
           std::all_of(ids->begin(), ids->end(), [this](vtkIdType id) { return this->IsPoint(id); })
           ? ids->GetNumberOfIds()

@@ -8,8 +8,11 @@
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataProbeFilter.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkIdList.h"
@@ -22,6 +25,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <array>
@@ -29,6 +33,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace homeomorphism;
@@ -109,6 +114,125 @@ void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
       array->SetTuple(gaps[i], static_cast<vtkIdType>(i), values);
     }
   }
+}
+
+/// Collects ids for a message: how many there are, and the first of them.
+class Offenders
+{
+public:
+  void Add(vtkIdType id)
+  {
+    if (this->Count++ < static_cast<vtkIdType>(MeshProblem::MaximumIds))
+    {
+      this->Ids += (this->Ids.empty() ? "" : ", ") + std::to_string(id);
+    }
+  }
+  bool IsEmpty() const { return this->Count == 0; }
+  /// "2 points of the data (points 3, 5) have".
+  std::string Tell(const std::string& what) const
+  {
+    return std::to_string(this->Count) + " " + what + (this->Count == 1 ? "" : "s") +
+      " of the data (" + what + (this->Count == 1 ? " " : "s ") + this->Ids +
+      (this->Count > static_cast<vtkIdType>(MeshProblem::MaximumIds) ? ", ..." : "") +
+      (this->Count == 1 ? ") has" : ") have");
+  }
+
+private:
+  vtkIdType Count = 0;
+  std::string Ids;
+};
+
+/// What would make VTK's locators read memory that is not theirs; empty if nothing would.
+std::string DescribeDefects(vtkDataSet* data)
+{
+  // With the least number of points that such a cell has.
+  std::vector<std::pair<vtkCellArray*, vtkIdType>> arrays;
+  if (auto* mesh = vtkPolyData::SafeDownCast(data))
+  {
+    arrays = { { mesh->GetVerts(), 1 }, { mesh->GetLines(), 2 }, { mesh->GetPolys(), 3 },
+      { mesh->GetStrips(), 3 } };
+  }
+  else if (auto* unstructured = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    arrays = { { unstructured->GetCells(), 0 } };
+  }
+  const vtkIdType numberOfPoints = data->GetNumberOfPoints();
+  Offenders cells;
+  Offenders small;
+  vtkIdType first = 0;
+  for (const auto& [array, least] : arrays)
+  {
+    if (array && !array->IsValid())
+    {
+      return "The offsets of the data's cells do not fit their points. The data is corrupt: read or "
+             "build it again.";
+    }
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; array && cell < array->GetNumberOfCells(); ++cell)
+    {
+      array->GetCellAtId(cell, ids);
+      if (std::any_of(ids->begin(), ids->end(), [numberOfPoints](vtkIdType id) {
+            return id < 0 || id >= numberOfPoints;
+          }))
+      {
+        cells.Add(first + cell);
+      }
+      else if (ids->GetNumberOfIds() < least)
+      {
+        small.Add(first + cell);
+      }
+    }
+    first += array ? array->GetNumberOfCells() : 0;
+  }
+  if (!cells.IsEmpty())
+  {
+    return cells.Tell("cell") +
+      " points that do not exist. The data is corrupt: read or build it again.";
+  }
+  if (!small.IsEmpty())
+  {
+    return small.Tell("cell") +
+      " fewer points than a line or polygon needs. Remove them (vtkCleanPolyData).";
+  }
+  Offenders points;
+  auto* pointSet = vtkPointSet::SafeDownCast(data);
+  for (vtkIdType i = 0; pointSet && i < numberOfPoints; ++i)
+  {
+    double point[3];
+    pointSet->GetPoint(i, point);
+    if (!(std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])))
+    {
+      points.Add(i);
+    }
+  }
+  if (!points.IsEmpty())
+  {
+    return points.Tell("point") +
+      " coordinates that are not finite, among which values cannot be looked for. Remove them.";
+  }
+  return "";
+}
+
+/// The same of a data set or a tree of them: the first defect found.
+std::string DescribeDefects(vtkDataObject* data)
+{
+  if (auto* dataSet = vtkDataSet::SafeDownCast(data))
+  {
+    return DescribeDefects(dataSet);
+  }
+  std::string text;
+  if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto leaf = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal() && text.empty(); leaf->GoToNextItem())
+    {
+      if (auto* dataSet = vtkDataSet::SafeDownCast(leaf->GetCurrentDataObject()))
+      {
+        text = DescribeDefects(dataSet);
+      }
+    }
+  }
+  return text;
 }
 
 bool HasVectors(vtkPointData* pointData)
@@ -381,12 +505,21 @@ int vtkResampleThroughHomeomorphism::Resample(
   // What the data has there. A point on the data's border may be outside by rounding: it is looked for
   // again, a rounding error closer to the middle of its triangle.
   vtkDataObject* probed = data ? data : (this->Inverse ? target : source);
+  const std::string defects = DescribeDefects(probed);
+  if (!defects.empty())
+  {
+    vtkErrorMacro(<< defects);
+    this->SetErrorCode(vtkErrorCode::UserError);
+    output->Initialize();
+    return 0;
+  }
   vtkSmartPointer<vtkPointSet> found = Probe(origins, probed);
   this->UpdateProgress(0.6);
+  vtkPolyData* mesh = this->Inverse ? target : source;
+  const CellPoints cellPoints(mesh);
   FillGaps(found, probed, [&](vtkIdType i, double point[3]) {
-    vtkPolyData* mesh = this->Inverse ? target : source;
     vtkNew<vtkIdList> corners;
-    mesh->GetCellPoints(
+    cellPoints.Get(
       static_cast<vtkIdType>(triangles->GetTuple1(inside[static_cast<std::size_t>(i)])), corners);
     double middle[3] = { 0.0, 0.0, 0.0 };
     for (const vtkIdType corner : *corners)

@@ -72,6 +72,35 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
   }
 }
 
+/// Half an ulp of 1.
+constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
+
+/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a triangle
+/// or its neighbour is so thin that the columns are almost parallel; the charts know better.
+double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
+{
+  return (other.Base / shape.Base) * (other.Height / shape.Height);
+}
+
+double Determinant(const LinearChart&, const LinearChart&, const TriangleShape& shape,
+  const TriangleShape& otherShape, const Barycentric&, const Matrix2&)
+{
+  return AffineDeterminant(shape, otherShape);
+}
+
+double Determinant(const SmoothChart& chart, const SmoothChart& other, const TriangleShape& shape,
+  const TriangleShape& otherShape, const Barycentric& l, const Matrix2&)
+{
+  return AffineDeterminant(shape, otherShape) *
+    (other.DeterminantRatio(l) / chart.DeterminantRatio(l));
+}
+
+double Determinant(const ContourChart&, const ContourChart&, const TriangleShape&,
+  const TriangleShape&, const TriangularCoordinates&, const Matrix2& matrix)
+{
+  return matrix.Determinant();
+}
+
 } // namespace
 
 std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
@@ -137,8 +166,10 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
 double Homeomorphism::GetReach(Side side, double tolerance, double precision) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
-  // Three coordinates, each rounded when stored and again on the way to the triangle's frame.
-  const double rounding = 8.0 * std::max(precision, embedding.GetCoordinatePrecision()) *
+  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself is
+  // measured in a triangle's frame, as doubles, with edges up to three times as long as the coordinates.
+  const double rounding =
+    (8.0 * std::max(precision, embedding.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
     embedding.GetLargestCoordinate();
   return std::max(rounding, tolerance * embedding.GetDiagonal());
 }
@@ -444,25 +475,37 @@ void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) 
   target.FromWorking(target.FromFrame(place.Triangle, point), image);
 }
 
+template <typename Chart>
+Jacobian Homeomorphism::Derive(Side from, TriangleIndex triangle, const Chart& chart,
+  const Chart& other, const typename Chart::Reference& reference) const
+{
+  const Matrix2 matrix = MapDerivative(chart, other, reference);
+  const TriangleShape& shape = this->Pair->GetEmbedding(from).GetShape(triangle);
+  const TriangleShape& otherShape = this->Pair->GetEmbedding(Opposite(from)).GetShape(triangle);
+  return this->FromFrames(
+    from, triangle, matrix, Determinant(chart, other, shape, otherShape, reference, matrix));
+}
+
 Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 {
-  return this->FromFrames(from, place.Triangle,
-    this->VisitCharts(from, place.Triangle, [&place](const auto& chart, const auto& other) {
-      return MapDerivative(chart, other, chart.ToReference(place.Point.InPlane));
-    }));
+  return this->VisitCharts(from, place.Triangle,
+    [this, from, &place](const auto& chart, const auto& other) {
+      return this->Derive(
+        from, place.Triangle, chart, other, chart.ToReference(place.Point.InPlane));
+    });
 }
 
 Jacobian Homeomorphism::GetJacobian(
   Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
 {
-  return this->FromFrames(from, triangle,
-    this->VisitCharts(from, triangle, [&coordinates](const auto& chart, const auto& other) {
-      return MapDerivative(chart, other, chart.FromCoordinates(coordinates));
-    }));
+  return this->VisitCharts(from, triangle,
+    [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
+      return this->Derive(from, triangle, chart, other, chart.FromCoordinates(coordinates));
+    });
 }
 
 Jacobian Homeomorphism::FromFrames(
-  Side from, TriangleIndex triangle, const Matrix2& inFrames) const
+  Side from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const
 {
   const Embedding& source = this->Pair->GetEmbedding(from);
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
@@ -483,7 +526,7 @@ Jacobian Homeomorphism::FromFrames(
         alongInward * from3[1][column] + to3[2][row] * from3[2][column];
     }
   }
-  jacobian.Determinant = inFrames.Determinant() * rescale * rescale *
+  jacobian.Determinant = determinant * rescale * rescale *
     source.GetHandedness(triangle) * target.GetHandedness(triangle);
   return jacobian;
 }

@@ -150,8 +150,14 @@ private:
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
 
-  /// From the triangle's frames to the input's coordinates.
-  Jacobian FromFrames(Side from, TriangleIndex triangle, const Matrix2& inFrames) const;
+  /// The derivative at a triangle's reference point.
+  template <typename Chart>
+  Jacobian Derive(Side from, TriangleIndex triangle, const Chart& chart, const Chart& other,
+    const typename Chart::Reference& reference) const;
+
+  /// From the triangle's frames to the input's coordinates. @a determinant is that of the matrix.
+  Jacobian FromFrames(
+    Side from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;
