@@ -29,6 +29,8 @@
 #include "vtkInformationVector.h"
 #include "vtkObject.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -96,6 +98,21 @@ inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
   if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, read))
   {
     read(array);
+  }
+}
+
+/// Reads a block's points from a data set.
+inline void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
+{
+  auto* pointSet = vtkPointSet::SafeDownCast(data);
+  if (pointSet && pointSet->GetPoints())
+  {
+    ReadPoints(pointSet->GetPoints()->GetData(), first, block);
+    return;
+  }
+  for (int i = 0; i < block.Count; ++i)
+  {
+    data->GetPoint(first + i, block.Points[i]);
   }
 }
 

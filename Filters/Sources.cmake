@@ -51,6 +51,7 @@ set(support_sources
   AttributeTransport.cxx
   CoordinateLines.cxx
   EdgeCrossings.cxx
+  ImageSampling.cxx
   InnerLines.cxx
   MeasuredPlaces.cxx
   ProcessStatistics.cxx
@@ -61,6 +62,7 @@ set(support_headers
   CoordinateLines.h
   EdgeCrossings.h
   FilterSupport.h
+  ImageSampling.h
   InnerLines.h
   MeasuredPlaces.h
   ProcessStatistics.h

@@ -214,17 +214,7 @@ private:
         for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
         {
           block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
-          if (inPoints)
-          {
-            ReadPoints(inPoints->GetData(), first, block);
-          }
-          else
-          {
-            for (int i = 0; i < block.Count; ++i)
-            {
-              this->Input->GetPoint(first + i, block.Points[i]);
-            }
-          }
+          ReadPoints(this->Input, first, block);
           this->Map.LocateBlock(this->From, block, reach, hint);
           for (int i = 0; i < block.Count && ghosts; ++i)
           {

@@ -4,6 +4,7 @@
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include "FilterSupport.h"
+#include "ImageSampling.h"
 #include "ProcessStatistics.h"
 #include "vtkDifferentiableHomeomorphism.h"
 
@@ -32,6 +33,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,19 +46,6 @@ namespace
 {
 
 constexpr const char* maskName = "ValidPointMask";
-
-/// Array of the same type and name with @a tuples tuples, all NaN or 0.
-vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples)
-{
-  auto result = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
-  result->SetName(array->GetName());
-  result->SetNumberOfComponents(array->GetNumberOfComponents());
-  result->CopyComponentNames(array);
-  result->SetNumberOfTuples(tuples);
-  const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-  result->Fill(real ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-  return result;
-}
 
 /// Passes the marks of what is hidden or belongs to another piece.
 void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
@@ -242,7 +231,14 @@ bool HasVectors(vtkPointData* pointData)
 
 } // namespace
 
+class vtkResampleThroughHomeomorphism::Internals
+{
+public:
+  HomeomorphismCache Cache;
+};
+
 vtkResampleThroughHomeomorphism::vtkResampleThroughHomeomorphism()
+  : Internal(new Internals)
 {
   this->SetNumberOfInputPorts(4);
   // Outside points are told by the mask; errors are this filter's own.
@@ -289,7 +285,7 @@ void vtkResampleThroughHomeomorphism::SetGridData(vtkDataSet* grid)
 
 vtkIdType vtkResampleThroughHomeomorphism::GetNumberOfMeshBuilds()
 {
-  return this->Mapping->GetNumberOfMeshBuilds();
+  return this->Internal->Cache.GetNumberOfBuilds() + this->Mapping->GetNumberOfMeshBuilds();
 }
 
 int vtkResampleThroughHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
@@ -472,6 +468,13 @@ int vtkResampleThroughHomeomorphism::Resample(
       vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
   }
 
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (image && ImageSampling::CanSample(image) &&
+    !(this->CarryVectors && HasVectors(image->GetPointData())))
+  {
+    return this->ResampleImage(source, target, image, grid, output);
+  }
+
   // Where the grid's points come from.
   const vtkIdType count = output->GetNumberOfPoints();
   vtkNew<vtkPoints> origins;
@@ -557,12 +560,10 @@ int vtkResampleThroughHomeomorphism::Resample(
   mask->SetName(maskName);
   mask->SetNumberOfTuples(count);
   mask->FillValue(0);
-  vtkIdType valid = 0;
   for (std::size_t i = 0; i < inside.size(); ++i)
   {
     const bool has = hasValues && hasValues->GetTuple1(static_cast<vtkIdType>(i)) != 0.0;
     mask->SetValue(inside[i], has ? 1 : 0);
-    valid += has;
   }
   vtkPointData* result = output->GetPointData();
   for (int a = 0; a < found->GetPointData()->GetNumberOfArrays(); ++a)
@@ -590,19 +591,79 @@ int vtkResampleThroughHomeomorphism::Resample(
       }
     }
   }
-  result->AddArray(mask);
+  this->Mark(grid, mask, output);
+  return 1;
+}
+
+/// The same for data that is an image, which needs no search and no intermediate data.
+int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyData* target,
+  vtkImageData* image, vtkDataSet* grid, vtkDataSet* output)
+{
+  HomeomorphismCache& cache = this->Internal->Cache;
+  const std::shared_ptr<const Homeomorphism> map =
+    cache.Get(source, target, GetOptions(this));
+  ReportProblems(this, cache.GetProblems());
+  if (!map)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    output->Initialize();
+    return 0;
+  }
+  const vtkIdType count = output->GetNumberOfPoints();
+  vtkNew<vtkUnsignedCharArray> mask;
+  mask->SetName(maskName);
+  mask->SetNumberOfTuples(count);
+  mask->FillValue(0);
+  const ImageSampling sampling(image, output->GetPointData(), count);
+  const Side from = this->Inverse ? Side::Source : Side::Target;
+  auto* pointSet = vtkPointSet::SafeDownCast(output);
+  vtkPoints* points = pointSet ? pointSet->GetPoints() : nullptr;
+  const double reach = map->GetReach(
+    from, this->Tolerance, PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
+  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+    grid ? grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) : nullptr);
+  ghosts = ghosts && ghosts->GetNumberOfValues() == count ? ghosts : nullptr;
+  static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
+  RunInBlocks(this, count, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
+    LocationHint hint;
+    PointBlock block;
+    for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
+    {
+      block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+      ReadPoints(output, first, block);
+      map->LocateBlock(from, block, reach, hint);
+      map->MapBlock(from, block);
+      bool isInside[PointBlock::Capacity];
+      for (int i = 0; i < block.Count; ++i)
+      {
+        isInside[i] = block.Triangles[i] >= 0 &&
+          !(ghosts && (ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT));
+      }
+      sampling.Sample(block.Points, isInside, block.Count, first, mask);
+    }
+  });
+  this->Mark(grid, mask, output);
+  return 1;
+}
+
+/// Adds the mask and what follows from it.
+void vtkResampleThroughHomeomorphism::Mark(
+  vtkDataSet* grid, vtkUnsignedCharArray* mask, vtkDataSet* output)
+{
+  output->GetPointData()->AddArray(mask);
   this->NumberOfOutsidePoints = CountOutside(grid ? grid : output, mask);
   if (grid)
   {
     PassGhosts(grid->GetPointData(), output->GetPointData());
     PassGhosts(grid->GetCellData(), output->GetCellData());
   }
-  if (this->BlankOutside && valid < count)
+  const unsigned char* valid = mask->GetPointer(0);
+  if (this->BlankOutside &&
+    std::find(valid, valid + mask->GetNumberOfTuples(), 0) != valid + mask->GetNumberOfTuples())
   {
     HidePoints(output, mask, output);
   }
   this->UpdateProgress(1.0);
-  return 1;
 }
 
 void vtkResampleThroughHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)

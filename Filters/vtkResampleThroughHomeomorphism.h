@@ -21,6 +21,9 @@
  * others 0, and points and the cells that use them are blanked (vtkGhostType); see BlankOutside.
  * The grid's own arrays are not passed, except vtkGhostType.
  *
+ * Values of an image are interpolated linearly in each direction, others as VTK's cells do. An image
+ * without active vectors, normals or tensors is resampled many times faster than other data.
+ *
  * Active vectors, normals and tensors are carried by the Jacobian, as vtkDifferentiableHomeomorphism does;
  * see CarryVectors.
  *
@@ -39,9 +42,13 @@
 #include "vtkFiltersHomeomorphismModule.h" // for the export macro
 #include "vtkNew.h"                        // for the filter that maps
 
+#include <memory> // for its internals
+
 class vtkDifferentiableHomeomorphism;
+class vtkImageData;
 class vtkMultiProcessController;
 class vtkPolyData;
+class vtkUnsignedCharArray;
 
 class VTKFILTERSHOMEOMORPHISM_EXPORT vtkResampleThroughHomeomorphism : public vtkDataSetAlgorithm
 {
@@ -184,6 +191,12 @@ protected:
   vtkIdType NumberOfOutsidePoints = 0;
 
 private:
+  class Internals;
+
+  int ResampleImage(vtkPolyData* source, vtkPolyData* target, vtkImageData* image, vtkDataSet* grid,
+    vtkDataSet* output);
+  void Mark(vtkDataSet* grid, vtkUnsignedCharArray* mask, vtkDataSet* output);
+
   vtkResampleThroughHomeomorphism(const vtkResampleThroughHomeomorphism&) = delete;
   void operator=(const vtkResampleThroughHomeomorphism&) = delete;
 
@@ -194,6 +207,7 @@ private:
   vtkDataSet* Map(vtkDataSet* data, bool inverse, bool carryVectors);
 
   vtkNew<vtkDifferentiableHomeomorphism> Mapping;
+  std::unique_ptr<Internals> Internal;
   /// In this process alone.
   vtkIdType OwnOutsidePoints = 0;
 };
