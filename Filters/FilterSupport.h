@@ -8,12 +8,17 @@
 #ifndef homeomorphism_FilterSupport_h
 #define homeomorphism_FilterSupport_h
 
+#include "CellPoints.h"
+
 #include "Mesh/HomeomorphismCache.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkArrayDispatch.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
@@ -24,6 +29,8 @@
 #include "vtkInformationVector.h"
 #include "vtkObject.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -33,6 +40,8 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 namespace homeomorphism
 {
@@ -77,6 +86,52 @@ inline double PrecisionOfType(int dataType)
                            : std::numeric_limits<double>::epsilon());
 }
 
+/// Reads a block's points, of which the first is tuple @a first of an array of 3 components.
+inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
+{
+  double* coordinates = &block.Points[0][0];
+  const auto read = [first, coordinates, &block](auto* typed) {
+    const auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
+    std::transform(values.begin(), values.end(), coordinates,
+      [](auto value) { return static_cast<double>(value); });
+  };
+  if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, read))
+  {
+    read(array);
+  }
+}
+
+/// Reads a block's points from a data set.
+inline void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
+{
+  auto* pointSet = vtkPointSet::SafeDownCast(data);
+  if (pointSet && pointSet->GetPoints())
+  {
+    ReadPoints(pointSet->GetPoints()->GetData(), first, block);
+    return;
+  }
+  for (int i = 0; i < block.Count; ++i)
+  {
+    data->GetPoint(first + i, block.Points[i]);
+  }
+}
+
+/// Writes a block's points to an array of 3 components.
+inline void WritePoints(const PointBlock& block, vtkIdType first, vtkDataArray* array)
+{
+  const double* coordinates = &block.Points[0][0];
+  const auto write = [first, coordinates, &block](auto* typed) {
+    using Value = vtk::GetAPIType<std::remove_pointer_t<decltype(typed)>>;
+    auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
+    std::transform(coordinates, coordinates + 3 * block.Count, values.begin(),
+      [](double value) { return static_cast<Value>(value); });
+  };
+  if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, write))
+  {
+    write(array);
+  }
+}
+
 /// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
 /// and a request to abort is honoured; a block should take a fraction of a second. Returns the number
 /// of items done: less than count only if aborted.
@@ -106,8 +161,43 @@ inline void AcceptDataSetsAndTrees(vtkInformation* info)
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
 }
 
+/// Tells that an output may change whenever one of the first @a ports inputs does: its time steps and time
+/// range are all of theirs. By default they are those of port 0, and at other times the executive takes
+/// what was made before for good.
+inline void DescribeTimesInOutput(vtkInformationVector** inputs, int ports, vtkInformation* outInfo)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  std::set<double> steps;
+  std::set<double> ends;
+  for (int port = 0; port < ports; ++port)
+  {
+    vtkInformation* info = inputs[port]->GetInformationObject(0);
+    if (info && info->Has(Pipeline::TIME_STEPS()))
+    {
+      const double* values = info->Get(Pipeline::TIME_STEPS());
+      steps.insert(values, values + info->Length(Pipeline::TIME_STEPS()));
+    }
+    if (info && info->Has(Pipeline::TIME_RANGE()))
+    {
+      ends.insert(info->Get(Pipeline::TIME_RANGE()), info->Get(Pipeline::TIME_RANGE()) + 2);
+    }
+  }
+  outInfo->Remove(Pipeline::TIME_STEPS());
+  outInfo->Remove(Pipeline::TIME_RANGE());
+  if (!steps.empty())
+  {
+    const std::vector<double> values(steps.begin(), steps.end());
+    outInfo->Set(Pipeline::TIME_STEPS(), values.data(), static_cast<int>(values.size()));
+  }
+  if (!ends.empty())
+  {
+    const double range[2] = { *ends.begin(), *ends.rbegin() };
+    outInfo->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+}
+
 /// Of a filter whose other inputs are meshes: lets the information of the data's port, if there is
-/// data, describe the output (extent and time steps, which by default come from port 0).
+/// data, describe the output's extent, which by default comes from port 0.
 inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outInfo)
 {
   if (!dataInfo)
@@ -115,15 +205,10 @@ inline void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outIn
     return;
   }
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  const auto copy = [dataInfo, outInfo](auto* key) {
-    if (dataInfo->Has(key))
-    {
-      outInfo->CopyEntry(dataInfo, key);
-    }
-  };
-  copy(Pipeline::WHOLE_EXTENT());
-  copy(Pipeline::TIME_STEPS());
-  copy(Pipeline::TIME_RANGE());
+  if (dataInfo->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    outInfo->CopyEntry(dataInfo, Pipeline::WHOLE_EXTENT());
+  }
   outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
 }
 
@@ -287,6 +372,25 @@ inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkId
   return ghosts;
 }
 
+/// Number of points that @a mask leaves out, those of @a data that belong to another piece excepted.
+inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
+{
+  const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
+  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+    data->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (ghosts && ghosts->GetNumberOfValues() != numberOfPoints)
+  {
+    ghosts = nullptr;
+  }
+  vtkIdType outside = 0;
+  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  {
+    outside += !mask->GetValue(i) &&
+      !(ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT));
+  }
+  return outside;
+}
+
 /// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use them or
 /// points that do not exist. @a cells has the output's cells.
 inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet* output)
@@ -302,10 +406,11 @@ inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet
       pointGhosts->SetValue(i, pointGhosts->GetValue(i) | vtkDataSetAttributes::HIDDENPOINT);
     }
   }
+  const CellPoints cellPoints(cells);
   const auto ids = vtkSmartPointer<vtkIdList>::New();
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
   {
-    cells->GetCellPoints(cell, ids);
+    cellPoints.Get(cell, ids);
     if (std::any_of(ids->begin(), ids->end(), [=](vtkIdType point) {
           return point < 0 || point >= numberOfPoints || !mask->GetValue(point);
         }))

@@ -17,7 +17,8 @@ set(kernel_headers
   Kernel/LinearChart.h
   Kernel/OneSidedDerivative.h
   Kernel/RootFinding.h
-  Kernel/SmoothChart.h)
+  Kernel/SmoothChart.h
+  Kernel/Vectorize.h)
 
 # From VTK's meshes to the kernel and back.
 set(mesh_sources
@@ -50,26 +51,34 @@ set(support_sources
   AttributeTransport.cxx
   CoordinateLines.cxx
   EdgeCrossings.cxx
+  ImageSampling.cxx
   InnerLines.cxx
   MeasuredPlaces.cxx
+  ProcessStatistics.cxx
   Stars.cxx)
 set(support_headers
   AttributeTransport.h
+  CellPoints.h
   CoordinateLines.h
   EdgeCrossings.h
   FilterSupport.h
+  ImageSampling.h
   InnerLines.h
   MeasuredPlaces.h
+  ProcessStatistics.h
   Stars.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results
-# would change from one machine to another.
+# would change from one machine to another. Nobody asks for floating-point exceptions or errno: without
+# them, loops over several points become vector instructions.
 set(floating_point_options
-  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off;-fno-trapping-math;-fno-math-errno>)
 
 # Only in a build of our own: inside VTK, VTK decides.
 set(warning_options)
 if (CMAKE_PROJECT_NAME STREQUAL "DifferentiableHomeomorphism")
   set(warning_options
-    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>)
+    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>
+    # To Clang a part of -Wconversion, to GCC not.
+    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-sign-conversion>)
 endif ()

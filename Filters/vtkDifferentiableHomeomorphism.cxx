@@ -5,6 +5,7 @@
 
 #include "AttributeTransport.h"
 #include "FilterSupport.h"
+#include "ProcessStatistics.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCell.h"
@@ -46,6 +47,7 @@ class vtkDifferentiableHomeomorphism::Internals
 {
 public:
   HomeomorphismCache Cache;
+  ProcessStatistics Own{ { 0.0 }, { 0.0 } };
   std::map<std::string, TransportRule> Transports;
 
   /// Lets Continuity measure the map between the meshes.
@@ -207,24 +209,31 @@ private:
     }
     const vtkIdType done = RunInBlocks(
       this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
-        TriangleIndex hint = -1;
-        for (vtkIdType i = begin; i < end; ++i)
+        LocationHint hint;
+        PointBlock block;
+        for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
         {
-          double point[3];
-          this->Input->GetPoint(i, point);
-          // What is hidden in the input is not there: above all what an earlier map found outside.
-          const bool hidden =
-            ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0;
-          const Location place =
-            hidden ? Location{} : this->Map.Locate(this->From, point, reach, hint);
-          hint = place.Triangle;
-          if (place.Triangle >= 0)
+          block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+          ReadPoints(this->Input, first, block);
+          this->Map.LocateBlock(this->From, block, reach, hint);
+          for (int i = 0; i < block.Count && ghosts; ++i)
           {
-            this->Map.MapPoint(this->From, place, point);
-            this->Mask->SetValue(i, 1);
-            this->SetDerived(i, place);
+            // What is hidden in the input is not there: above all what an earlier map found outside.
+            if ((ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT) != 0)
+            {
+              block.Triangles[i] = -1;
+            }
           }
-          outPoints->SetPoint(i, point);
+          this->Map.MapBlock(this->From, block);
+          WritePoints(block, first, outPoints->GetData());
+          for (int i = 0; i < block.Count; ++i)
+          {
+            if (block.Triangles[i] >= 0)
+            {
+              this->Mask->SetValue(first + i, 1);
+              this->SetDerived(first + i, block.GetPlace(i));
+            }
+          }
         }
       });
     // Aborted: what was not reached stays where it is, marked as outside.
@@ -267,12 +276,7 @@ private:
   {
     const vtkIdType cells = this->Input->GetNumberOfCells();
     const auto jacobians = NewDoubles("Jacobian", 9, cells);
-    if (cells > 0)
-    {
-      // Builds what GetCellPoints needs, before threads ask for it.
-      vtkNew<vtkIdList> first;
-      this->Input->GetCellPoints(0, first);
-    }
+    const CellPoints cellPoints(this->Input);
     vtkSMPThreadLocalObject<vtkIdList> lists;
     const double pointReach = this->GetReach();
     const Embedding& embedding = this->Map.GetPair().GetEmbedding(this->From);
@@ -281,7 +285,7 @@ private:
       TriangleIndex hint = -1;
       for (vtkIdType i = begin; i < end; ++i)
       {
-        this->Input->GetCellPoints(i, ids);
+        cellPoints.Get(i, ids);
         const vtkIdType count =
           std::all_of(ids->begin(), ids->end(), [this](vtkIdType id) { return this->IsPoint(id); })
           ? ids->GetNumberOfIds()
@@ -429,7 +433,7 @@ private:
     {
       inside += this->Mask->GetValue(i);
     }
-    this->Self->NumberOfOutsidePoints += this->NumberOfPoints - inside;
+    this->Self->NumberOfOutsidePoints += CountOutside(this->Input, this->Mask);
     if (!this->Self->BlankOutside || inside == this->NumberOfPoints)
     {
       return;
@@ -498,6 +502,14 @@ void vtkDifferentiableHomeomorphism::ClearArrayTransports()
   }
 }
 
+void vtkDifferentiableHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics total = Total(this, this->Internal->Own, controller);
+  this->NumberOfOutsidePoints = static_cast<vtkIdType>(total.Sums[0]);
+  this->NumberOfDiscordantTriangles = static_cast<vtkIdType>(total.Largest[0]);
+  this->Internal->Continuity->ReduceStatistics(controller);
+}
+
 vtkIdType vtkDifferentiableHomeomorphism::GetNumberOfMeshBuilds()
 {
   return this->Internal->Cache.GetNumberOfBuilds();
@@ -548,6 +560,8 @@ int vtkDifferentiableHomeomorphism::RequestInformation(
 {
   DescribeDataInOutput(
     inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 3, outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
   return 1;
 }
 
@@ -567,6 +581,8 @@ int vtkDifferentiableHomeomorphism::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const int success = this->MapData(request, inputs, outputs);
+  this->Internal->Own = { { static_cast<double>(this->NumberOfOutsidePoints) },
+    { static_cast<double>(this->NumberOfDiscordantTriangles) } };
   this->SetProgressShiftScale(0.0, 1.0);
   if (success)
   {

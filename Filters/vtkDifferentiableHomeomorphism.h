@@ -86,6 +86,7 @@
 #include <memory> // for the internals
 
 class vtkJacobianContinuity;
+class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKFILTERSHOMEOMORPHISM_EXPORT vtkDifferentiableHomeomorphism
@@ -258,12 +259,22 @@ public:
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}
 
-  /// Number of points of the data that the last execution found outside; -1 if the meshes or the data
-  /// were refused, in which case GetErrorCode() is not 0 either.
+  /// Number of points of the data, or of the piece of it that was asked for, that the last execution found
+  /// outside, without those that vtkGhostType says are another piece's; -1 if the meshes or the data were
+  /// refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
   /// Number of triangles that are discordant in P or Q and are carried by the Linear system.
   vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
+
+  /// Makes the numbers that this filter counts (NumberOfOutsidePoints,
+  /// NumberOfDiscordantTriangles, and those of GetJacobianContinuity) the same in all processes that
+  /// have pieces of the data: counts of points become sums, -1 if one of the processes has -1, numbers
+  /// of triangles the largest. Each process of @a controller (null: the global controller; if there is
+  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
+  /// error: executing the filter never waits for other processes, this does. They are one process's own
+  /// again after the next execution. In ParaView the plugin does it.
+  void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// How often the meshes have been read and validated since this filter was made.
   vtkIdType GetNumberOfMeshBuilds();

@@ -47,8 +47,15 @@ public:
   Location MapPoint(Side from, const Real in[3], Real out[3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
-    const Location place = this->Locate(
-      from, point, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), -1);
+    // Callers that go from point to point, as vtkImageReslice does, mostly stay in a triangle. Each thread
+    // remembers its last one; that it may be one of another mesh or side only costs time.
+    thread_local TriangleIndex last = -1;
+    const bool isHint = this->Map && last >= 0 &&
+      last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
+    const Location place =
+      this->Locate(from, point, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()),
+        isHint ? last : -1);
+    last = place.Triangle;
     double image[3];
     this->MapPlace(from, place, image);
     const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
@@ -229,39 +236,60 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
 
   const Internals& internals = *this->Internal;
   const Side from = this->InverseFlag ? Side::Target : Side::Source;
-  // Coordinates stored as float are rounded as such, and count as inside accordingly.
-  const double precision = PrecisionOfType(inPts->GetDataType());
-  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
-    TriangleIndex hint = -1;
-    for (vtkIdType i = begin; i < end; ++i)
+  if (!internals.Map)
+  {
+    const double outside[3] = { internals.OutsideCoordinate, internals.OutsideCoordinate,
+      internals.OutsideCoordinate };
+    for (vtkIdType i = 0; i < count; ++i)
     {
-      double point[3];
-      double image[3];
-      inPts->GetPoint(i, point);
-      const Location place = internals.Locate(from, point, precision, hint);
-      internals.MapPlace(from, place, image);
-      hint = place.Triangle;
-      outPts->SetPoint(firstPoint + i, image);
-      if (carried.empty())
+      outPts->SetPoint(firstPoint + i, outside);
+    }
+  }
+  // Coordinates stored as float are rounded as such, and count as inside accordingly.
+  const double reach = internals.Map
+    ? internals.Map->GetReach(from, internals.Tolerance, PrecisionOfType(inPts->GetDataType()))
+    : 0.0;
+  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+    LocationHint hint;
+    PointBlock block;
+    for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
+    {
+      block.Count =
+        static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+      if (internals.Map)
       {
-        continue;
+        ReadPoints(inPts->GetData(), first, block);
+        const int outside = internals.Map->LocateBlock(from, block, reach, hint);
+        internals.Map->MapBlock(from, block);
+        for (int i = 0; i < block.Count && outside > 0; ++i)
+        {
+          if (block.Triangles[i] < 0)
+          {
+            std::fill_n(block.Points[i], 3, internals.OutsideCoordinate);
+          }
+        }
+        WritePoints(block, firstPoint + first, outPts->GetData());
       }
-      double derivative[3][3];
-      internals.GetDerivative(from, place, derivative);
-      const TensorTransport transport(&derivative[0][0]);
-      for (const Carried& array : carried)
+      for (int i = 0; i < block.Count && !carried.empty(); ++i)
       {
-        double vector[3];
-        array.In->GetTuple(i, vector);
-        if (array.Normals)
+        double derivative[3][3];
+        internals.GetDerivative(
+          from, internals.Map ? block.GetPlace(i) : Location{}, derivative);
+        const TensorTransport transport(&derivative[0][0]);
+        for (const Carried& array : carried)
         {
-          transport.CarryNormal(vector);
+          double vector[3];
+          array.In->GetTuple(first + i, vector);
+          if (array.Normals)
+          {
+            transport.CarryNormal(vector);
+          }
+          else
+          {
+            transport.CarryTangent(vector);
+          }
+          array.Out->SetTuple(array.First + first + i, vector);
         }
-        else
-        {
-          transport.CarryTangent(vector);
-        }
-        array.Out->SetTuple(array.First + i, vector);
       }
     }
   });

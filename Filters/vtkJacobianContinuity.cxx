@@ -5,6 +5,7 @@
 
 #include "FilterSupport.h"
 #include "MeasuredPlaces.h"
+#include "ProcessStatistics.h"
 
 #include "vtkAbstractTransform.h"
 #include "vtkCellArray.h"
@@ -24,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 using namespace homeomorphism;
@@ -35,6 +37,8 @@ class vtkJacobianContinuity::Internals
 {
 public:
   HomeomorphismCache Cache;
+  /// Edges on the boundary, then places by type and verdict; the largest jump.
+  ProcessStatistics Own{ std::vector<double>(1 + (VERTEX + 1) * (UNDECIDED + 1)), { 0.0 } };
 };
 
 namespace
@@ -262,6 +266,14 @@ int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
+int vtkJacobianContinuity::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
+  return 1;
+}
+
 int vtkJacobianContinuity::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
@@ -271,6 +283,27 @@ int vtkJacobianContinuity::RequestUpdateExtent(
 }
 
 int vtkJacobianContinuity::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const int success = this->Measure(request, inputs, outputs);
+  ProcessStatistics& own = this->Internal->Own;
+  own.Sums[0] = static_cast<double>(this->NumberOfBoundaryEdges);
+  std::transform(std::cbegin(this->Counts[0]), std::cend(this->Counts[VERTEX]), own.Sums.begin() + 1,
+    [](vtkIdType count) { return static_cast<double>(count); });
+  own.Largest[0] = this->LargestJump;
+  return success;
+}
+
+void vtkJacobianContinuity::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics total = Total(this, this->Internal->Own, controller);
+  this->NumberOfBoundaryEdges = static_cast<vtkIdType>(total.Sums[0]);
+  std::transform(total.Sums.begin() + 1, total.Sums.end(), std::begin(this->Counts[0]),
+    [](double count) { return static_cast<vtkIdType>(count); });
+  this->LargestJump = total.Largest[0];
+}
+
+int vtkJacobianContinuity::Measure(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);

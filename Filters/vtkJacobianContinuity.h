@@ -77,6 +77,7 @@
 #include <memory> // for the internals
 
 class vtkAbstractTransform;
+class vtkMultiProcessController;
 
 class VTKFILTERSHOMEOMORPHISM_EXPORT vtkJacobianContinuity : public vtkPolyDataAlgorithm
 {
@@ -212,7 +213,7 @@ public:
   ///@}
 
   ///@{
-  /// What the last execution found at the interior edges.
+  /// What the last execution found at the interior edges, in piece 0. See ReduceStatistics.
   vtkGetMacro(NumberOfBoundaryEdges, vtkIdType);
   vtkIdType GetNumberOfDifferentiableEdges() { return this->Counts[EDGE][DIFFERENTIABLE]; }
   vtkIdType GetNumberOfKinks() { return this->Counts[EDGE][KINK]; }
@@ -224,6 +225,15 @@ public:
   /// (DIFFERENTIABLE, KINK or UNDECIDED).
   vtkIdType GetNumberOfPlaces(int placeType, int verdict);
 
+  /// Makes the numbers that this filter counts (NumberOfKinks, LargestJump and
+  /// the like, GetNumberOfPlaces) the same in all processes that
+  /// have pieces of the data: counts become sums, LargestJump the largest; all is measured by the process
+  /// that has piece 0. Each process of @a controller (null: the global controller; if there is
+  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
+  /// error: executing the filter never waits for other processes, this does. They are one process's own
+  /// again after the next execution. In ParaView the plugin does it.
+  void ReduceStatistics(vtkMultiProcessController* controller);
+
   /// Includes the transform's.
   vtkMTimeType GetMTime() override;
 
@@ -232,6 +242,8 @@ protected:
   ~vtkJacobianContinuity() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(
@@ -258,6 +270,9 @@ protected:
 private:
   vtkJacobianContinuity(const vtkJacobianContinuity&) = delete;
   void operator=(const vtkJacobianContinuity&) = delete;
+
+  int Measure(vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
 
   class Internals;
   std::unique_ptr<Internals> Internal;

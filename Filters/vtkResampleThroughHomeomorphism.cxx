@@ -4,11 +4,16 @@
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include "FilterSupport.h"
+#include "ImageSampling.h"
+#include "ProcessStatistics.h"
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataProbeFilter.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkIdList.h"
@@ -21,13 +26,16 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace homeomorphism;
@@ -38,19 +46,6 @@ namespace
 {
 
 constexpr const char* maskName = "ValidPointMask";
-
-/// Array of the same type and name with @a tuples tuples, all NaN or 0.
-vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples)
-{
-  auto result = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
-  result->SetName(array->GetName());
-  result->SetNumberOfComponents(array->GetNumberOfComponents());
-  result->CopyComponentNames(array);
-  result->SetNumberOfTuples(tuples);
-  const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-  result->Fill(real ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-  return result;
-}
 
 /// Passes the marks of what is hidden or belongs to another piece.
 void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
@@ -110,6 +105,125 @@ void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
   }
 }
 
+/// Collects ids for a message: how many there are, and the first of them.
+class Offenders
+{
+public:
+  void Add(vtkIdType id)
+  {
+    if (this->Count++ < static_cast<vtkIdType>(MeshProblem::MaximumIds))
+    {
+      this->Ids += (this->Ids.empty() ? "" : ", ") + std::to_string(id);
+    }
+  }
+  bool IsEmpty() const { return this->Count == 0; }
+  /// "2 points of the data (points 3, 5) have".
+  std::string Tell(const std::string& what) const
+  {
+    return std::to_string(this->Count) + " " + what + (this->Count == 1 ? "" : "s") +
+      " of the data (" + what + (this->Count == 1 ? " " : "s ") + this->Ids +
+      (this->Count > static_cast<vtkIdType>(MeshProblem::MaximumIds) ? ", ..." : "") +
+      (this->Count == 1 ? ") has" : ") have");
+  }
+
+private:
+  vtkIdType Count = 0;
+  std::string Ids;
+};
+
+/// What would make VTK's locators read memory that is not theirs; empty if nothing would.
+std::string DescribeDefects(vtkDataSet* data)
+{
+  // With the least number of points that such a cell has.
+  std::vector<std::pair<vtkCellArray*, vtkIdType>> arrays;
+  if (auto* mesh = vtkPolyData::SafeDownCast(data))
+  {
+    arrays = { { mesh->GetVerts(), 1 }, { mesh->GetLines(), 2 }, { mesh->GetPolys(), 3 },
+      { mesh->GetStrips(), 3 } };
+  }
+  else if (auto* unstructured = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    arrays = { { unstructured->GetCells(), 0 } };
+  }
+  const vtkIdType numberOfPoints = data->GetNumberOfPoints();
+  Offenders cells;
+  Offenders small;
+  vtkIdType first = 0;
+  for (const auto& [array, least] : arrays)
+  {
+    if (array && !array->IsValid())
+    {
+      return "The offsets of the data's cells do not fit their points. The data is corrupt: read or "
+             "build it again.";
+    }
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; array && cell < array->GetNumberOfCells(); ++cell)
+    {
+      array->GetCellAtId(cell, ids);
+      if (std::any_of(ids->begin(), ids->end(), [numberOfPoints](vtkIdType id) {
+            return id < 0 || id >= numberOfPoints;
+          }))
+      {
+        cells.Add(first + cell);
+      }
+      else if (ids->GetNumberOfIds() < least)
+      {
+        small.Add(first + cell);
+      }
+    }
+    first += array ? array->GetNumberOfCells() : 0;
+  }
+  if (!cells.IsEmpty())
+  {
+    return cells.Tell("cell") +
+      " points that do not exist. The data is corrupt: read or build it again.";
+  }
+  if (!small.IsEmpty())
+  {
+    return small.Tell("cell") +
+      " fewer points than a line or polygon needs. Remove them (vtkCleanPolyData).";
+  }
+  Offenders points;
+  auto* pointSet = vtkPointSet::SafeDownCast(data);
+  for (vtkIdType i = 0; pointSet && i < numberOfPoints; ++i)
+  {
+    double point[3];
+    pointSet->GetPoint(i, point);
+    if (!(std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])))
+    {
+      points.Add(i);
+    }
+  }
+  if (!points.IsEmpty())
+  {
+    return points.Tell("point") +
+      " coordinates that are not finite, among which values cannot be looked for. Remove them.";
+  }
+  return "";
+}
+
+/// The same of a data set or a tree of them: the first defect found.
+std::string DescribeDefects(vtkDataObject* data)
+{
+  if (auto* dataSet = vtkDataSet::SafeDownCast(data))
+  {
+    return DescribeDefects(dataSet);
+  }
+  std::string text;
+  if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto leaf = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal() && text.empty(); leaf->GoToNextItem())
+    {
+      if (auto* dataSet = vtkDataSet::SafeDownCast(leaf->GetCurrentDataObject()))
+      {
+        text = DescribeDefects(dataSet);
+      }
+    }
+  }
+  return text;
+}
+
 bool HasVectors(vtkPointData* pointData)
 {
   return pointData->GetVectors() || pointData->GetNormals() || pointData->GetTensors();
@@ -117,7 +231,14 @@ bool HasVectors(vtkPointData* pointData)
 
 } // namespace
 
+class vtkResampleThroughHomeomorphism::Internals
+{
+public:
+  HomeomorphismCache Cache;
+};
+
 vtkResampleThroughHomeomorphism::vtkResampleThroughHomeomorphism()
+  : Internal(new Internals)
 {
   this->SetNumberOfInputPorts(4);
   // Outside points are told by the mask; errors are this filter's own.
@@ -164,7 +285,7 @@ void vtkResampleThroughHomeomorphism::SetGridData(vtkDataSet* grid)
 
 vtkIdType vtkResampleThroughHomeomorphism::GetNumberOfMeshBuilds()
 {
-  return this->Mapping->GetNumberOfMeshBuilds();
+  return this->Internal->Cache.GetNumberOfBuilds() + this->Mapping->GetNumberOfMeshBuilds();
 }
 
 int vtkResampleThroughHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
@@ -210,6 +331,7 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* outInfo = outputs->GetInformationObject(0);
+  DescribeTimesInOutput(inputs, 4, outInfo);
   if (vtkInformation* gridInfo = inputs[3]->GetInformationObject(0))
   {
     DescribeDataInOutput(gridInfo, outInfo);
@@ -219,17 +341,6 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
     std::max(1, this->SamplingDimensions[1]) - 1, 0, 0 };
   outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  // Values at each time come from the data at that time.
-  if (vtkInformation* dataInfo = inputs[2]->GetInformationObject(0))
-  {
-    for (auto* key : { Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE() })
-    {
-      if (dataInfo->Has(key))
-      {
-        outInfo->CopyEntry(dataInfo, key);
-      }
-    }
-  }
   return 1;
 }
 
@@ -278,6 +389,20 @@ vtkDataSet* vtkResampleThroughHomeomorphism::Map(
 }
 
 int vtkResampleThroughHomeomorphism::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const int success = this->Resample(request, inputs, outputs);
+  this->OwnOutsidePoints = this->NumberOfOutsidePoints;
+  return success;
+}
+
+void vtkResampleThroughHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics own{ { static_cast<double>(this->OwnOutsidePoints) }, {} };
+  this->NumberOfOutsidePoints = static_cast<vtkIdType>(Total(this, own, controller).Sums[0]);
+}
+
+int vtkResampleThroughHomeomorphism::Resample(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
@@ -343,6 +468,13 @@ int vtkResampleThroughHomeomorphism::RequestData(
       vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
   }
 
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (image && ImageSampling::CanSample(image) &&
+    !(this->CarryVectors && HasVectors(image->GetPointData())))
+  {
+    return this->ResampleImage(source, target, image, grid, output);
+  }
+
   // Where the grid's points come from.
   const vtkIdType count = output->GetNumberOfPoints();
   vtkNew<vtkPoints> origins;
@@ -376,12 +508,21 @@ int vtkResampleThroughHomeomorphism::RequestData(
   // What the data has there. A point on the data's border may be outside by rounding: it is looked for
   // again, a rounding error closer to the middle of its triangle.
   vtkDataObject* probed = data ? data : (this->Inverse ? target : source);
+  const std::string defects = DescribeDefects(probed);
+  if (!defects.empty())
+  {
+    vtkErrorMacro(<< defects);
+    this->SetErrorCode(vtkErrorCode::UserError);
+    output->Initialize();
+    return 0;
+  }
   vtkSmartPointer<vtkPointSet> found = Probe(origins, probed);
   this->UpdateProgress(0.6);
+  vtkPolyData* mesh = this->Inverse ? target : source;
+  const CellPoints cellPoints(mesh);
   FillGaps(found, probed, [&](vtkIdType i, double point[3]) {
-    vtkPolyData* mesh = this->Inverse ? target : source;
     vtkNew<vtkIdList> corners;
-    mesh->GetCellPoints(
+    cellPoints.Get(
       static_cast<vtkIdType>(triangles->GetTuple1(inside[static_cast<std::size_t>(i)])), corners);
     double middle[3] = { 0.0, 0.0, 0.0 };
     for (const vtkIdType corner : *corners)
@@ -419,12 +560,10 @@ int vtkResampleThroughHomeomorphism::RequestData(
   mask->SetName(maskName);
   mask->SetNumberOfTuples(count);
   mask->FillValue(0);
-  vtkIdType valid = 0;
   for (std::size_t i = 0; i < inside.size(); ++i)
   {
     const bool has = hasValues && hasValues->GetTuple1(static_cast<vtkIdType>(i)) != 0.0;
     mask->SetValue(inside[i], has ? 1 : 0);
-    valid += has;
   }
   vtkPointData* result = output->GetPointData();
   for (int a = 0; a < found->GetPointData()->GetNumberOfArrays(); ++a)
@@ -452,19 +591,79 @@ int vtkResampleThroughHomeomorphism::RequestData(
       }
     }
   }
-  result->AddArray(mask);
-  this->NumberOfOutsidePoints = count - valid;
+  this->Mark(grid, mask, output);
+  return 1;
+}
+
+/// The same for data that is an image, which needs no search and no intermediate data.
+int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyData* target,
+  vtkImageData* image, vtkDataSet* grid, vtkDataSet* output)
+{
+  HomeomorphismCache& cache = this->Internal->Cache;
+  const std::shared_ptr<const Homeomorphism> map =
+    cache.Get(source, target, GetOptions(this));
+  ReportProblems(this, cache.GetProblems());
+  if (!map)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    output->Initialize();
+    return 0;
+  }
+  const vtkIdType count = output->GetNumberOfPoints();
+  vtkNew<vtkUnsignedCharArray> mask;
+  mask->SetName(maskName);
+  mask->SetNumberOfTuples(count);
+  mask->FillValue(0);
+  const ImageSampling sampling(image, output->GetPointData(), count);
+  const Side from = this->Inverse ? Side::Source : Side::Target;
+  auto* pointSet = vtkPointSet::SafeDownCast(output);
+  vtkPoints* points = pointSet ? pointSet->GetPoints() : nullptr;
+  const double reach = map->GetReach(
+    from, this->Tolerance, PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
+  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
+    grid ? grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) : nullptr);
+  ghosts = ghosts && ghosts->GetNumberOfValues() == count ? ghosts : nullptr;
+  static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
+  RunInBlocks(this, count, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
+    LocationHint hint;
+    PointBlock block;
+    for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
+    {
+      block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+      ReadPoints(output, first, block);
+      map->LocateBlock(from, block, reach, hint);
+      map->MapBlock(from, block);
+      bool isInside[PointBlock::Capacity];
+      for (int i = 0; i < block.Count; ++i)
+      {
+        isInside[i] = block.Triangles[i] >= 0 &&
+          !(ghosts && (ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT));
+      }
+      sampling.Sample(block.Points, isInside, block.Count, first, mask);
+    }
+  });
+  this->Mark(grid, mask, output);
+  return 1;
+}
+
+/// Adds the mask and what follows from it.
+void vtkResampleThroughHomeomorphism::Mark(
+  vtkDataSet* grid, vtkUnsignedCharArray* mask, vtkDataSet* output)
+{
+  output->GetPointData()->AddArray(mask);
+  this->NumberOfOutsidePoints = CountOutside(grid ? grid : output, mask);
   if (grid)
   {
     PassGhosts(grid->GetPointData(), output->GetPointData());
     PassGhosts(grid->GetCellData(), output->GetCellData());
   }
-  if (this->BlankOutside && valid < count)
+  const unsigned char* valid = mask->GetPointer(0);
+  if (this->BlankOutside &&
+    std::find(valid, valid + mask->GetNumberOfTuples(), 0) != valid + mask->GetNumberOfTuples())
   {
     HidePoints(output, mask, output);
   }
   this->UpdateProgress(1.0);
-  return 1;
 }
 
 void vtkResampleThroughHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)

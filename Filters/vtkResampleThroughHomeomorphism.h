@@ -21,6 +21,9 @@
  * others 0, and points and the cells that use them are blanked (vtkGhostType); see BlankOutside.
  * The grid's own arrays are not passed, except vtkGhostType.
  *
+ * Values of an image are interpolated linearly in each direction, others as VTK's cells do. An image
+ * without active vectors, normals or tensors is resampled many times faster than other data.
+ *
  * Active vectors, normals and tensors are carried by the Jacobian, as vtkDifferentiableHomeomorphism does;
  * see CarryVectors.
  *
@@ -39,8 +42,13 @@
 #include "vtkFiltersHomeomorphismModule.h" // for the export macro
 #include "vtkNew.h"                        // for the filter that maps
 
+#include <memory> // for its internals
+
 class vtkDifferentiableHomeomorphism;
+class vtkImageData;
+class vtkMultiProcessController;
 class vtkPolyData;
+class vtkUnsignedCharArray;
 
 class VTKFILTERSHOMEOMORPHISM_EXPORT vtkResampleThroughHomeomorphism : public vtkDataSetAlgorithm
 {
@@ -140,9 +148,17 @@ public:
   vtkBooleanMacro(BlankOutside, bool);
   ///@}
 
-  /// Number of points of the grid that the last execution found without values; -1 if the meshes or the
-  /// data were refused, in which case GetErrorCode() is not 0 either.
+  /// Number of points of the grid, or of the piece of it that was asked for, that the last execution found
+  /// without values, those excepted that vtkGhostType says are another piece's; -1 if the meshes or the
+  /// data were refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
+
+  /// Makes the numbers that this filter counts (NumberOfOutsidePoints) the same in all processes that
+  /// have pieces of the data: the sum, -1 if one of the processes has -1. Each process of @a controller (null: the global controller; if there is
+  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
+  /// error: executing the filter never waits for other processes, this does. They are one process's own
+  /// again after the next execution. In ParaView the plugin does it.
+  void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// How often the meshes have been read and validated since this filter was made.
   vtkIdType GetNumberOfMeshBuilds();
@@ -175,13 +191,25 @@ protected:
   vtkIdType NumberOfOutsidePoints = 0;
 
 private:
+  class Internals;
+
+  int ResampleImage(vtkPolyData* source, vtkPolyData* target, vtkImageData* image, vtkDataSet* grid,
+    vtkDataSet* output);
+  void Mark(vtkDataSet* grid, vtkUnsignedCharArray* mask, vtkDataSet* output);
+
   vtkResampleThroughHomeomorphism(const vtkResampleThroughHomeomorphism&) = delete;
   void operator=(const vtkResampleThroughHomeomorphism&) = delete;
+
+  int Resample(vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
 
   /// Lets the filter that maps map the data in a direction. Returns null, and reports, if it is refused.
   vtkDataSet* Map(vtkDataSet* data, bool inverse, bool carryVectors);
 
   vtkNew<vtkDifferentiableHomeomorphism> Mapping;
+  std::unique_ptr<Internals> Internal;
+  /// In this process alone.
+  vtkIdType OwnOutsidePoints = 0;
 };
 
 #endif

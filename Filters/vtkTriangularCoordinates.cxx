@@ -5,6 +5,7 @@
 
 #include "CoordinateLines.h"
 #include "FilterSupport.h"
+#include "ProcessStatistics.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -32,6 +33,7 @@ class vtkTriangularCoordinates::Internals
 {
 public:
   HomeomorphismCache Cache;
+  ProcessStatistics Own{ { 0.0 }, { 0.0 } };
 };
 
 namespace
@@ -75,15 +77,7 @@ public:
     this->Mask->SetValue(point, 1);
   }
 
-  vtkIdType CountOutside() const
-  {
-    vtkIdType inside = 0;
-    for (vtkIdType i = 0; i < this->Mask->GetNumberOfValues(); ++i)
-    {
-      inside += this->Mask->GetValue(i);
-    }
-    return this->Mask->GetNumberOfValues() - inside;
-  }
+  vtkUnsignedCharArray* GetMask() const { return this->Mask; }
 
   void AddTo(vtkPointData* pointData) const
   {
@@ -234,6 +228,7 @@ int vtkTriangularCoordinates::RequestInformation(
 {
   DescribeDataInOutput(
     inputs[1]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
   return 1;
 }
 
@@ -249,6 +244,22 @@ int vtkTriangularCoordinates::RequestUpdateExtent(
 }
 
 int vtkTriangularCoordinates::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const int success = this->AttachCoordinates(request, inputs, outputs);
+  this->Internal->Own = { { static_cast<double>(this->NumberOfOutsidePoints) },
+    { static_cast<double>(this->NumberOfDiscordantTriangles) } };
+  return success;
+}
+
+void vtkTriangularCoordinates::ReduceStatistics(vtkMultiProcessController* controller)
+{
+  const ProcessStatistics total = Total(this, this->Internal->Own, controller);
+  this->NumberOfOutsidePoints = static_cast<vtkIdType>(total.Sums[0]);
+  this->NumberOfDiscordantTriangles = static_cast<vtkIdType>(total.Largest[0]);
+}
+
+int vtkTriangularCoordinates::AttachCoordinates(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* triangulation = vtkPolyData::GetData(inputs[0]);
@@ -308,7 +319,7 @@ int vtkTriangularCoordinates::RequestData(
       }
     });
     coordinates.AddTo(result->GetPointData());
-    this->NumberOfOutsidePoints += coordinates.CountOutside();
+    this->NumberOfOutsidePoints += CountOutside(input, coordinates.GetMask());
   };
 
   if (!isFirstPiece && (!data || SharesUpstreamWithPortsBefore(this, 1)))

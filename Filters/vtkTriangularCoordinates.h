@@ -64,6 +64,7 @@
 #include <memory> // for the internals
 
 class vtkDataSet;
+class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKFILTERSHOMEOMORPHISM_EXPORT vtkTriangularCoordinates : public vtkDataObjectAlgorithm
@@ -173,12 +174,22 @@ public:
   vtkGetMacro(LineResolution, int);
   ///@}
 
-  /// Number of points of the data that the last execution found outside; -1 if the triangulation was
-  /// refused, in which case GetErrorCode() is not 0 either.
+  /// Number of points of the data, or of the piece of it that was asked for, that the last execution found
+  /// outside, without those that vtkGhostType says are another piece's; -1 if the triangulation was
+  /// refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
   /// Number of triangles that the last execution found discordant, masked ones excepted.
   vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
+
+  /// Makes the numbers that this filter counts (NumberOfOutsidePoints and
+  /// NumberOfDiscordantTriangles) the same in all processes that
+  /// have pieces of the data: counts of points become sums, -1 if one of the processes has -1, numbers
+  /// of triangles the largest. Each process of @a controller (null: the global controller; if there is
+  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
+  /// error: executing the filter never waits for other processes, this does. They are one process's own
+  /// again after the next execution. In ParaView the plugin does it.
+  void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// The polylines and the triangulation of the last execution.
   vtkPolyData* GetLines();
@@ -214,6 +225,9 @@ protected:
 private:
   vtkTriangularCoordinates(const vtkTriangularCoordinates&) = delete;
   void operator=(const vtkTriangularCoordinates&) = delete;
+
+  int AttachCoordinates(vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
 
   class Internals;
   std::unique_ptr<Internals> Internal;

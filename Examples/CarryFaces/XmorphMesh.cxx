@@ -13,6 +13,14 @@
 #include <sstream>
 #include <stdexcept>
 
+namespace
+{
+
+/// The most columns or rows of a mesh: far more than anybody lays by hand, and their product is an int.
+constexpr int MaximumSide = 10000;
+
+} // namespace
+
 XmorphMesh ReadXmorphMesh(const std::string& fileName)
 {
   std::ifstream file(fileName);
@@ -20,6 +28,11 @@ XmorphMesh ReadXmorphMesh(const std::string& fileName)
   {
     throw std::runtime_error("Cannot open " + fileName + ".");
   }
+  return ReadXmorphMesh(file, fileName);
+}
+
+XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName)
+{
   int number = 0;
   const auto nextLine = [&]() {
     std::string line;
@@ -39,9 +52,10 @@ XmorphMesh ReadXmorphMesh(const std::string& fileName)
     fail("\"M2\", the first line of an xmorph mesh");
   }
   XmorphMesh mesh;
-  if (!(nextLine() >> mesh.Columns >> mesh.Rows) || mesh.Columns < 2 || mesh.Rows < 2)
+  if (!(nextLine() >> mesh.Columns >> mesh.Rows) || mesh.Columns < 2 || mesh.Rows < 2 ||
+    mesh.Columns > MaximumSide || mesh.Rows > MaximumSide)
   {
-    fail("the numbers of columns and rows, at least 2 each");
+    fail("the numbers of columns and rows, 2 to " + std::to_string(MaximumSide));
   }
   for (int i = 0; i < mesh.Columns * mesh.Rows; ++i)
   {
@@ -63,6 +77,10 @@ void FitToPicture(XmorphMesh& mesh, int width, int height)
   {
     right = std::max(right, point[0]);
     bottom = std::max(bottom, point[1]);
+  }
+  if (!(right > 0.0 && bottom > 0.0))
+  {
+    throw std::runtime_error("The mesh has no extent: all of its points are at the picture's top left.");
   }
   for (auto& point : mesh.Points)
   {

@@ -11,6 +11,7 @@
 #include "vtkSmartPointer.h"
 
 #include <array>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,12 @@ struct XmorphMesh
 /// point). Throws std::runtime_error, naming file and line, if it is not one.
 XmorphMesh ReadXmorphMesh(const std::string& fileName);
 
+/// The same from an open file; the name is for messages.
+XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName);
+
 /// Moves the points from the mesh's own units, which end at its last column and row, to the pixels of
-/// a picture of this size as VTK counts them, y upwards.
+/// a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh has no
+/// extent.
 void FitToPicture(XmorphMesh& mesh, int width, int height);
 
 /// The two meshes cut into the same triangles. Each quadrilateral is cut along the diagonal that leaves

@@ -112,6 +112,10 @@ def show_system(system, source, target, grid, view):
     edges = DifferentiableHomeomorphism(registrationName="Edges " + system, Data=measured, **settings)
     display = Show(edges, view)
     display.LineWidth = 6.0
+    # Plain wide lines may have gaps and be thinner where they are oblique. Not shaded, as the scale.
+    display.RenderLinesAsTubes = 1
+    display.Ambient = 1.0
+    display.Diffuse = 0.0
     colors = color_by_jump(display)
 
     title = Text(registrationName="Title " + system, Text=system)

@@ -4,6 +4,7 @@
 #include "ContourChart.h"
 
 #include "RootFinding.h"
+#include "Vectorize.h"
 
 #include <algorithm>
 #include <limits>
@@ -63,50 +64,253 @@ double SineMinusCosineRatio(double x)
   return x / 3.0 * sum;
 }
 
-/// The number s of the contour that meets the edge at E(s) = b @a proportion.
-double ContourEndingAt(double h, double b, double proportion)
+/// sqrt(a^2 + b^2), safe from underflow and overflow without a branch.
+HOMEOMORPHISM_ALWAYS_INLINE double Hypotenuse(double a, double b)
 {
-  const double flatness = 2.0 * b / h;
-  return RootOfIncreasing(
-    [=](double s) -> ValueAndSlope {
-      // E / b and its derivative, with R / (h (1 + s)) = sqrt(1 + tan^2 phi).
-      const double slope = flatness * s / (1.0 + s);
-      const double secant = std::sqrt(1.0 + slope * slope);
-      const double share = (1.0 - s) / ((1.0 + s) * (1.0 + secant));
-      const double secantDerivative = slope / secant * flatness / ((1.0 + s) * (1.0 + s));
-      const double shareDerivative = -2.0 / ((1.0 + s) * (1.0 + s) * (1.0 + secant)) -
-        share / (1.0 + secant) * secantDerivative;
-      return { s * (1.0 + share) - proportion, 1.0 + share + s * shareDerivative };
-    },
-    // 0 <= share <= 1 / 2.
-    proportion / 1.5, proportion, proportion / 1.25);
+  const double larger = a > b ? a : b;
+  double scale = larger > 0x1p-300 ? 1.0 : 0x1p600;
+  scale = larger < 0x1p300 ? scale : 0x1p-600;
+  double unscale = larger > 0x1p-300 ? 1.0 : 0x1p-600;
+  unscale = larger < 0x1p300 ? unscale : 0x1p600;
+  const double x = scale * a;
+  const double y = scale * b;
+  return unscale * std::sqrt(x * x + y * y);
 }
 
-/// The number s of the contour whose arc passes through (x, y): the only root, in
+/// What of a contour depends on its number s alone, in one half of an edge. The half is seen in the
+/// frame with the foot of the center segment at the origin, the centre at (0, h) and the corner at
+/// (b, 0); its contours are numbered by s from 0, the center segment, to 1, the segment from the
+/// centre to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is cheap
+/// and finds s.
+struct ArcOfHalf
+{
+  /// Twice the length of the straight piece: R = sqrt(h^2 (1 + s)^2 + 4 b^2 s^2).
+  double R;
+  /// 1 / r = 4 b s / (h (1 - s) R), the curvature of the arc; infinite at the corner.
+  double Curvature;
+  /// E = b s (1 + h (1 - s) / (R + h (1 + s))), where the contour meets the edge.
+  double EdgePoint;
+
+  HOMEOMORPHISM_ALWAYS_INLINE ArcOfHalf(double h, double b, double s)
+    : R(Hypotenuse(h * (1.0 + s), 2.0 * b * s))
+    , Curvature(4.0 * b * s / (h * (1.0 - s) * R))
+    , EdgePoint(b * s * (1.0 + h * (1.0 - s) / (R + h * (1.0 + s))))
+  {
+  }
+};
+
+/// The contour's lengths besides.
+struct ContourOfHalf : ArcOfHalf
+{
+  /// tan(phi) = 2 b s / (h (1 + s)), phi being the angle by which the arc turns.
+  double Slope;
+  /// Length of the arc, r phi = (R / 2) ((1 - s) / (1 + s)) atan(tan phi) / tan phi.
+  double ArcLength;
+  /// L = R / 2 + r phi, the length of the contour.
+  double Length;
+
+  ContourOfHalf(double h, double b, double s);
+};
+
+/// Derivatives of an arc's numbers with respect to s.
+struct ArcOfHalfDerivative
+{
+  double R;
+  double Curvature; ///< infinite at the corner
+  double EdgePoint; ///< between b / 2 and 3 b / 2
+
+  HOMEOMORPHISM_ALWAYS_INLINE ArcOfHalfDerivative(
+    double h, double b, double s, const ArcOfHalf& arc)
+  {
+    const double overR = 1.0 / arc.R;
+    const double overRest = 1.0 / (1.0 - s);
+    this->R = h * (h * overR) * (1.0 + s) + 4.0 * b * (b * overR) * s;
+    this->Curvature = 4.0 * b * overR * overRest * (overRest - s * this->R * overR) / h;
+    const double overSum = 1.0 / (arc.R + h * (1.0 + s));
+    const double extra = h * (1.0 - s) * overSum;
+    this->EdgePoint = b * (1.0 + extra) - b * s * (h * overSum + extra * (this->R + h) * overSum);
+  }
+};
+
+/// Derivatives of a contour's numbers with respect to s.
+struct ContourOfHalfDerivative : ArcOfHalfDerivative
+{
+  double Angle;  ///< d phi / d s
+  double Radius; ///< d r / d s; infinite at the center segment
+  double Length; ///< d L / d s
+
+  ContourOfHalfDerivative(double h, double b, double s, const ContourOfHalf& contour);
+};
+
+/// The number s of the contour that meets the edge at E(s) = b @a proportion, for some at once.
+template <int Width>
+struct EndingEquation : RootLanes<Width, true>
+{
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double proportion)
+  {
+    // 0 <= share <= 1 / 2 below.
+    this->Start(lane, proportion / 1.5, proportion, proportion / 1.25);
+  }
+
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double flatness, double proportion)
+  {
+    // E / b and its derivative, with R / (h (1 + s)) = sqrt(1 + tan^2 phi).
+    const double s = this->Root[lane];
+    const double over = 1.0 / (1.0 + s);
+    const double slope = flatness * s * over;
+    const double secant = std::sqrt(1.0 + slope * slope);
+    const double overSecant = 1.0 / (1.0 + secant);
+    const double share = (1.0 - s) * over * overSecant;
+    const double secantDerivative = slope / secant * flatness * over * over;
+    const double shareDerivative = -2.0 * over * over * overSecant - share * overSecant * secantDerivative;
+    this->Step(lane, s * (1.0 + share) - proportion, 1.0 + share + s * shareDerivative, 0x1p-32);
+  }
+};
+
+/// The number s of the contour whose arc passes through (x, y), for some at once: the only root, in
 /// [0, 1 - 2 y / h], of E(s) - y^2 / (r + sqrt(r^2 - y^2)) - x. This is the smallest root of the
 /// publication's cubic; the cubic's larger root belongs to the other half of the circle.
-double ContourThrough(double h, double b, double x, double y)
+template <int Width>
+struct ThroughEquation : RootLanes<Width, true>
 {
-  return RootOfIncreasing(
-    [=](double s) -> ValueAndSlope {
-      const ArcOfHalf arc(h, b, s);
-      const ArcOfHalfDerivative derivative(h, b, s, arc);
-      const double sine = std::min(1.0, y * arc.Curvature);
-      const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
-      const double slope = derivative.EdgePoint -
-        (y > 0.0 ? derivative.Curvature * y * y / (cosine * (1.0 + cosine)) : 0.0);
-      return { arc.EdgePoint - (y > 0.0 ? y * sine / (1.0 + cosine) : 0.0) - x, slope };
-    },
-    0.0, std::max(0.0, 1.0 - 2.0 * y / h), x / b);
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double h, double b, double x, double y)
+  {
+    const double last = 1.0 - 2.0 * y / h;
+    this->Start(lane, 0.0, last > 0.0 ? last : 0.0, x / b);
+  }
+
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double h, double b, double x, double y)
+  {
+    const double s = this->Root[lane];
+    const ArcOfHalf arc(h, b, s);
+    const ArcOfHalfDerivative derivative(h, b, s, arc);
+    double sine = y * arc.Curvature;
+    sine = sine < 1.0 ? sine : 1.0;
+    const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+    const double overOne = 1.0 / (1.0 + cosine);
+    // On the edge, where the curvature at the corner is infinite, there is no inset.
+    const double inset = y > 0.0 ? y * sine * overOne : 0.0;
+    const double insetDerivative = y > 0.0 ? derivative.Curvature * y * y * overOne / cosine : 0.0;
+    this->Step(lane, arc.EdgePoint - inset - x, derivative.EdgePoint - insetDerivative, 0x1p-50);
+  }
+};
+
+/// Equations side by side; what is beyond the last of them is filled up to whole vectors.
+struct ThroughLanes
+{
+  static constexpr int Capacity = 256;
+  double H[Capacity];
+  double B[Capacity];
+  double X[Capacity];
+  double Y[Capacity];
+  double S[Capacity];
+};
+
+struct EndingLanes
+{
+  static constexpr int Capacity = 256;
+  double Flatness[Capacity];
+  double Proportion[Capacity];
+  double S[Capacity];
+};
+
+/// How many are solved at once.
+constexpr int GroupWidth = 16;
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void SolveThrough(ThroughLanes& lanes, int count)
+{
+  for (int first = 0; first < count; first += GroupWidth)
+  {
+    for (int i = count; i < first + GroupWidth; ++i)
+    {
+      lanes.H[i] = lanes.B[i] = 1.0;
+      lanes.X[i] = lanes.Y[i] = 0.0;
+    }
+    const double* h = lanes.H + first;
+    const double* b = lanes.B + first;
+    const double* x = lanes.X + first;
+    const double* y = lanes.Y + first;
+    ThroughEquation<GroupWidth> equation;
+    HOMEOMORPHISM_LANES
+    for (int i = 0; i < GroupWidth; ++i)
+    {
+      equation.Set(i, h[i], b[i], x[i], y[i]);
+    }
+    for (int step = 0; !equation.IsDone(step); ++step)
+    {
+      HOMEOMORPHISM_LANES
+      for (int i = 0; i < GroupWidth; ++i)
+      {
+        equation.Evaluate(i, h[i], b[i], x[i], y[i]);
+      }
+    }
+    for (int i = 0; i < GroupWidth; ++i)
+    {
+      lanes.S[first + i] = equation.Root[i];
+    }
+  }
 }
 
-} // namespace
-
-ArcOfHalf::ArcOfHalf(double h, double b, double s)
-  : R(std::hypot(h * (1.0 + s), 2.0 * b * s))
-  , Curvature(4.0 * b * s / (h * (1.0 - s) * R))
-  , EdgePoint(b * s * (1.0 + h * (1.0 - s) / (R + h * (1.0 + s))))
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void SolveEnding(EndingLanes& lanes, int count)
 {
+  for (int first = 0; first < count; first += GroupWidth)
+  {
+    for (int i = count; i < first + GroupWidth; ++i)
+    {
+      lanes.Flatness[i] = 1.0;
+      lanes.Proportion[i] = 0.0;
+    }
+    const double* flatness = lanes.Flatness + first;
+    const double* proportion = lanes.Proportion + first;
+    EndingEquation<GroupWidth> equation;
+    HOMEOMORPHISM_LANES
+    for (int i = 0; i < GroupWidth; ++i)
+    {
+      equation.Set(i, proportion[i]);
+    }
+    for (int step = 0; !equation.IsDone(step); ++step)
+    {
+      HOMEOMORPHISM_LANES
+      for (int i = 0; i < GroupWidth; ++i)
+      {
+        equation.Evaluate(i, flatness[i], proportion[i]);
+      }
+    }
+    for (int i = 0; i < GroupWidth; ++i)
+    {
+      lanes.S[first + i] = equation.Root[i];
+    }
+  }
+}
+
+/// 2 b / h, bounded so that its square is a number; beyond that nothing depends on it.
+double Flatness(double h, double b)
+{
+  return std::min(2.0 * b / h, 0x1p500);
+}
+
+double ContourEndingAt(double flatness, double proportion)
+{
+  EndingEquation<1> equation;
+  equation.Set(0, proportion);
+  for (int step = 0; !equation.IsDone(step); ++step)
+  {
+    equation.Evaluate(0, flatness, proportion);
+  }
+  return equation.Root[0];
+}
+
+double ContourThrough(double h, double b, double x, double y)
+{
+  ThroughEquation<1> equation;
+  equation.Set(0, h, b, x, y);
+  for (int step = 0; !equation.IsDone(step); ++step)
+  {
+    equation.Evaluate(0, h, b, x, y);
+  }
+  return equation.Root[0];
 }
 
 ContourOfHalf::ContourOfHalf(double h, double b, double s)
@@ -115,15 +319,6 @@ ContourOfHalf::ContourOfHalf(double h, double b, double s)
   , ArcLength(0.5 * R * (1.0 - s) / (1.0 + s) * ArcTangentRatio(Slope))
   , Length(0.5 * R + ArcLength)
 {
-}
-
-ArcOfHalfDerivative::ArcOfHalfDerivative(double h, double b, double s, const ArcOfHalf& arc)
-  : R((h * (h / arc.R) * (1.0 + s)) + 4.0 * b * (b / arc.R) * s)
-  , Curvature(4.0 * b / (h * (1.0 - s) * arc.R) * (1.0 / (1.0 - s) - s * R / arc.R))
-{
-  const double sum = arc.R + h * (1.0 + s);
-  const double extra = h * (1.0 - s) / sum;
-  this->EdgePoint = b * (1.0 + extra) - b * s * (h / sum + extra * (this->R + h) / sum);
 }
 
 ContourOfHalfDerivative::ContourOfHalfDerivative(
@@ -142,6 +337,8 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
       (shareDerivative * ratio +
         share * ArcTangentRatioDerivative(contour.Slope) * slopeDerivative);
 }
+
+} // namespace
 
 ContourChart::ContourChart(
   const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
@@ -209,7 +406,7 @@ ContourChart::Half ContourChart::HalfAt(const Edge& edge, double p) const
   return half;
 }
 
-ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) const
+ContourChart::Search ContourChart::StartSearch(const Vector2& pointInFrame) const
 {
   const Vector2 point = (1.0 / this->Unit) * pointInFrame;
   const Barycentric l = this->Shape.ToBarycentric(point);
@@ -226,38 +423,53 @@ ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) c
   const bool inside = l[0] > 0.0 && l[1] > 0.0 && l[2] > 0.0;
   const Vector2 fromStart = (inside ? point : this->Shape.FromBarycentric(l)) - edge.Start;
   const double along = Dot(fromStart, edge.Tangent);
-  const double y = std::max(0.0, Cross(edge.Tangent, fromStart));
   const Half half = this->HalfAt(edge, along / edge.Length);
-  const double x = half.EdgePoint;
-  const double h = edge.CenterHeight;
-  const double b = half.Length;
-
-  double s = 0.0;
-  Reference coordinates;
-  coordinates.Edge = k + 1;
-  if (2.0 * y * b >= h * (b - x))
+  Search search;
+  search.EdgeLabel = k + 1;
+  search.Side = half.Side;
+  search.Height = edge.CenterHeight;
+  search.Length = half.Length;
+  search.X = half.EdgePoint;
+  search.Y = std::max(0.0, Cross(edge.Tangent, fromStart));
+  search.S = 0.0;
+  const double h = search.Height;
+  search.IsStraight = 2.0 * search.Y * search.Length >= h * (search.Length - search.X);
+  if (search.IsStraight)
   {
-    const double below = std::max(0.0, h - y);
-    const double distance = std::hypot(x, below);
-    if (distance == 0.0)
+    const double below = std::max(0.0, h - search.Y);
+    if (search.X == 0.0 && below == 0.0)
     {
-      return Reference{};
+      search.EdgeLabel = 0;
     }
-    const double denominator = 2.0 * b * below - x * h;
-    s = denominator > 0.0 ? Clamp01(x * h / denominator) : 1.0;
-    const ContourOfHalf contour(h, b, s);
+    const double denominator = 2.0 * search.Length * below - search.X * h;
+    search.S = denominator > 0.0 ? Clamp01(search.X * h / denominator) : 1.0;
+  }
+  return search;
+}
+
+ContourChart::Reference ContourChart::EndSearch(const Search& search) const
+{
+  if (search.EdgeLabel == 0)
+  {
+    return Reference{};
+  }
+  const Edge& edge = this->Edges[search.EdgeLabel - 1];
+  const ContourOfHalf contour(search.Height, search.Length, search.S);
+  const double y = search.Y;
+  Reference coordinates;
+  coordinates.Edge = search.EdgeLabel;
+  coordinates.EdgeParameter =
+    Clamp01((edge.FootDistance + search.Side * contour.EdgePoint) / edge.Length);
+  if (search.IsStraight)
+  {
+    const double distance = Hypotenuse(search.X, std::max(0.0, search.Height - y));
     coordinates.ContourParameter = Clamp01(distance / contour.Length);
-    coordinates.EdgeParameter =
-      Clamp01((edge.FootDistance + half.Side * contour.EdgePoint) / edge.Length);
     return coordinates;
   }
-
-  s = Clamp01(ContourThrough(h, b, x, y));
-  const ContourOfHalf contour(h, b, s);
   // The arc that remains between the point and the edge, r psi, with sin psi = y / r. Near a right
   // angle the sine says little about the angle, so the cosine helps.
   double remaining = 0.0;
-  if (y > 0.0 && s < 1.0)
+  if (y > 0.0 && search.S < 1.0)
   {
     const double sine = std::min(1.0, y * contour.Curvature);
     const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
@@ -266,17 +478,23 @@ ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) c
     remaining = sine > 0.0 ? y * angle / sine : y;
   }
   coordinates.ContourParameter = Clamp01(1.0 - remaining / contour.Length);
-  coordinates.EdgeParameter =
-    Clamp01((edge.FootDistance + half.Side * contour.EdgePoint) / edge.Length);
   return coordinates;
 }
 
-Vector2 ContourChart::ToPoint(const Reference& coordinates) const
+ContourChart::Ending ContourChart::EndingOf(const Reference& coordinates) const
 {
   const Edge& edge = this->Edges[coordinates.Edge - 1];
-  const Half half = this->HalfAt(edge, coordinates.EdgeParameter);
+  Ending ending;
+  ending.AtEdge = this->HalfAt(edge, coordinates.EdgeParameter);
+  ending.Flatness = Flatness(edge.CenterHeight, ending.AtEdge.Length);
+  ending.Proportion = Clamp01(ending.AtEdge.EdgePoint / ending.AtEdge.Length);
+  return ending;
+}
+
+Vector2 ContourChart::PointOn(const Reference& coordinates, const Half& half, double s) const
+{
+  const Edge& edge = this->Edges[coordinates.Edge - 1];
   const double h = edge.CenterHeight;
-  const double s = ContourEndingAt(h, half.Length, Clamp01(half.EdgePoint / half.Length));
   const ContourOfHalf contour(h, half.Length, s);
   const double remaining = (1.0 - coordinates.ContourParameter) * contour.Length;
   double x = 0.0;
@@ -300,6 +518,65 @@ Vector2 ContourChart::ToPoint(const Reference& coordinates) const
       edge.Start.y + along * edge.Tangent.y + y * edge.Tangent.x };
 }
 
+ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) const
+{
+  Search search = this->StartSearch(pointInFrame);
+  if (!search.IsStraight)
+  {
+    search.S = Clamp01(ContourThrough(search.Height, search.Length, search.X, search.Y));
+  }
+  return this->EndSearch(search);
+}
+
+Vector2 ContourChart::ToPoint(const Reference& coordinates) const
+{
+  const Ending ending = this->EndingOf(coordinates);
+  return this->PointOn(
+    coordinates, ending.AtEdge, ContourEndingAt(ending.Flatness, ending.Proportion));
+}
+
+void ContourChart::MapPoints(const ContourChart* const* from, const ContourChart* const* to,
+  Vector2* points, int count)
+{
+  constexpr int capacity = ThroughLanes::Capacity;
+  Search searches[capacity];
+  ThroughLanes through;
+  int searching = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    searches[i] = from[i]->StartSearch(points[i]);
+    if (!searches[i].IsStraight)
+    {
+      through.H[searching] = searches[i].Height;
+      through.B[searching] = searches[i].Length;
+      through.X[searching] = searches[i].X;
+      through.Y[searching] = searches[i].Y;
+      ++searching;
+    }
+  }
+  SolveThrough(through, searching);
+  Reference coordinates[capacity];
+  Ending endings[capacity];
+  EndingLanes ends;
+  int found = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    if (!searches[i].IsStraight)
+    {
+      searches[i].S = Clamp01(through.S[found++]);
+    }
+    coordinates[i] = from[i]->EndSearch(searches[i]);
+    endings[i] = to[i]->EndingOf(coordinates[i]);
+    ends.Flatness[i] = endings[i].Flatness;
+    ends.Proportion[i] = endings[i].Proportion;
+  }
+  SolveEnding(ends, count);
+  for (int i = 0; i < count; ++i)
+  {
+    points[i] = to[i]->PointOn(coordinates[i], endings[i].AtEdge, ends.S[i]);
+  }
+}
+
 /// The images of the two unit directions of the reference.
 Matrix2 ContourChart::Columns(const Reference& coordinates) const
 {
@@ -308,7 +585,7 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
   const double h = edge.CenterHeight;
   const double b = half.Length;
   const double c = coordinates.ContourParameter;
-  const double s = ContourEndingAt(h, b, Clamp01(half.EdgePoint / b));
+  const double s = ContourEndingAt(Flatness(h, b), Clamp01(half.EdgePoint / b));
   const ContourOfHalf contour(h, b, s);
   const ContourOfHalfDerivative derivative(h, b, s, contour);
   const double remaining = (1.0 - c) * contour.Length;
@@ -374,7 +651,7 @@ double ContourChart::ContourLength(int edgeLabel, double p) const
   const Edge& edge = this->Edges[edgeLabel - 1];
   const Half half = this->HalfAt(edge, p);
   const double s =
-    ContourEndingAt(edge.CenterHeight, half.Length, Clamp01(half.EdgePoint / half.Length));
+    ContourEndingAt(Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
   return this->Unit * ContourOfHalf(edge.CenterHeight, half.Length, s).Length;
 }
 
@@ -383,7 +660,7 @@ double ContourChart::ContourLengthDerivative(int edgeLabel, double p) const
   const Edge& edge = this->Edges[edgeLabel - 1];
   const Half half = this->HalfAt(edge, p);
   const double s =
-    ContourEndingAt(edge.CenterHeight, half.Length, Clamp01(half.EdgePoint / half.Length));
+    ContourEndingAt(Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
   const ContourOfHalf contour(edge.CenterHeight, half.Length, s);
   const ContourOfHalfDerivative derivative(edge.CenterHeight, half.Length, s, contour);
   return this->Unit * derivative.Length * half.Side * edge.Length / derivative.EdgePoint;

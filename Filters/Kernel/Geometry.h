@@ -7,8 +7,12 @@
 #ifndef homeomorphism_Geometry_h
 #define homeomorphism_Geometry_h
 
+#include "Vectorize.h"
+
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace homeomorphism
@@ -62,7 +66,7 @@ inline double Cross(const Vector2& a, const Vector2& b)
 /// a d - b c with a relative error of at most 1.5 ulp, however close the two products are (Kahan;
 /// Jeannerod, Louvet and Muller 2013). Slow where the processor has no fused multiply-add, so for
 /// construction rather than for every point.
-inline double DifferenceOfProducts(double a, double d, double b, double c)
+HOMEOMORPHISM_ALWAYS_INLINE double DifferenceOfProducts(double a, double d, double b, double c)
 {
   const double bc = b * c;
   const double error = std::fma(-b, c, bc);
@@ -72,12 +76,32 @@ inline double DifferenceOfProducts(double a, double d, double b, double c)
 /// The power of two next to a positive number, 1 for others; it and its reciprocal are normal numbers.
 inline double PowerOfTwoNear(double x)
 {
-  if (!(x > 0.0 && std::isfinite(x)))
+  constexpr double least = 0x1p-1021;
+  constexpr double greatest = 0x1p1021;
+  if (!(x > 0.0 && x <= std::numeric_limits<double>::max()))
   {
     return 1.0;
   }
-  const int exponent = std::ilogb(x);
-  return std::ldexp(1.0, exponent < -1021 ? -1021 : (exponent > 1021 ? 1021 : exponent));
+  if (!(x > least && x < greatest))
+  {
+    return x < 1.0 ? least : greatest;
+  }
+  // The number without its fraction: in a double, the bits after the sign and the exponent.
+  std::uint64_t bits;
+  std::memcpy(&bits, &x, sizeof(bits));
+  bits &= std::uint64_t(0xfff) << 52;
+  double power;
+  std::memcpy(&power, &bits, sizeof(power));
+  return power;
+}
+
+/// The greatest power of two by which both components of a vector are at least 1 or less, see
+/// PowerOfTwoNear.
+inline double PowerOfTwoNear(const Vector2& v)
+{
+  const double x = std::abs(v.x);
+  const double y = std::abs(v.y);
+  return PowerOfTwoNear(x > y ? x : y);
 }
 
 /// Barycentric coordinates of a point of a triangle (they sum to 1), or the components of a vector
@@ -190,16 +214,25 @@ struct EdgeView
 /// The view from an edge of the plane, from @a start to @a end, of the opposite corner. Differences of
 /// nearby coordinates being exact, this is accurate to a few ulp of each number, even for the short
 /// edge of a needle, where the triangle's own frame knows only the corners' places.
-inline EdgeView ViewFromEdge(const Vector2& start, const Vector2& end, const Vector2& opposite)
+HOMEOMORPHISM_ALWAYS_INLINE EdgeView ViewFromEdge(
+  const Vector2& start, const Vector2& end, const Vector2& opposite)
 {
   // A power of two keeps the products from underflow without rounding anything.
-  const double scale = PowerOfTwoNear(std::hypot(end.x - start.x, end.y - start.y));
+  const double scale = PowerOfTwoNear(end - start);
   const Vector2 edge = (1.0 / scale) * (end - start);
   const Vector2 other = (1.0 / scale) * (opposite - start);
-  const double length = std::hypot(edge.x, edge.y);
+  const double length = std::sqrt(Dot(edge, edge));
   return { scale * length,
     DifferenceOfProducts(edge.x, other.x, -edge.y, other.y) / length / length,
     scale * std::abs(DifferenceOfProducts(edge.x, other.y, edge.y, other.x)) / length };
+}
+
+/// The Length of such a view, to the same bits.
+HOMEOMORPHISM_ALWAYS_INLINE double EdgeLength(const Vector2& start, const Vector2& end)
+{
+  const double scale = PowerOfTwoNear(end - start);
+  const Vector2 edge = (1.0 / scale) * (end - start);
+  return scale * std::sqrt(Dot(edge, edge));
 }
 
 /// The views from the three edges: element k from the edge opposite corner k.

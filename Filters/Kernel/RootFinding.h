@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RootFinding.h
-/// The root of an increasing function, by Newton's method kept inside a bracket.
+/// The roots of increasing functions, by Newton's method kept inside brackets, for several at once.
 
 #ifndef homeomorphism_RootFinding_h
 #define homeomorphism_RootFinding_h
+
+#include "Vectorize.h"
 
 #include <cmath>
 #include <limits>
@@ -13,70 +15,104 @@
 namespace homeomorphism
 {
 
-/// A function's value and slope at a point.
-struct ValueAndSlope
+/// @a Width equations, each for the root of an increasing function in an interval. Every evaluation narrows
+/// the interval. Newton's step is taken where it stays inside; where it leads out, the interval is halved.
+/// It ends with a step so small that what is left is below rounding, or when nothing is left of the interval.
+/// A root that is found stays as it is while others are looked for, so that none depends on the others.
+///
+/// With @a AtEnds, a step that leads out leads to the end first, if that was not tried yet: for functions
+/// whose root is often there.
+///
+/// Nothing branches, so that the loop over the lanes can become vector instructions.
+template <int Width, bool AtEnds>
+class RootLanes
 {
-  double Value;
-  double Slope;
-};
+public:
+  double Root[Width];
 
-/// The root of an increasing function in [lower, upper]. @a function returns its ValueAndSlope.
-/// Newton's step is taken where it stays inside the bracket, which every evaluation narrows. Where it
-/// leads out, an end of the bracket is tried, once, and then the bracket is halved. So this ends: at a
-/// number next to a change of sign, at an end, or where Newton's steps have sunk into rounding.
-template <typename Function>
-double RootOfIncreasing(Function&& function, double lower, double upper, double guess)
-{
-  constexpr double ulp = std::numeric_limits<double>::epsilon();
-  // Newton needs a handful of steps. Halving alone, which only a function that is not increasing would
-  // bring about, exhausts the doubles from 1 down to the smallest root that matters, an ulp of 1 cubed,
-  // well before this many.
-  constexpr int limit = 250;
-  double x = guess < lower ? lower : (guess > upper ? upper : guess);
-  bool triedLower = false;
-  bool triedUpper = false;
-  double lastNewtonStep = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < limit; ++i)
+  HOMEOMORPHISM_ALWAYS_INLINE void Start(int lane, double lower, double upper, double guess)
   {
-    const ValueAndSlope at = function(x);
-    const double newtonStep = std::abs(at.Value / at.Slope);
-    const double size = ulp * std::abs(x);
-    const bool stalled = newtonStep <= 1024.0 * size && newtonStep >= 0.5 * lastNewtonStep;
-    // Beyond an end there is no root, whatever rounding says.
-    const bool rootAtEnd = (at.Value < 0.0 && x == upper) || (at.Value > 0.0 && x == lower);
-    if (at.Value == 0.0 || newtonStep <= 2.0 * size || stalled || rootAtEnd)
-    {
-      return x;
-    }
-    (at.Value < 0.0 ? lower : upper) = x;
-    (at.Value < 0.0 ? triedLower : triedUpper) = true;
-    double next = x - at.Value / at.Slope;
-    lastNewtonStep = newtonStep;
-    if (!(next > lower && next < upper))
-    {
-      lastNewtonStep = std::numeric_limits<double>::infinity();
-      const double middle = lower + 0.5 * (upper - lower);
-      if (next <= lower && !triedLower)
-      {
-        next = lower;
-      }
-      else if (next >= upper && !triedUpper)
-      {
-        next = upper;
-      }
-      else if (middle > lower && middle < upper)
-      {
-        next = middle;
-      }
-      else
-      {
-        return x;
-      }
-    }
-    x = next;
+    guess = guess < upper ? guess : upper;
+    this->Root[lane] = guess > lower ? guess : lower;
+    this->Lower[lane] = lower;
+    this->Upper[lane] = upper;
+    this->TriedLower[lane] = 0.0;
+    this->TriedUpper[lane] = 0.0;
+    this->LastStep[lane] = 0.0;
+    this->Done[lane] = 0.0;
   }
-  return x;
-}
+
+  /// The function's value and slope at Root. The last step is at most @a enough times the root, or, with
+  /// @a AtEnds, one that is so much smaller than the step before it that what is left, about the square of
+  /// their ratio, is below rounding.
+  HOMEOMORPHISM_ALWAYS_INLINE void Step(int lane, double value, double slope, double enough)
+  {
+    const double x = this->Root[lane];
+    const double step = value / slope;
+    const double size = std::abs(step);
+    const double lower = value < 0.0 ? x : this->Lower[lane];
+    const double upper = value > 0.0 ? x : this->Upper[lane];
+    const double middle = 0.5 * (lower + upper);
+    double below = middle;
+    double above = middle;
+    double done = size <= enough * x ? 1.0 : 0.0;
+    if constexpr (AtEnds)
+    {
+      const double triedLower = value < 0.0 ? 1.0 : this->TriedLower[lane];
+      const double triedUpper = value > 0.0 ? 1.0 : this->TriedUpper[lane];
+      this->TriedLower[lane] = triedLower;
+      this->TriedUpper[lane] = triedUpper;
+      below = triedLower > 0.0 ? middle : lower;
+      above = triedUpper > 0.0 ? middle : upper;
+      const double last = this->LastStep[lane];
+      done = size * size * size <= 0x1p-55 * x * (last * last) ? 1.0 : done;
+      // Next to a change of sign; the lower end itself may be still to be tried.
+      const double atLower = middle == lower ? triedUpper : 0.0;
+      done = atLower > 0.0 ? 1.0 : done;
+    }
+    else
+    {
+      done = middle == lower ? 1.0 : done;
+    }
+    done = middle == upper ? 1.0 : done;
+    done = value == 0.0 ? 1.0 : done;
+    const double newton = x - step;
+    double next = newton > lower ? newton : below;
+    next = newton < upper ? next : above;
+    if constexpr (AtEnds)
+    {
+      // A step that is not a number halves the interval, too.
+      next = size <= std::numeric_limits<double>::max() ? next : middle;
+      this->LastStep[lane] = next == newton ? size : 0.0;
+    }
+    next = size <= 0x1p-53 * x ? x : next;
+    next = value == 0.0 ? x : next;
+    this->Root[lane] = this->Done[lane] > 0.0 ? x : next;
+    this->Done[lane] = this->Done[lane] > done ? this->Done[lane] : done;
+    this->Lower[lane] = lower;
+    this->Upper[lane] = upper;
+  }
+
+  /// Whether every root was found, or @a steps are more than halving alone would need, from 1 to the smallest
+  /// root that matters, an ulp of 1 cubed.
+  HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
+  {
+    double done = 1.0;
+    for (int lane = 0; lane < Width; ++lane)
+    {
+      done = this->Done[lane] < done ? this->Done[lane] : done;
+    }
+    return done > 0.0 || steps > 250;
+  }
+
+private:
+  double Lower[Width];
+  double Upper[Width];
+  double TriedLower[Width];
+  double TriedUpper[Width];
+  double LastStep[Width];
+  double Done[Width];
+};
 
 } // namespace homeomorphism
 

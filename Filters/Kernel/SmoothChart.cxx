@@ -5,126 +5,330 @@
 
 #include "ContourChart.h"
 #include "RootFinding.h"
+#include "Vectorize.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace homeomorphism
 {
 namespace
 {
 
-/// Whether l is in the strip of edge k: 0 <= l_k / (tau q) < 1 with q = l_i l_j / (l_i + l_j).
-bool IsInStrip(const Barycentric& l, int k, double tau)
+/// B_k, its derivatives, and the chart's determinant, at a point of the strip of edge k, by the point's
+/// coordinates with respect to k, the next corner and the previous one. Beyond the strip's ends all is
+/// continued: by l_k past the edge, by 0 elsewhere.
+struct StripFunction
 {
-  const double i = l[NextCorner(k)];
-  const double j = l[PreviousCorner(k)];
-  return l[k] * (i + j) < tau * i * j;
-}
+  double K;
+  double ShareNext;
+  double SharePrevious;
+  double Tau;
+  double U;
 
-Barycentric Moved(const Barycentric& l, const Barycentric& direction, double factor)
-{
-  return { l[0] + factor * direction[0], l[1] + factor * direction[1],
-    l[2] + factor * direction[2] };
-}
-
-} // namespace
-
-/// B_k, its derivatives, and the chart's determinant, at a point of the strip of edge k.
-class SmoothChart::StripFunction
-{
-public:
-  StripFunction(const Barycentric& l, int k, const Strip& strip)
-    : Corner(k)
-    , Owner(strip)
-    , LK(l[k])
+  HOMEOMORPHISM_ALWAYS_INLINE StripFunction(double k, double next, double previous, double tau)
+    : K(k)
+    , Tau(tau)
   {
-    const double i = l[NextCorner(k)];
-    const double j = l[PreviousCorner(k)];
-    this->ShareI = i / (i + j);
-    this->ShareJ = j / (i + j);
-    this->U = this->LK / (strip.Tau * i * this->ShareJ);
+    const double overSum = 1.0 / (next + previous);
+    this->ShareNext = next * overSum;
+    this->SharePrevious = previous * overSum;
+    double u = k / (tau * next * this->SharePrevious);
+    u = u > 0.0 ? u : 0.0;
+    u = u < 1.0 ? u : 1.0;
+    const double lesser = next < previous ? next : previous;
+    this->U = lesser > 0.0 ? u : 1.0;
   }
 
-  /// B = l_k W(u).
-  double Value() const { return this->LK * this->W(); }
-
-  /// The derivative of B along a direction whose components sum to 0.
-  double Along(const Barycentric& direction) const
-  {
-    return (1.0 - this->OneMinusSlope()) * direction[this->Corner] + this->AlongSides(direction);
-  }
-
-  /// 1 + d_k K' + AlongSides(d), without the cancellation that a small kappa = 1 + d_k brings.
-  double DeterminantRatio() const
-  {
-    const double rest = this->OneMinusSlope();
-    return this->Owner.Kappa * (1.0 - rest) + rest + this->AlongSides(this->Owner.Offset);
-  }
-
-  /// beta - B for a point whose affine coordinate is affineK = l_k + d_k beta, without cancellation:
-  /// beta (1 + d_k W) - affineK W.
-  double Residual(double beta, double affineK) const
-  {
-    const double w = this->W();
-    const double oneMinusW = this->U * this->U * (6.0 - this->U * (8.0 - 3.0 * this->U));
-    return beta * (this->Owner.Kappa * w + oneMinusW) - affineK * w;
-  }
-
-private:
   /// W(u) = (1 - u)^3 (1 + 3 u).
-  double W() const
+  HOMEOMORPHISM_ALWAYS_INLINE double W() const
   {
     const double rest = 1.0 - this->U;
     return rest * rest * rest * (1.0 + 3.0 * this->U);
   }
 
+  /// B = l_k W(u).
+  HOMEOMORPHISM_ALWAYS_INLINE double Value() const { return this->K * this->W(); }
+
   /// 1 - K'(u) with K' = (1 - u)^2 (1 - 3 u) (1 + 5 u), which is dB/dl_k.
-  double OneMinusSlope() const
+  HOMEOMORPHISM_ALWAYS_INLINE double OneMinusSlope() const
   {
     return this->U * this->U * (18.0 - this->U * (32.0 - 15.0 * this->U));
   }
 
   /// The share of the other two corners: dB/dl_i = 12 tau u^3 (1 - u)^2 (l_j / (l_i + l_j))^2, and
   /// i, j exchanged.
-  double AlongSides(const Barycentric& direction) const
+  HOMEOMORPHISM_ALWAYS_INLINE double AlongSides(double next, double previous) const
   {
     const double rest = 1.0 - this->U;
-    return 12.0 * this->Owner.Tau * this->U * this->U * this->U * rest * rest *
-      (this->ShareJ * this->ShareJ * direction[NextCorner(this->Corner)] +
-        this->ShareI * this->ShareI * direction[PreviousCorner(this->Corner)]);
+    return 12.0 * this->Tau * this->U * this->U * this->U * rest * rest *
+      (this->SharePrevious * this->SharePrevious * next +
+        this->ShareNext * this->ShareNext * previous);
   }
 
-  int Corner;
-  const Strip& Owner;
-  double LK;
-  double ShareI;
-  double ShareJ;
-  double U;
+  /// 1 + d_k K' + AlongSides(d), without the cancellation that a small kappa = 1 + d_k brings.
+  HOMEOMORPHISM_ALWAYS_INLINE double DeterminantRatio(
+    double kappa, double offsetNext, double offsetPrevious) const
+  {
+    const double rest = this->OneMinusSlope();
+    return kappa * (1.0 - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
+  }
+
+  /// beta - B for a point whose affine coordinate is affineK = l_k + d_k beta, without cancellation:
+  /// beta (1 + d_k W) - affineK W.
+  HOMEOMORPHISM_ALWAYS_INLINE double Residual(double beta, double affineK, double kappa) const
+  {
+    const double w = this->W();
+    const double oneMinusW = this->U * this->U * (6.0 - this->U * (8.0 - 3.0 * this->U));
+    return beta * (kappa * w + oneMinusW) - affineK * w;
+  }
 };
 
-SmoothChart::SmoothChart(const TriangleShape& shape, const EdgeViews& views,
-  const std::array<Neighbor, 3>& neighbors)
-  : Shape(shape)
+/// The strip's equation for some points at once: affine = l + d B(l), so with beta = B(l),
+/// beta = B(affine - d beta). The difference of the sides increases with beta, because its slope is the
+/// determinant ratio. B(affine) is a first guess.
+template <int Width>
+struct StripEquation : RootLanes<Width, false>
 {
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double k, double next, double previous, double tau)
+  {
+    // B <= tau q max(u W) <= (1 / 4) (16 / 81).
+    constexpr double bound = 0.05;
+    this->Start(lane, 0.0, bound, StripFunction(k, next, previous, tau).Value());
+  }
+
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double k, double next, double previous,
+    double kappa, double offsetNext, double offsetPrevious, double tau)
+  {
+    const double beta = this->Root[lane];
+    const StripFunction function(k - (kappa - 1.0) * beta, next - offsetNext * beta,
+      previous - offsetPrevious * beta, tau);
+    // The relative second derivative times beta is below 2^12 even where tau is as small as in needles.
+    this->Step(lane, function.Residual(beta, k, kappa),
+      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-30);
+  }
+};
+
+Barycentric Moved(const Barycentric& l, int k, const SmoothStrip& strip, double factor)
+{
+  Barycentric moved;
+  moved[k] = l[k] + (strip.Kappa - 1.0) * factor;
+  moved[NextCorner(k)] = l[NextCorner(k)] + strip.OffsetNext * factor;
+  moved[PreviousCorner(k)] = l[PreviousCorner(k)] + strip.OffsetPrevious * factor;
+  return moved;
+}
+
+StripFunction FunctionAt(const Barycentric& l, int k, const SmoothStrip& strip)
+{
+  return StripFunction(l[k], l[NextCorner(k)], l[PreviousCorner(k)], strip.Tau);
+}
+
+/// The derivative of B along a direction whose components sum to 0.
+double DerivativeAlong(const StripFunction& function, int k, const Barycentric& direction)
+{
+  return (1.0 - function.OneMinusSlope()) * direction[k] +
+    function.AlongSides(direction[NextCorner(k)], direction[PreviousCorner(k)]);
+}
+
+double DeterminantRatioOf(const StripFunction& function, const SmoothStrip& strip)
+{
+  return function.DeterminantRatio(strip.Kappa, strip.OffsetNext, strip.OffsetPrevious);
+}
+
+} // namespace
+
+SmoothStrip::SmoothStrip(const EdgeView& own, const EdgeView& neighbor)
+{
+  const double sum = own.Height + neighbor.Height;
+  const double ownShare = own.Height / sum;
+  const double otherShare = neighbor.Height / sum;
+  this->OffsetNext = ownShare * neighbor.Foot - otherShare * (1.0 - own.Foot);
+  this->OffsetPrevious = ownShare * (1.0 - neighbor.Foot) - otherShare * own.Foot;
+  this->Kappa = 2.0 * otherShare;
+  const double least = std::min(this->OffsetNext, this->OffsetPrevious);
+  this->Tau = least < -0.5 ? -0.5 / least : 1.0;
+}
+
+SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor, 3>& neighbors)
+{
+  SmoothStrips strips;
   for (int k = 0; k < 3; ++k)
   {
-    if (!neighbors[k].Exists)
+    if (neighbors[k].Exists)
     {
-      continue;
+      strips[k] = SmoothStrip(views[k], neighbors[k].View);
     }
-    const EdgeView& own = views[k];
-    const EdgeView& other = neighbors[k].View;
-    const double sum = own.Height + other.Height;
-    const double ownShare = own.Height / sum;
-    const double otherShare = other.Height / sum;
-    Strip& strip = this->Strips[k];
-    Barycentric& d = strip.Offset;
-    d[k] = (other.Height - own.Height) / sum;
-    d[NextCorner(k)] = ownShare * other.Foot - otherShare * (1.0 - own.Foot);
-    d[PreviousCorner(k)] = ownShare * (1.0 - other.Foot) - otherShare * own.Foot;
-    strip.Kappa = 2.0 * otherShare;
-    const double least = std::min(d[NextCorner(k)], d[PreviousCorner(k)]);
-    strip.Tau = least < -0.5 ? -0.5 / least : 1.0;
+  }
+  return strips;
+}
+
+namespace
+{
+
+/// One point: less of the strips has to be fetched from memory than for several at once.
+void SetSmoothLane(SmoothLanes& lanes, int i, const double* const coordinates[3],
+  const SmoothStrips& source, const SmoothStrips& target)
+{
+  const double l[3] = { coordinates[0][i], coordinates[1][i], coordinates[2][i] };
+  const int lesser = l[1] < l[0] ? 1 : 0;
+  const int corner = l[2] < l[lesser] ? 2 : lesser;
+  lanes.Corner[i] = corner;
+  lanes.L[0][i] = l[corner];
+  lanes.L[1][i] = l[NextCorner(corner)];
+  lanes.L[2][i] = l[PreviousCorner(corner)];
+  const SmoothStrips* sides[2] = { &source, &target };
+  for (int side = 0; side < 2; ++side)
+  {
+    const SmoothStrip& strip = (*sides[side])[corner];
+    lanes.OffsetNext[side][i] = strip.OffsetNext;
+    lanes.OffsetPrevious[side][i] = strip.OffsetPrevious;
+    lanes.Kappa[side][i] = strip.Kappa;
+    lanes.Tau[side][i] = strip.Tau;
+  }
+}
+
+} // namespace
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
+  const SmoothStrips& source, const SmoothStrips& target)
+{
+  if (end - begin < 3)
+  {
+    for (int i = begin; i < end; ++i)
+    {
+      SetSmoothLane(lanes, i, coordinates, source, target);
+    }
+    return;
+  }
+  const int stop = begin + InWholeVectors(end - begin);
+  const double* first = coordinates[0];
+  const double* second = coordinates[1];
+  const double* third = coordinates[2];
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    const double a = first[i];
+    const double b = second[i];
+    const double c = third[i];
+    const double lesser = b < a ? b : a;
+    const std::int64_t corner = c < lesser ? 2 : (b < a ? 1 : 0);
+    lanes.Corner[i] = corner;
+    lanes.L[0][i] = c < lesser ? c : lesser;
+    lanes.L[1][i] = corner == 0 ? b : (corner == 1 ? c : a);
+    lanes.L[2][i] = corner == 0 ? c : (corner == 1 ? a : b);
+  }
+  const SmoothStrips* sides[2] = { &source, &target };
+  for (int side = 0; side < 2; ++side)
+  {
+    const SmoothStrip s0 = (*sides[side])[0];
+    const SmoothStrip s1 = (*sides[side])[1];
+    const SmoothStrip s2 = (*sides[side])[2];
+    HOMEOMORPHISM_LANES
+    for (int i = begin; i < stop; ++i)
+    {
+      const bool is0 = lanes.Corner[i] == 0;
+      const bool is1 = lanes.Corner[i] == 1;
+      lanes.OffsetNext[side][i] =
+        is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
+      lanes.OffsetPrevious[side][i] =
+        is0 ? s0.OffsetPrevious : (is1 ? s1.OffsetPrevious : s2.OffsetPrevious);
+      lanes.Kappa[side][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
+      lanes.Tau[side][i] = is0 ? s0.Tau : (is1 ? s1.Tau : s2.Tau);
+    }
+  }
+}
+
+void FillSmoothLanes(SmoothLanes& lanes, int begin, int end)
+{
+  for (int i = begin; i < end; ++i)
+  {
+    lanes.Corner[i] = 0;
+    for (double* l : lanes.L)
+    {
+      l[i] = 1.0 / 3.0;
+    }
+    for (int side = 0; side < 2; ++side)
+    {
+      lanes.OffsetNext[side][i] = 0.0;
+      lanes.OffsetPrevious[side][i] = 0.0;
+      lanes.Kappa[side][i] = 1.0;
+      lanes.Tau[side][i] = 0.0;
+    }
+  }
+}
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void GetSmoothLanes(
+  const SmoothLanes& lanes, int begin, int end, double* const coordinates[3])
+{
+  const int stop = begin + InWholeVectors(end - begin);
+  double* first = coordinates[0];
+  double* second = coordinates[1];
+  double* third = coordinates[2];
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    const bool is0 = lanes.Corner[i] == 0;
+    const bool is1 = lanes.Corner[i] == 1;
+    first[i] = is0 ? lanes.L[0][i] : (is1 ? lanes.L[2][i] : lanes.L[1][i]);
+    second[i] = is0 ? lanes.L[1][i] : (is1 ? lanes.L[0][i] : lanes.L[2][i]);
+    third[i] = is0 ? lanes.L[2][i] : (is1 ? lanes.L[1][i] : lanes.L[0][i]);
+  }
+}
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void MapSmoothLanes(SmoothLanes& lanes, int count)
+{
+  constexpr int width = 16;
+  static_assert(SmoothLanes::Capacity % width == 0, "whole groups of lanes");
+  const int end = (count + width - 1) / width * width;
+  FillSmoothLanes(lanes, count, end);
+  for (int first = 0; first < end; first += width)
+  {
+    double* k = lanes.L[0] + first;
+    double* next = lanes.L[1] + first;
+    double* previous = lanes.L[2] + first;
+    {
+      const double* offsetNext = lanes.OffsetNext[0] + first;
+      const double* offsetPrevious = lanes.OffsetPrevious[0] + first;
+      const double* kappa = lanes.Kappa[0] + first;
+      const double* tau = lanes.Tau[0] + first;
+      StripEquation<width> equation;
+      HOMEOMORPHISM_LANES
+      for (int i = 0; i < width; ++i)
+      {
+        equation.Set(i, k[i], next[i], previous[i], tau[i]);
+      }
+      for (int step = 0; !equation.IsDone(step); ++step)
+      {
+        HOMEOMORPHISM_LANES
+        for (int i = 0; i < width; ++i)
+        {
+          equation.Evaluate(
+            i, k[i], next[i], previous[i], kappa[i], offsetNext[i], offsetPrevious[i], tau[i]);
+        }
+      }
+      HOMEOMORPHISM_LANES
+      for (int i = 0; i < width; ++i)
+      {
+        k[i] -= (kappa[i] - 1.0) * equation.Root[i];
+        next[i] -= offsetNext[i] * equation.Root[i];
+        previous[i] -= offsetPrevious[i] * equation.Root[i];
+      }
+    }
+    const double* offsetNext = lanes.OffsetNext[1] + first;
+    const double* offsetPrevious = lanes.OffsetPrevious[1] + first;
+    const double* kappa = lanes.Kappa[1] + first;
+    const double* tau = lanes.Tau[1] + first;
+    HOMEOMORPHISM_LANES
+    for (int i = 0; i < width; ++i)
+    {
+      const double beta = StripFunction(k[i], next[i], previous[i], tau[i]).Value();
+      k[i] += (kappa[i] - 1.0) * beta;
+      next[i] += offsetNext[i] * beta;
+      previous[i] += offsetPrevious[i] * beta;
+    }
   }
 }
 
@@ -132,7 +336,7 @@ int SmoothChart::StripAt(const Barycentric& l) const
 {
   for (int k = 0; k < 3; ++k)
   {
-    if (IsInStrip(l, k, this->Strips[k].Tau))
+    if (this->Strips[k].Contains(l[k], l[NextCorner(k)], l[PreviousCorner(k)]))
     {
       return k;
     }
@@ -149,30 +353,17 @@ SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
   {
     return affine;
   }
-  // affine = l + d B(l), so with beta = B(l): beta = B(affine - d beta). The difference of the sides
-  // increases, because its slope is the determinant ratio.
-  const Strip& strip = this->Strips[k];
-  const double guess = StripFunction(affine, k, strip).Value();
-  // B <= tau q max(u W) <= (1 / 4) (16 / 81).
-  constexpr double bound = 0.05;
-  const double beta = RootOfIncreasing(
-    [&strip, &affine, k](double value) -> ValueAndSlope {
-      const Barycentric l = Moved(affine, strip.Offset, -value);
-      // Past the strip's ends the chord leaves the triangle (B is continued by l_k) or enters the
-      // affine part (B = 0).
-      if (l[k] <= 0.0)
-      {
-        return { strip.Kappa * value - affine[k], strip.Kappa };
-      }
-      if (!(l[NextCorner(k)] > 0.0 && l[PreviousCorner(k)] > 0.0) || !IsInStrip(l, k, strip.Tau))
-      {
-        return { value, 1.0 };
-      }
-      const StripFunction function(l, k, strip);
-      return { function.Residual(value, affine[k]), function.DeterminantRatio() };
-    },
-    0.0, bound, guess);
-  return Moved(affine, strip.Offset, -beta);
+  const SmoothStrip& strip = this->Strips[k];
+  const double next = affine[NextCorner(k)];
+  const double previous = affine[PreviousCorner(k)];
+  StripEquation<1> equation;
+  equation.Set(0, affine[k], next, previous, strip.Tau);
+  for (int step = 0; !equation.IsDone(step); ++step)
+  {
+    equation.Evaluate(0, affine[k], next, previous, strip.Kappa, strip.OffsetNext, strip.OffsetPrevious,
+      strip.Tau);
+  }
+  return Moved(affine, k, strip, -equation.Root[0]);
 }
 
 Vector2 SmoothChart::ToPoint(const Reference& l) const
@@ -182,9 +373,8 @@ Vector2 SmoothChart::ToPoint(const Reference& l) const
   {
     return this->Shape.FromBarycentric(l);
   }
-  const Strip& strip = this->Strips[k];
-  return this->Shape.FromBarycentric(
-    Moved(l, strip.Offset, StripFunction(l, k, strip).Value()));
+  const SmoothStrip& strip = this->Strips[k];
+  return this->Shape.FromBarycentric(Moved(l, k, strip, FunctionAt(l, k, strip).Value()));
 }
 
 Vector2 SmoothChart::Push(const Reference& l, const Direction& direction) const
@@ -194,9 +384,9 @@ Vector2 SmoothChart::Push(const Reference& l, const Direction& direction) const
   {
     return this->Shape.FromBarycentric(direction);
   }
-  const Strip& strip = this->Strips[k];
+  const SmoothStrip& strip = this->Strips[k];
   return this->Shape.FromBarycentric(
-    Moved(direction, strip.Offset, StripFunction(l, k, strip).Along(direction)));
+    Moved(direction, k, strip, DerivativeAlong(FunctionAt(l, k, strip), k, direction)));
 }
 
 SmoothChart::Direction SmoothChart::Pull(const Reference& l, const Vector2& vector) const
@@ -208,10 +398,10 @@ SmoothChart::Direction SmoothChart::Pull(const Reference& l, const Vector2& vect
     return direction;
   }
   // The chart's derivative is the identity plus a matrix of rank one (Sherman and Morrison).
-  const Strip& strip = this->Strips[k];
-  const StripFunction function(l, k, strip);
-  return Moved(direction, strip.Offset,
-    -function.Along(direction) / function.DeterminantRatio());
+  const SmoothStrip& strip = this->Strips[k];
+  const StripFunction function = FunctionAt(l, k, strip);
+  return Moved(direction, k, strip,
+    -DerivativeAlong(function, k, direction) / DeterminantRatioOf(function, strip));
 }
 
 TriangularCoordinates SmoothChart::ToCoordinates(const Reference& l) const
@@ -229,22 +419,17 @@ SmoothChart::Reference SmoothChart::FromCoordinates(const TriangularCoordinates&
 double SmoothChart::DeterminantRatio(const Reference& l) const
 {
   const int k = this->StripAt(l);
-  if (k < 0)
-  {
-    return 1.0;
-  }
-  const Strip& strip = this->Strips[k];
-  return StripFunction(l, k, strip).DeterminantRatio();
+  return k < 0 ? 1.0 : DeterminantRatioOf(FunctionAt(l, k, this->Strips[k]), this->Strips[k]);
 }
 
 double SmoothChart::DeterminantBound() const
 {
   double bound = 1.0;
-  for (int k = 0; k < 3; ++k)
+  for (const SmoothStrip& strip : this->Strips)
   {
-    if (this->Strips[k].Tau > 0.0)
+    if (strip.Tau > 0.0)
     {
-      bound = std::min({ bound, this->Strips[k].Kappa, 0.28 });
+      bound = std::min({ bound, strip.Kappa, 0.28 });
     }
   }
   return bound;

@@ -25,8 +25,10 @@
 
 #include "CoordinateSystem.h"
 #include "Geometry.h"
+#include "Vectorize.h"
 
 #include <array>
+#include <cstdint>
 
 namespace homeomorphism
 {
@@ -41,6 +43,76 @@ struct Neighbor
   EdgeView View;
 };
 
+/// What the chart needs to know of an edge's strip. All zero but kappa on the boundary.
+struct SmoothStrip
+{
+  /// The components of D_k along the corners after and before k in cyclic order. The three sum to 0.
+  double OffsetNext = 0.0;
+  double OffsetPrevious = 0.0;
+  /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller neighbour.
+  double Kappa = 1.0;
+  /// In (0, 1]; 0 on the boundary, where there is no strip.
+  double Tau = 0.0;
+
+  SmoothStrip() = default;
+
+  /// @a own is what the edge sees of its triangle, @a neighbor of the one on its other side.
+  SmoothStrip(const EdgeView& own, const EdgeView& neighbor);
+
+  /// Whether l is in the strip, if it is that of edge k: 0 <= l_k / (tau q) < 1.
+  bool Contains(double k, double next, double previous) const
+  {
+    return k * (next + previous) < this->Tau * next * previous;
+  }
+};
+
+/// The strips of a triangle's edges; element k belongs to the edge opposite corner k.
+using SmoothStrips = std::array<SmoothStrip, 3>;
+
+/// A triangle's strips. views[k] is what the edge opposite corner k sees of this triangle, neighbors[k]
+/// what lies on its other side. Both triangles at an edge must be given the same two views of it (one
+/// reversed).
+SmoothStrips MakeSmoothStrips(
+  const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
+
+/// Points in arrays, so that the processor can deal with several at once.
+struct SmoothLanes
+{
+  static constexpr int Capacity = 256;
+  /// With the room that whole vectors take.
+  static constexpr int Size = Capacity + WidestVector;
+
+  /// k, the corner with the least coordinate: only of the edge opposite to it can a strip contain the point.
+  std::int64_t Corner[Size];
+  /// The barycentric coordinates with respect to k, the next corner and the previous one: of the affine
+  /// chart of the source, then of the reference, then of the affine chart of the target.
+  double L[3][Size];
+  /// SmoothStrip's numbers in source and target.
+  double OffsetNext[2][Size];
+  double OffsetPrevious[2][Size];
+  double Kappa[2][Size];
+  double Tau[2][Size];
+
+};
+
+/// Puts points of one triangle into the lanes from @a begin to before @a end. @a coordinates[corner] points
+/// to arrays of the barycentric coordinates of the source's affine chart, one for each lane. Up to
+/// WidestVector - 1 lanes after the last are spoilt.
+void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
+  const SmoothStrips& source, const SmoothStrips& target);
+
+/// Fills lanes with a point that the map leaves where it is.
+void FillSmoothLanes(SmoothLanes& lanes, int begin, int end);
+
+/// Takes the first @a count points from the source's chart to the target's: to the same bits as
+/// SmoothChart's ToReference and ToPoint. Lanes up to the next multiple of 32 are filled.
+void MapSmoothLanes(SmoothLanes& lanes, int count);
+
+/// Takes the coordinates out of the lanes, into arrays as in SetSmoothLanes, where they spoil what comes
+/// after.
+void GetSmoothLanes(
+  const SmoothLanes& lanes, int begin, int end, double* const coordinates[3]);
+
 /// The chart of the Smooth system.
 class SmoothChart
 {
@@ -48,10 +120,17 @@ public:
   using Reference = Barycentric;
   using Direction = Barycentric;
 
-  /// views[k] is what the edge opposite corner k sees of this triangle, neighbors[k] what lies on its
-  /// other side. Both triangles at an edge must be given the same two views of it (one reversed).
+  SmoothChart(const TriangleShape& shape, const SmoothStrips& strips)
+    : Shape(shape)
+    , Strips(strips)
+  {
+  }
+
   SmoothChart(const TriangleShape& shape, const EdgeViews& views,
-    const std::array<Neighbor, 3>& neighbors);
+    const std::array<Neighbor, 3>& neighbors)
+    : SmoothChart(shape, MakeSmoothStrips(views, neighbors))
+  {
+  }
 
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& l) const;
@@ -76,21 +155,11 @@ public:
   double StripWidth(int edge) const { return this->Strips[edge].Tau; }
 
 private:
-  struct Strip
-  {
-    Barycentric Offset{}; ///< d, the components of D_k along the corners; they sum to 0
-    /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller neighbour.
-    double Kappa = 1.0;
-    double Tau = 0.0;
-  };
-
-  class StripFunction;
-
   /// The strip that l is in, or -1.
   int StripAt(const Barycentric& l) const;
 
   TriangleShape Shape;
-  std::array<Strip, 3> Strips;
+  SmoothStrips Strips;
 };
 
 } // namespace homeomorphism

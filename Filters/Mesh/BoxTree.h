@@ -11,7 +11,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace homeomorphism
@@ -70,24 +74,51 @@ struct Box
   }
 };
 
-/// A binary tree of boxes, split at the median of the longest side. Immutable once built; any number
-/// of threads may search it.
+/// A binary tree of boxes over the triangles in the order of a space-filling curve (Morton's), so that
+/// building takes time linear in their number. Immutable once built; any number of threads may search it.
 template <int Dimension>
 class BoxTree
 {
 public:
   using BoxType = Box<Dimension>;
 
-  /// @a boxOf gives the box of a triangle.
+  /// @a boxOf gives the box of a triangle, all of whose coordinates are finite.
   template <typename BoxOf>
   void Build(std::vector<TriangleIndex> triangles, BoxOf&& boxOf)
   {
     this->Triangles = std::move(triangles);
+    this->SortAlongCurve(boxOf);
     this->Nodes.clear();
-    if (!this->Triangles.empty())
+    this->Levels.clear();
+    if (this->Triangles.empty())
     {
-      this->Nodes.reserve(this->Triangles.size());
-      this->Split(0, static_cast<std::int32_t>(this->Triangles.size()), boxOf);
+      return;
+    }
+    const std::size_t leaves = (this->Triangles.size() + LeafSize - 1) / LeafSize;
+    this->Nodes.reserve(2 * leaves + MaximumLevels);
+    this->Levels.push_back(0);
+    for (std::size_t leaf = 0; leaf < leaves; ++leaf)
+    {
+      BoxType bounds;
+      const std::size_t last = std::min(this->Triangles.size(), (leaf + 1) * LeafSize);
+      for (std::size_t i = leaf * LeafSize; i < last; ++i)
+      {
+        bounds.Add(boxOf(this->Triangles[i]));
+      }
+      this->Nodes.emplace_back(bounds);
+    }
+    for (std::size_t count = leaves; count > 1; count = (count + 1) / 2)
+    {
+      const std::size_t below = this->Levels.back();
+      this->Levels.push_back(this->Nodes.size());
+      for (std::size_t i = 0; i < count; i += 2)
+      {
+        this->Nodes.push_back(this->Nodes[below + i]);
+        if (i + 1 < count)
+        {
+          this->Nodes.back().Add(this->Nodes[below + i + 1]);
+        }
+      }
     }
   }
 
@@ -100,25 +131,34 @@ public:
     {
       return;
     }
-    // The tree is balanced: its depth is at most that of 2^31 triangles.
-    std::array<std::int32_t, 64> stack;
-    int depth = 0;
-    stack[depth++] = 0;
+    struct Place
+    {
+      std::size_t Level;
+      std::size_t Index;
+    };
+    std::array<Place, 2 * MaximumLevels> stack;
+    std::size_t depth = 0;
+    stack[depth++] = { this->Levels.size() - 1, 0 };
     while (depth > 0)
     {
-      const std::int32_t index = stack[--depth];
-      const Node& node = this->Nodes[index];
-      if (!node.Bounds.Meets(box))
+      const Place place = stack[--depth];
+      if (!this->Nodes[this->Levels[place.Level] + place.Index].Meets(box))
       {
         continue;
       }
-      if (node.Count == 0)
+      if (place.Level > 0)
       {
-        stack[depth++] = node.First;
-        stack[depth++] = index + 1;
+        const std::size_t child = 2 * place.Index;
+        if (child + 1 < this->Levels[place.Level] - this->Levels[place.Level - 1])
+        {
+          stack[depth++] = { place.Level - 1, child + 1 };
+        }
+        stack[depth++] = { place.Level - 1, child };
         continue;
       }
-      for (std::int32_t i = node.First; i < node.First + node.Count; ++i)
+      const std::size_t last =
+        std::min(this->Triangles.size(), (place.Index + 1) * LeafSize);
+      for (std::size_t i = place.Index * LeafSize; i < last; ++i)
       {
         if (!visit(this->Triangles[i]))
         {
@@ -129,57 +169,136 @@ public:
   }
 
 private:
-  static constexpr std::int32_t LeafSize = 4;
+  static constexpr std::size_t LeafSize = 4;
+  static constexpr std::size_t MaximumLevels = 32;
 
+  /// A box in half the memory, no smaller than the one it stands for.
   struct Node
   {
-    BoxType Bounds;
-    /// Of a leaf, its first triangle; of an inner node, its second child (the first comes next).
-    std::int32_t First;
-    /// Number of a leaf's triangles; 0 for an inner node.
-    std::int32_t Count;
-  };
+    std::array<float, Dimension> Least;
+    std::array<float, Dimension> Greatest;
 
-  template <typename BoxOf>
-  void Split(std::int32_t begin, std::int32_t end, BoxOf& boxOf)
-  {
-    const auto index = static_cast<std::int32_t>(this->Nodes.size());
-    BoxType bounds;
-    for (std::int32_t i = begin; i < end; ++i)
+    explicit Node(const BoxType& box)
     {
-      bounds.Add(boxOf(this->Triangles[i]));
-    }
-    this->Nodes.push_back({ bounds, begin, end - begin });
-    if (end - begin <= LeafSize)
-    {
-      return;
-    }
-    int axis = 0;
-    for (int other = 1; other < Dimension; ++other)
-    {
-      if (bounds.Greatest[other] - bounds.Least[other] >
-        bounds.Greatest[axis] - bounds.Least[axis])
+      for (int axis = 0; axis < Dimension; ++axis)
       {
-        axis = other;
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        const auto least = static_cast<float>(box.Least[axis]);
+        const auto greatest = static_cast<float>(box.Greatest[axis]);
+        this->Least[axis] = static_cast<double>(least) > box.Least[axis]
+          ? std::nextafter(least, -infinity)
+          : least;
+        this->Greatest[axis] = static_cast<double>(greatest) < box.Greatest[axis]
+          ? std::nextafter(greatest, infinity)
+          : greatest;
       }
     }
-    const std::int32_t middle = begin + (end - begin) / 2;
-    std::nth_element(this->Triangles.begin() + begin, this->Triangles.begin() + middle,
-      this->Triangles.begin() + end, [&boxOf, axis](TriangleIndex a, TriangleIndex b) {
-        const BoxType boxA = boxOf(a);
-        const BoxType boxB = boxOf(b);
-        const double centerA = 0.5 * boxA.Least[axis] + 0.5 * boxA.Greatest[axis];
-        const double centerB = 0.5 * boxB.Least[axis] + 0.5 * boxB.Greatest[axis];
-        return centerA != centerB ? centerA < centerB : a < b;
-      });
-    this->Split(begin, middle, boxOf);
-    const auto second = static_cast<std::int32_t>(this->Nodes.size());
-    this->Split(middle, end, boxOf);
-    this->Nodes[index].First = second;
-    this->Nodes[index].Count = 0;
+
+    void Add(const Node& other)
+    {
+      for (int axis = 0; axis < Dimension; ++axis)
+      {
+        this->Least[axis] = std::min(this->Least[axis], other.Least[axis]);
+        this->Greatest[axis] = std::max(this->Greatest[axis], other.Greatest[axis]);
+      }
+    }
+
+    bool Meets(const BoxType& box) const
+    {
+      for (int axis = 0; axis < Dimension; ++axis)
+      {
+        if (this->Least[axis] > box.Greatest[axis] || box.Least[axis] > this->Greatest[axis])
+        {
+          return false;
+        }
+      }
+      return true;
+    }
+  };
+
+  /// Places each bit of a number @a Dimension bits from the next.
+  static std::uint64_t SpreadBits(std::uint64_t x)
+  {
+    if (Dimension == 2)
+    {
+      x = (x | (x << 16)) & 0x0000ffff0000ffff;
+      x = (x | (x << 8)) & 0x00ff00ff00ff00ff;
+      x = (x | (x << 4)) & 0x0f0f0f0f0f0f0f0f;
+      x = (x | (x << 2)) & 0x3333333333333333;
+      return (x | (x << 1)) & 0x5555555555555555;
+    }
+    x = (x | (x << 32)) & 0x001f00000000ffff;
+    x = (x | (x << 16)) & 0x001f0000ff0000ff;
+    x = (x | (x << 8)) & 0x100f00f00f00f00f;
+    x = (x | (x << 4)) & 0x10c30c30c30c30c3;
+    return (x | (x << 2)) & 0x1249249249249249;
   }
 
+  template <typename BoxOf>
+  void SortAlongCurve(BoxOf& boxOf)
+  {
+    struct Entry
+    {
+      std::uint64_t Code;
+      TriangleIndex Triangle;
+    };
+    const auto centerOf = [](const BoxType& box, int axis)
+    { return 0.5 * box.Least[axis] + 0.5 * box.Greatest[axis]; };
+    BoxType bounds;
+    for (const TriangleIndex t : this->Triangles)
+    {
+      bounds.Add(boxOf(t));
+    }
+    constexpr int bits = Dimension == 2 ? 22 : 21;
+    std::array<double, Dimension> scale;
+    for (int axis = 0; axis < Dimension; ++axis)
+    {
+      const double length = bounds.Greatest[axis] - bounds.Least[axis];
+      scale[axis] = length > 0.0 ? std::ldexp(1.0, bits) * (1.0 - 1e-9) / length : 0.0;
+      scale[axis] = std::isfinite(scale[axis]) ? scale[axis] : 0.0;
+    }
+    std::vector<Entry> entries(this->Triangles.size());
+    for (std::size_t i = 0; i < entries.size(); ++i)
+    {
+      const BoxType box = boxOf(this->Triangles[i]);
+      std::uint64_t code = 0;
+      for (int axis = 0; axis < Dimension; ++axis)
+      {
+        const double place = (centerOf(box, axis) - bounds.Least[axis]) * scale[axis];
+        code |= SpreadBits(static_cast<std::uint64_t>(place)) << axis;
+      }
+      entries[i] = { code, this->Triangles[i] };
+    }
+    // Digit by digit, from the least significant one.
+    constexpr int digitBits = 11;
+    constexpr std::size_t digits = std::size_t(1) << digitBits;
+    std::vector<Entry> sorted(entries.size());
+    for (int shift = 0; shift < Dimension * bits; shift += digitBits)
+    {
+      std::array<std::size_t, digits + 1> start{};
+      for (const Entry& entry : entries)
+      {
+        ++start[((entry.Code >> shift) & (digits - 1)) + 1];
+      }
+      for (std::size_t digit = 0; digit < digits; ++digit)
+      {
+        start[digit + 1] += start[digit];
+      }
+      for (const Entry& entry : entries)
+      {
+        sorted[start[(entry.Code >> shift) & (digits - 1)]++] = entry;
+      }
+      entries.swap(sorted);
+    }
+    for (std::size_t i = 0; i < entries.size(); ++i)
+    {
+      this->Triangles[i] = entries[i].Triangle;
+    }
+  }
+
+  // All leaves, then what is above each pair of them, and so on; Levels has where each level begins.
   std::vector<Node> Nodes;
+  std::vector<std::size_t> Levels;
   std::vector<TriangleIndex> Triangles;
 };
 

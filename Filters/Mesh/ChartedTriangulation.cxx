@@ -31,6 +31,35 @@ std::vector<Chart> MakeCharts(
   return charts;
 }
 
+/// The strips of all triangles. Each edge is looked at once, for both of its triangles.
+std::vector<SmoothStrips> MakeStrips(
+  const Triangulation& triangulation, const Embedding& embedding)
+{
+  const TriangleIndex count = triangulation.GetNumberOfTriangles();
+  std::vector<SmoothStrips> strips(count);
+  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        const AcrossEdge across = triangulation.GetAcross(t, k);
+        if (across.Triangle <= t)
+        {
+          continue;
+        }
+        // What an edge sees of a triangle does not change when the triangle turns about the edge.
+        const EdgeView own = embedding.GetView(triangulation.GetCorners(t), k);
+        const EdgeView other =
+          embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
+        strips[t][k] = SmoothStrip(own, across.SameDirection ? other : Reversed(other));
+        strips[across.Triangle][across.Edge] =
+          SmoothStrip(other, across.SameDirection ? own : Reversed(own));
+      }
+    }
+  });
+  return strips;
+}
+
 } // namespace
 
 std::array<Neighbor, 3> UnfoldNeighbors(
@@ -46,7 +75,7 @@ std::array<Neighbor, 3> UnfoldNeighbors(
     }
     // What an edge sees of a triangle does not change when the triangle turns about the edge.
     const EdgeView view =
-      embedding.GetViews(triangulation.GetCorners(across.Triangle))[across.Edge];
+      embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
     neighbors[k] = { true, across.SameDirection ? view : Reversed(view) };
   }
   return neighbors;
@@ -83,12 +112,7 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   }
   else if (system == CoordinateSystem::Smooth)
   {
-    this->SmoothCharts =
-      MakeCharts(triangulation, SmoothChart({}, {}, {}), [&](TriangleIndex t) {
-        return SmoothChart(embedding.GetShape(t),
-          embedding.GetViews(triangulation.GetCorners(t)),
-          UnfoldNeighbors(triangulation, embedding, t));
-      });
+    this->Strips = MakeStrips(triangulation, embedding);
   }
 }
 

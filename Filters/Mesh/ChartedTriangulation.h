@@ -58,9 +58,13 @@ public:
   {
     return this->ContourCharts[triangle];
   }
-  const SmoothChart& GetSmoothChart(TriangleIndex triangle) const
+  SmoothChart GetSmoothChart(TriangleIndex triangle) const
   {
-    return this->SmoothCharts[triangle];
+    return SmoothChart(this->Geometry.GetShape(triangle), this->Strips[triangle]);
+  }
+  const SmoothStrips& GetSmoothStrips(TriangleIndex triangle) const
+  {
+    return this->Strips[triangle];
   }
 
   /// Calls visit(chart) with the triangle's chart, whatever its type, and returns what it returns.
@@ -88,7 +92,7 @@ private:
   CoordinateSystem System;
   std::vector<std::uint8_t> CarriedByLinear;
   std::vector<ContourChart> ContourCharts;
-  std::vector<SmoothChart> SmoothCharts;
+  std::vector<SmoothStrips> Strips;
 };
 
 } // namespace homeomorphism

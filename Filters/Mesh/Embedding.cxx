@@ -34,6 +34,13 @@ double AccurateDot3(const Vector3& a, const Vector3& b)
   return sum + lost;
 }
 
+double SpaceEdgeLength(const Vector3& start, const Vector3& end)
+{
+  const Vector3 d = Difference(end, start);
+  const double scale = PowerOfTwoNear(Length(d));
+  return scale * Length(Scaled(d, 1.0 / scale));
+}
+
 EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vector3& opposite)
 {
   const double scale = PowerOfTwoNear(Length(Difference(end, start)));
@@ -44,29 +51,20 @@ EdgeView ViewFromSpaceEdge(const Vector3& start, const Vector3& end, const Vecto
     scale * Length(Cross3(edge, other)) / length };
 }
 
-/// The corner opposite the longest edge; the first of equals.
-int FindApex(const EdgeViews& views)
+TriangleShape MakeShape(const EdgeView& base, int apex)
 {
-  int apex = 0;
-  for (int k = 1; k < 3; ++k)
-  {
-    if (views[k].Length > views[apex].Length)
-    {
-      apex = k;
-    }
-  }
-  return apex;
-}
-
-TriangleShape MakeShape(const EdgeViews& views, int apex)
-{
-  const EdgeView& base = views[apex];
   TriangleShape shape;
   shape.Apex = apex;
   shape.Base = base.Length;
   shape.ApexX = std::min(base.Length, std::max(0.0, base.Foot * base.Length));
   shape.Height = base.Height;
   return shape;
+}
+
+HOMEOMORPHISM_WITH_FMA
+EdgeView PlaneView(const Vector2& start, const Vector2& end, const Vector2& opposite)
+{
+  return ViewFromEdge(start, end, opposite);
 }
 
 } // namespace
@@ -109,7 +107,8 @@ Embedding::Embedding(
   }
   if (largest > 0.0)
   {
-    this->Scale = 1.0 / PowerOfTwoNear(largest);
+    this->InverseScale = PowerOfTwoNear(largest);
+    this->Scale = 1.0 / this->InverseScale;
   }
   Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
   Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
@@ -254,47 +253,22 @@ void Embedding::FindPlane(const std::vector<Vector3>& points,
   this->PlaneDistance = Dot3(normal, origin);
 }
 
-Vector3 Embedding::ToWorking(const double point[3]) const
+Vector3 Embedding::ToTiltedPlane(const Vector3& scaled) const
 {
-  const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
-  if (!this->Planar)
-  {
-    return p;
-  }
-  if (this->AxisParallel)
-  {
-    return { p[this->AxisOrder[0]], p[this->AxisOrder[1]],
-      this->NormalSign * p[this->AxisOrder[2]] - this->PlaneDistance };
-  }
-  return { Dot3(this->PlaneAxes[0], p), Dot3(this->PlaneAxes[1], p),
-    Dot3(this->PlaneAxes[2], p) - this->PlaneDistance };
+  return { Dot3(this->PlaneAxes[0], scaled), Dot3(this->PlaneAxes[1], scaled),
+    Dot3(this->PlaneAxes[2], scaled) - this->PlaneDistance };
 }
 
-void Embedding::FromWorking(const Vector3& working, double point[3]) const
+Vector3 Embedding::FromTiltedPlane(const Vector3& working) const
 {
-  const double unscale = 1.0 / this->Scale;
-  if (!this->Planar)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      point[axis] = working[axis] * unscale;
-    }
-    return;
-  }
   const double height = working[2] + this->PlaneDistance;
-  if (this->AxisParallel)
-  {
-    point[this->AxisOrder[0]] = working[0] * unscale;
-    point[this->AxisOrder[1]] = working[1] * unscale;
-    point[this->AxisOrder[2]] = this->NormalSign * height * unscale;
-    return;
-  }
+  Vector3 scaled;
   for (int axis = 0; axis < 3; ++axis)
   {
-    point[axis] = (working[0] * this->PlaneAxes[0][axis] + working[1] * this->PlaneAxes[1][axis] +
-                    height * this->PlaneAxes[2][axis]) *
-      unscale;
+    scaled[axis] = working[0] * this->PlaneAxes[0][axis] + working[1] * this->PlaneAxes[1][axis] +
+      height * this->PlaneAxes[2][axis];
   }
+  return scaled;
 }
 
 bool Embedding::IsMeshPoint(std::int32_t meshPoint, const double point[3]) const
@@ -313,11 +287,10 @@ void Embedding::FromMeshPoint(std::int32_t meshPoint, double offset, double poin
     this->FromWorking(working, point);
     return;
   }
-  const double unscale = 1.0 / this->Scale;
   for (int axis = 0; axis < 3; ++axis)
   {
-    point[axis] =
-      (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) * unscale;
+    point[axis] = (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) *
+      this->InverseScale;
   }
 }
 
@@ -333,11 +306,10 @@ bool Embedding::HasNoArea(const Triangulation::Corners& corners) const
   {
     return this->GetOrientation(corners) == 0;
   }
-  const EdgeViews views = this->GetViews(corners);
   const double least =
     8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
   // Written so that a view spoilt by an edge of no length counts as no area.
-  return !(views[FindApex(views)].Height > least);
+  return !(this->GetView(corners, this->FindApex(corners)).Height > least);
 }
 
 bool Embedding::IsFinite(const Triangulation::Corners& corners) const
@@ -363,21 +335,43 @@ bool Embedding::IsConcordant(const Triangulation::Corners& corners) const
 
 EdgeViews Embedding::GetViews(const Triangulation::Corners& corners) const
 {
-  if (this->Planar)
+  return { this->GetView(corners, 0), this->GetView(corners, 1), this->GetView(corners, 2) };
+}
+
+EdgeView Embedding::GetView(const Triangulation::Corners& corners, int edge) const
+{
+  const std::int32_t start = corners[NextCorner(edge)];
+  const std::int32_t end = corners[PreviousCorner(edge)];
+  return this->Planar
+    ? PlaneView(
+        this->PlanePoints[start], this->PlanePoints[end], this->PlanePoints[corners[edge]])
+    : ViewFromSpaceEdge(
+        this->SpacePoints[start], this->SpacePoints[end], this->SpacePoints[corners[edge]]);
+}
+
+int Embedding::FindApex(const Triangulation::Corners& corners) const
+{
+  int apex = 0;
+  double longest = -1.0;
+  for (int k = 0; k < 3; ++k)
   {
-    return ViewsFromEdges(this->PlanePoints[corners[0]], this->PlanePoints[corners[1]],
-      this->PlanePoints[corners[2]]);
+    const std::int32_t start = corners[NextCorner(k)];
+    const std::int32_t end = corners[PreviousCorner(k)];
+    const double length = this->Planar
+      ? EdgeLength(this->PlanePoints[start], this->PlanePoints[end])
+      : SpaceEdgeLength(this->SpacePoints[start], this->SpacePoints[end]);
+    if (length > longest)
+    {
+      longest = length;
+      apex = k;
+    }
   }
-  const Vector3& a = this->SpacePoints[corners[0]];
-  const Vector3& b = this->SpacePoints[corners[1]];
-  const Vector3& c = this->SpacePoints[corners[2]];
-  return { ViewFromSpaceEdge(b, c, a), ViewFromSpaceEdge(c, a, b), ViewFromSpaceEdge(a, b, c) };
+  return apex;
 }
 
 void Embedding::ComputeFrames(const Triangulation& triangulation)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  this->Shapes.resize(count);
   if (this->Planar)
   {
     this->PlaneFrames.resize(count);
@@ -394,34 +388,39 @@ void Embedding::ComputeFrames(const Triangulation& triangulation)
         continue;
       }
       const Triangulation::Corners& corners = triangulation.GetCorners(t);
-      const EdgeViews views = this->GetViews(corners);
-      this->Shapes[t] = MakeShape(views, FindApex(views));
+      const int apex = this->FindApex(corners);
+      const TriangleShape shape = MakeShape(this->GetView(corners, apex), apex);
       if (this->Planar)
       {
-        this->ComputePlaneFrame(t, corners);
+        this->ComputePlaneFrame(t, corners, shape);
       }
       else
       {
-        this->ComputeSpaceFrame(t, corners);
+        this->ComputeSpaceFrame(t, corners, shape);
       }
     }
   });
 }
 
-void Embedding::ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
+void Embedding::ComputePlaneFrame(
+  TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape)
 {
-  const TriangleShape& shape = this->Shapes[triangle];
   PlaneFrame& frame = this->PlaneFrames[triangle];
   frame.Origin = this->PlanePoints[corners[NextCorner(shape.Apex)]];
   const Vector2 edge = this->PlanePoints[corners[PreviousCorner(shape.Apex)]] - frame.Origin;
   frame.Tangent = { edge.x / shape.Base, edge.y / shape.Base };
+  frame.Base = shape.Base;
+  frame.ApexX = shape.ApexX;
+  frame.Height = shape.Height;
+  frame.Apex = shape.Apex;
   frame.Side = this->GetOrientation(corners);
 }
 
-void Embedding::ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
+void Embedding::ComputeSpaceFrame(
+  TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape)
 {
-  const TriangleShape& shape = this->Shapes[triangle];
   SpaceFrame& frame = this->SpaceFrames[triangle];
+  frame.Shape = shape;
   frame.Origin = this->SpacePoints[corners[NextCorner(shape.Apex)]];
   frame.Tangent = Scaled(
     Difference(this->SpacePoints[corners[PreviousCorner(shape.Apex)]], frame.Origin),
@@ -438,8 +437,7 @@ FramePoint Embedding::ToFrame(TriangleIndex triangle, const Vector3& working) co
   if (this->Planar)
   {
     const PlaneFrame& frame = this->PlaneFrames[triangle];
-    const Vector2 d = Vector2{ working[0], working[1] } - frame.Origin;
-    return { { Dot(d, frame.Tangent), frame.Side * Cross(frame.Tangent, d) },
+    return { frame.ToFrame({ working[0], working[1] }),
       this->Columnar ? working[2] : frame.Side * working[2] };
   }
   const SpaceFrame& frame = this->SpaceFrames[triangle];
@@ -449,16 +447,14 @@ FramePoint Embedding::ToFrame(TriangleIndex triangle, const Vector3& working) co
 
 Vector3 Embedding::FromFrame(TriangleIndex triangle, const FramePoint& point) const
 {
-  const double x = point.InPlane.x;
   if (this->Planar)
   {
     const PlaneFrame& frame = this->PlaneFrames[triangle];
-    const double y = frame.Side * point.InPlane.y;
-    return { frame.Origin.x + (x * frame.Tangent.x - y * frame.Tangent.y),
-      frame.Origin.y + (x * frame.Tangent.y + y * frame.Tangent.x),
-      this->Columnar ? point.Offset : frame.Side * point.Offset };
+    const Vector2 inPlane = frame.FromFrame(point.InPlane);
+    return { inPlane.x, inPlane.y, this->Columnar ? point.Offset : frame.Side * point.Offset };
   }
   const SpaceFrame& frame = this->SpaceFrames[triangle];
+  const double x = point.InPlane.x;
   const double y = point.InPlane.y;
   Vector3 result;
   for (int axis = 0; axis < 3; ++axis)

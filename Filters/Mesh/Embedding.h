@@ -28,6 +28,35 @@ struct FramePoint
   double Offset = 0.0;
 };
 
+/// Frame and shape of a triangle in the plane: all that locating and mapping a point need to know of it.
+struct alignas(64) PlaneFrame
+{
+  Vector2 Origin;
+  Vector2 Tangent;
+  double Base = 1.0;
+  double ApexX = 0.5;
+  double Height = 1.0;
+  std::int32_t Apex = 2;
+  /// 1 if the apex is to the left of the tangent, -1 if to the right.
+  std::int32_t Side = 1;
+
+  TriangleShape Shape() const { return { this->Base, this->ApexX, this->Height, this->Apex }; }
+
+  Vector2 ToFrame(const Vector2& point) const
+  {
+    const Vector2 d = point - this->Origin;
+    return { Dot(d, this->Tangent), this->Side * Cross(this->Tangent, d) };
+  }
+
+  Vector2 FromFrame(const Vector2& point) const
+  {
+    const double y = this->Side * point.y;
+    return { this->Origin.x + (point.x * this->Tangent.x - y * this->Tangent.y),
+      this->Origin.y + (point.x * this->Tangent.y + y * this->Tangent.x) };
+  }
+};
+static_assert(sizeof(PlaneFrame) == 64, "One line of a processor's cache");
+
 /// Positions of a triangulation's points, in a plane or as a surface in 3-space.
 ///
 /// Everything is computed in *working coordinates*: those of the input times a power of two, Scale,
@@ -64,8 +93,33 @@ public:
   /// Relative rounding error of the coordinates as they were stored: half an ulp of float or double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
 
-  Vector3 ToWorking(const double point[3]) const;
-  void FromWorking(const Vector3& working, double point[3]) const;
+  Vector3 ToWorking(const double point[3]) const
+  {
+    if (this->AxisParallel)
+    {
+      return { point[this->AxisOrder[0]] * this->Scale, point[this->AxisOrder[1]] * this->Scale,
+        this->NormalSign * (point[this->AxisOrder[2]] * this->Scale) - this->PlaneDistance };
+    }
+    const Vector3 p{ point[0] * this->Scale, point[1] * this->Scale, point[2] * this->Scale };
+    return this->Planar ? this->ToTiltedPlane(p) : p;
+  }
+
+  void FromWorking(const Vector3& working, double point[3]) const
+  {
+    if (this->AxisParallel)
+    {
+      const double height = this->NormalSign * (working[2] + this->PlaneDistance);
+      point[this->AxisOrder[0]] = working[0] * this->InverseScale;
+      point[this->AxisOrder[1]] = working[1] * this->InverseScale;
+      point[this->AxisOrder[2]] = height * this->InverseScale;
+      return;
+    }
+    const Vector3 p = this->Planar ? this->FromTiltedPlane(working) : working;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      point[axis] = p[axis] * this->InverseScale;
+    }
+  }
 
   /// Whether a place is a point of the mesh, bit for bit.
   bool IsMeshPoint(std::int32_t meshPoint, const double point[3]) const;
@@ -99,8 +153,38 @@ public:
   bool IsConcordant(const Triangulation::Corners& corners) const;
   /// What each edge sees of the triangle.
   EdgeViews GetViews(const Triangulation::Corners& corners) const;
+  /// What the edge opposite one of the corners sees, to the same bits.
+  EdgeView GetView(const Triangulation::Corners& corners, int edge) const;
 
-  const TriangleShape& GetShape(TriangleIndex triangle) const { return this->Shapes[triangle]; }
+  TriangleShape GetShape(TriangleIndex triangle) const
+  {
+    return this->Planar ? this->PlaneFrames[triangle].Shape() : this->SpaceFrames[triangle].Shape;
+  }
+
+  /// The corner opposite a triangle's longest edge.
+  int GetApex(TriangleIndex triangle) const
+  {
+    return this->Planar ? this->PlaneFrames[triangle].Apex : this->SpaceFrames[triangle].Shape.Apex;
+  }
+
+  /// The frame of a triangle of a planar mesh.
+  const PlaneFrame& GetPlaneFrame(TriangleIndex triangle) const
+  {
+    return this->PlaneFrames[triangle];
+  }
+
+  /// Asks for a triangle's frame, without waiting for it.
+  void PrefetchFrame(TriangleIndex triangle) const
+  {
+    if (this->Planar)
+    {
+      Prefetch(&this->PlaneFrames[triangle]);
+    }
+    else
+    {
+      Prefetch(&this->SpaceFrames[triangle]);
+    }
+  }
 
   FramePoint ToFrame(TriangleIndex triangle, const Vector3& working) const;
   Vector3 FromFrame(TriangleIndex triangle, const FramePoint& point) const;
@@ -116,14 +200,6 @@ public:
   }
 
 private:
-  /// Frame of a triangle in the plane.
-  struct PlaneFrame
-  {
-    Vector2 Origin;
-    Vector2 Tangent;
-    /// 1 if the apex is to the left of the tangent, -1 if to the right.
-    double Side;
-  };
   /// Frame of a triangle in 3-space.
   struct SpaceFrame
   {
@@ -131,18 +207,26 @@ private:
     Vector3 Tangent;
     Vector3 Inward;
     Vector3 Normal;
+    TriangleShape Shape;
   };
 
+  Vector3 ToTiltedPlane(const Vector3& scaled) const;
+  Vector3 FromTiltedPlane(const Vector3& working) const;
+  /// The corner opposite the longest edge; the first of equals.
+  int FindApex(const Triangulation::Corners& corners) const;
   void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
     const Embedding* companion);
-  void ComputePlaneFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
-  void ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
+  void ComputePlaneFrame(
+    TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape);
+  void ComputeSpaceFrame(
+    TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape);
 
   bool Planar = false;
   bool Columnar = false;
   /// Whether the plane is parallel to two axes: no rounding on the way to working coordinates.
   bool AxisParallel = false;
   double Scale = 1.0;
+  double InverseScale = 1.0;
   double LargestCoordinate = 0.0;
   double Diagonal = 0.0;
   double CoordinatePrecision = 0.0;
@@ -156,7 +240,6 @@ private:
   std::vector<Vector2> PlanePoints;
   // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times Scale.
   std::vector<Vector3> SpacePoints;
-  std::vector<TriangleShape> Shapes;
   std::vector<PlaneFrame> PlaneFrames;
   std::vector<SpaceFrame> SpaceFrames;
 };

@@ -5,11 +5,103 @@
 
 #include "MeshValidation.h"
 
+#include "Kernel/Vectorize.h"
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace homeomorphism
 {
+namespace
+{
+
+/// Places points from @a begin on in a triangle's frame, up to the first that is not for certain in its
+/// interior or higher over the plane than @a highest. Returns the number of that one, @a end if there is none.
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+int FindRun(const PlaneFrame& frame, const double working[3][PointBlock::Size], int begin, int end,
+  double highest, PointBlock& block)
+{
+  const PlaneFrame f = frame;
+  const double* x = working[0];
+  const double* y = working[1];
+  const double* height = working[2];
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::int64_t isIn[PointBlock::Size];
+  const int stop = begin + InWholeVectors(end - begin);
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    const PlaneRelation relation(f, { x[i], y[i] });
+    block.InPlane[0][i] = relation.InPlane.x;
+    block.InPlane[1][i] = relation.InPlane.y;
+    block.Apex[i] = relation.Apex;
+    block.First[i] = relation.First;
+    block.Second[i] = relation.Second;
+    // A height that is not a number is too high. No branches, which would keep points apart.
+    const double margin = std::abs(height[i]) <= highest ? relation.Margin : infinity;
+    isIn[i] = relation.Least > margin ? 1 : 0;
+  }
+  int inside = begin;
+  while (inside < end && isIn[inside] != 0)
+  {
+    ++inside;
+  }
+  return inside;
+}
+
+/// From barycentric coordinates, arrays by corner, to a plane.
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const coordinates[3],
+  double plane[2][PointBlock::Size])
+{
+  const PlaneFrame f = frame;
+  const double* apex = coordinates[f.Apex];
+  const double* second = coordinates[PreviousCorner(f.Apex)];
+  const double side = f.Side;
+  const int stop = begin + InWholeVectors(end - begin);
+  HOMEOMORPHISM_LANES
+  for (int i = begin; i < stop; ++i)
+  {
+    // As in TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
+    const double x = f.Base * second[i] + f.ApexX * apex[i];
+    const double y = side * (f.Height * apex[i]);
+    plane[0][i] = f.Origin.x + (x * f.Tangent.x - y * f.Tangent.y);
+    plane[1][i] = f.Origin.y + (x * f.Tangent.y + y * f.Tangent.x);
+  }
+}
+
+/// Half an ulp of 1.
+constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
+
+/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a triangle
+/// or its neighbour is so thin that the columns are almost parallel; the charts know better.
+double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
+{
+  return (other.Base / shape.Base) * (other.Height / shape.Height);
+}
+
+double Determinant(const LinearChart&, const LinearChart&, const TriangleShape& shape,
+  const TriangleShape& otherShape, const Barycentric&, const Matrix2&)
+{
+  return AffineDeterminant(shape, otherShape);
+}
+
+double Determinant(const SmoothChart& chart, const SmoothChart& other, const TriangleShape& shape,
+  const TriangleShape& otherShape, const Barycentric& l, const Matrix2&)
+{
+  return AffineDeterminant(shape, otherShape) *
+    (other.DeterminantRatio(l) / chart.DeterminantRatio(l));
+}
+
+double Determinant(const ContourChart&, const ContourChart&, const TriangleShape&,
+  const TriangleShape&, const TriangularCoordinates&, const Matrix2& matrix)
+{
+  return matrix.Determinant();
+}
+
+} // namespace
 
 std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
   vtkPolyData* target, const HomeomorphismOptions& options, MeshProblems& problems)
@@ -74,8 +166,10 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
 double Homeomorphism::GetReach(Side side, double tolerance, double precision) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
-  // Three coordinates, each rounded when stored and again on the way to the triangle's frame.
-  const double rounding = 8.0 * std::max(precision, embedding.GetCoordinatePrecision()) *
+  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself is
+  // measured in a triangle's frame, as doubles, with edges up to three times as long as the coordinates.
+  const double rounding =
+    (8.0 * std::max(precision, embedding.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
     embedding.GetLargestCoordinate();
   return std::max(rounding, tolerance * embedding.GetDiagonal());
 }
@@ -83,17 +177,267 @@ double Homeomorphism::GetReach(Side side, double tolerance, double precision) co
 Location Homeomorphism::Locate(
   Side side, const double point[3], double reach, TriangleIndex hint) const
 {
-  const Embedding& embedding = this->Pair->GetEmbedding(side);
-  Location place =
-    this->Pair->GetLocation(side).Find(embedding.ToWorking(point), reach, hint);
+  return this->Locate(side, point, this->Pair->GetEmbedding(side).ToWorking(point), reach, hint);
+}
+
+Location Homeomorphism::Locate(Side side, const double point[3], const Vector3& working, double reach,
+  TriangleIndex hint) const
+{
+  Location place = this->Pair->GetLocation(side).Find(working, reach, hint);
   if (place.Corner >= 0 &&
-    embedding.IsMeshPoint(
+    this->Pair->GetEmbedding(side).IsMeshPoint(
       this->Pair->GetTriangulation().GetCorners(place.Triangle)[place.Corner], point))
   {
     // The rounding of its distance from a plane that is not parallel to two axes must not move it.
     place.Point.Offset = 0.0;
   }
   return place;
+}
+
+int Homeomorphism::LocateBlock(
+  Side side, PointBlock& block, double reach, LocationHint& hint) const
+{
+  const Embedding& embedding = this->Pair->GetEmbedding(side);
+  const Triangulation& topology = this->Pair->GetTriangulation();
+  const PointLocation& location = this->Pair->GetLocation(side);
+  // From triangle to adjacent triangle before a point is looked for with more care.
+  constexpr int MaximumSteps = 4;
+  const bool planar = embedding.IsPlanar();
+  const bool columnar = embedding.IsColumnar();
+  const bool scattered = planar && hint.ScatteredBlocks > 0;
+  TriangleIndex seeds[PointBlock::Capacity];
+  double working[3][PointBlock::Size];
+  for (int i = 0; i < block.Count; ++i)
+  {
+    const Vector3 point = embedding.ToWorking(block.Points[i]);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      working[axis][i] = point[axis];
+    }
+    if (scattered)
+    {
+      // Memory is slow to answer but takes many questions at a time.
+      seeds[i] = location.GetSeed({ point[0], point[1] });
+      if (seeds[i] >= 0)
+      {
+        embedding.PrefetchFrame(seeds[i]);
+        topology.PrefetchAcross(seeds[i]);
+      }
+    }
+  }
+  int jumps = 0;
+  int outside = 0;
+  int steps = 0;
+  TriangleIndex start = hint.Triangle;
+  for (int i = 0; i < block.Count;)
+  {
+    start = scattered && steps == 0 ? seeds[i] : start;
+    if (planar && start >= 0 && steps < MaximumSteps)
+    {
+      // Points in a row are often in one triangle: as many are tried as there were last time, and more.
+      const int end =
+        scattered ? i + 1 : std::min(block.Count, i + std::max(WidestVector, 2 * hint.RunLength));
+      const PlaneFrame& frame = embedding.GetPlaneFrame(start);
+      const double highest = columnar ? std::numeric_limits<double>::max() : reach;
+      const int inside = FindRun(frame, working, i, end, highest, block);
+      for (int k = i; k < inside; ++k)
+      {
+        block.Triangles[k] = start;
+        block.Corners[k] = -1;
+        block.Offsets[k] = columnar ? working[2][k] : 0.0;
+      }
+      if (inside > i)
+      {
+        hint.Triangle = start;
+        hint.RunLength = std::min(inside - i, 32);
+        steps = 0;
+        i = inside;
+      }
+      if (inside == end)
+      {
+        continue;
+      }
+      // The next point is elsewhere: beyond which edge is known already.
+      const double least = std::min({ block.Apex[i], block.First[i], block.Second[i] });
+      const bool isNear = least < -1e-9 && least > -4.0;
+      const int edge = least == block.Apex[i]
+        ? frame.Apex
+        : (least == block.First[i] ? NextCorner(frame.Apex) : PreviousCorner(frame.Apex));
+      jumps += steps == 0 && least < -4.0;
+      ++steps;
+      const TriangleIndex next = isNear ? topology.GetAcross(start, edge).Triangle : -1;
+      if (next >= 0)
+      {
+        start = next;
+        continue;
+      }
+    }
+    steps = 0;
+    const Location place = this->Locate(side, block.Points[i],
+      { working[0][i], working[1][i], working[2][i] }, reach, start);
+    block.Triangles[i] = place.Triangle;
+    block.Corners[i] = place.Corner;
+    block.InPlane[0][i] = place.Point.InPlane.x;
+    block.InPlane[1][i] = place.Point.InPlane.y;
+    block.Offsets[i] = place.Point.Offset;
+    if (place.Triangle >= 0)
+    {
+      const TriangleShape shape = embedding.GetShape(place.Triangle);
+      const Barycentric l = shape.ToBarycentric(place.Point.InPlane);
+      block.Apex[i] = l[shape.Apex];
+      block.First[i] = l[NextCorner(shape.Apex)];
+      block.Second[i] = l[PreviousCorner(shape.Apex)];
+      hint.Triangle = place.Triangle;
+      start = place.Triangle;
+    }
+    else
+    {
+      ++outside;
+    }
+    ++i;
+  }
+  if (hint.ScatteredBlocks > 0)
+  {
+    --hint.ScatteredBlocks;
+  }
+  else if (2 * jumps > block.Count)
+  {
+    hint.ScatteredBlocks = 16;
+  }
+  return outside;
+}
+
+void Homeomorphism::MapBlock(Side from, PointBlock& block) const
+{
+  const Embedding& source = this->Pair->GetEmbedding(from);
+  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const ChartedTriangulation& charts = this->GetCharts(from);
+  const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
+  // Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of it.
+  const auto forEachRun = [&block](auto&& use, auto&& useOther) {
+    for (int begin = 0; begin < block.Count;)
+    {
+      const TriangleIndex t = block.Triangles[begin];
+      int end = begin + 1;
+      if (t < 0 || block.Corners[begin] >= 0)
+      {
+        useOther(begin);
+      }
+      else
+      {
+        while (end < block.Count && block.Triangles[end] == t && block.Corners[end] < 0)
+        {
+          ++end;
+        }
+        use(begin, end, t);
+      }
+      begin = end;
+    }
+  };
+  const auto byCorner = [&](TriangleIndex t) {
+    std::array<double*, 3> coordinates;
+    const int apex = source.GetApex(t);
+    coordinates[apex] = block.Apex;
+    coordinates[NextCorner(apex)] = block.First;
+    coordinates[PreviousCorner(apex)] = block.Second;
+    return coordinates;
+  };
+  // Of points in contours, their images in the frame of the target's triangle.
+  double images[2][PointBlock::Capacity];
+  if (charts.GetSystem() == CoordinateSystem::Smooth)
+  {
+    // Memory is slow to answer but takes many questions at a time.
+    forEachRun(
+      [&](int begin, int, TriangleIndex t) {
+        const std::array<double*, 3> l = byCorner(t);
+        const int lesser = l[1][begin] < l[0][begin] ? 1 : 0;
+        const int corner = l[2][begin] < l[lesser][begin] ? 2 : lesser;
+        Prefetch(&charts.GetSmoothStrips(t)[corner]);
+        Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
+        target.PrefetchFrame(t);
+      },
+      [](int) {});
+    SmoothLanes lanes;
+    forEachRun(
+      [&](int begin, int end, TriangleIndex t) {
+        SetSmoothLanes(lanes, begin, end, byCorner(t).data(), charts.GetSmoothStrips(t),
+          otherCharts.GetSmoothStrips(t));
+      },
+      [&](int other) { FillSmoothLanes(lanes, other, other + 1); });
+    MapSmoothLanes(lanes, block.Count);
+    forEachRun(
+      [&](int begin, int end, TriangleIndex t) {
+        GetSmoothLanes(lanes, begin, end, byCorner(t).data());
+      },
+      [](int) {});
+  }
+  else if (charts.GetSystem() == CoordinateSystem::Contour)
+  {
+    std::array<const ContourChart*, PointBlock::Capacity> froms{};
+    std::array<const ContourChart*, PointBlock::Capacity> tos{};
+    Vector2 points[PointBlock::Capacity];
+    int numbers[PointBlock::Capacity];
+    int count = 0;
+    for (int i = 0; i < block.Count; ++i)
+    {
+      const TriangleIndex t = block.Triangles[i];
+      if (t >= 0 && block.Corners[i] < 0 && charts.GetSystemOf(t) == CoordinateSystem::Contour)
+      {
+        froms[count] = &charts.GetContourChart(t);
+        tos[count] = &otherCharts.GetContourChart(t);
+        points[count] = { block.InPlane[0][i], block.InPlane[1][i] };
+        numbers[count++] = i;
+      }
+    }
+    ContourChart::MapPoints(froms.data(), tos.data(), points, count);
+    for (int n = 0; n < count; ++n)
+    {
+      images[0][numbers[n]] = points[n].x;
+      images[1][numbers[n]] = points[n].y;
+    }
+  }
+  forEachRun(
+    [&](int begin, int end, TriangleIndex t) {
+      if (charts.GetSystemOf(t) == CoordinateSystem::Contour)
+      {
+        for (int i = begin; i < end; ++i)
+        {
+          const Vector2 image{ images[0][i], images[1][i] };
+          target.FromWorking(
+            target.FromFrame(t, { image, this->OffsetOfImage(from, block.Offsets[i]) }),
+            block.Points[i]);
+        }
+        return;
+      }
+      const std::array<double*, 3> coordinates = byCorner(t);
+      if (target.IsPlanar())
+      {
+        const PlaneFrame& frame = target.GetPlaneFrame(t);
+        const double side = target.IsColumnar() ? 1.0 : frame.Side;
+        double mapped[2][PointBlock::Size];
+        LeaveFrame(frame, begin, end, coordinates.data(), mapped);
+        for (int i = begin; i < end; ++i)
+        {
+          const double offset = side * this->OffsetOfImage(from, block.Offsets[i]);
+          target.FromWorking({ mapped[0][i], mapped[1][i], offset }, block.Points[i]);
+        }
+        return;
+      }
+      for (int i = begin; i < end; ++i)
+      {
+        const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
+        target.FromWorking(
+          target.FromFrame(t, { target.GetShape(t).FromBarycentric(l),
+                                this->OffsetOfImage(from, block.Offsets[i]) }),
+          block.Points[i]);
+      }
+    },
+    [&](int other) {
+      if (block.Triangles[other] >= 0)
+      {
+        this->MapPoint(from, block.GetPlace(other), block.Points[other]);
+      }
+    });
 }
 
 template <typename Use>
@@ -114,12 +458,8 @@ auto Homeomorphism::VisitCharts(Side from, TriangleIndex triangle, Use&& use) co
 
 void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) const
 {
-  const Embedding& source = this->Pair->GetEmbedding(from);
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
-  // Distances from a plane are lengths of the input's space, not of either working space.
-  const double offset = place.Point.Offset == 0.0
-    ? 0.0
-    : place.Point.Offset / source.GetScale() * target.GetScale();
+  const double offset = this->OffsetOfImage(from, place.Point.Offset);
   if (place.Corner >= 0)
   {
     target.FromMeshPoint(
@@ -135,25 +475,37 @@ void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) 
   target.FromWorking(target.FromFrame(place.Triangle, point), image);
 }
 
+template <typename Chart>
+Jacobian Homeomorphism::Derive(Side from, TriangleIndex triangle, const Chart& chart,
+  const Chart& other, const typename Chart::Reference& reference) const
+{
+  const Matrix2 matrix = MapDerivative(chart, other, reference);
+  const TriangleShape& shape = this->Pair->GetEmbedding(from).GetShape(triangle);
+  const TriangleShape& otherShape = this->Pair->GetEmbedding(Opposite(from)).GetShape(triangle);
+  return this->FromFrames(
+    from, triangle, matrix, Determinant(chart, other, shape, otherShape, reference, matrix));
+}
+
 Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 {
-  return this->FromFrames(from, place.Triangle,
-    this->VisitCharts(from, place.Triangle, [&place](const auto& chart, const auto& other) {
-      return MapDerivative(chart, other, chart.ToReference(place.Point.InPlane));
-    }));
+  return this->VisitCharts(from, place.Triangle,
+    [this, from, &place](const auto& chart, const auto& other) {
+      return this->Derive(
+        from, place.Triangle, chart, other, chart.ToReference(place.Point.InPlane));
+    });
 }
 
 Jacobian Homeomorphism::GetJacobian(
   Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
 {
-  return this->FromFrames(from, triangle,
-    this->VisitCharts(from, triangle, [&coordinates](const auto& chart, const auto& other) {
-      return MapDerivative(chart, other, chart.FromCoordinates(coordinates));
-    }));
+  return this->VisitCharts(from, triangle,
+    [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
+      return this->Derive(from, triangle, chart, other, chart.FromCoordinates(coordinates));
+    });
 }
 
 Jacobian Homeomorphism::FromFrames(
-  Side from, TriangleIndex triangle, const Matrix2& inFrames) const
+  Side from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const
 {
   const Embedding& source = this->Pair->GetEmbedding(from);
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
@@ -174,7 +526,7 @@ Jacobian Homeomorphism::FromFrames(
         alongInward * from3[1][column] + to3[2][row] * from3[2][column];
     }
   }
-  jacobian.Determinant = inFrames.Determinant() * rescale * rescale *
+  jacobian.Determinant = determinant * rescale * rescale *
     source.GetHandedness(triangle) * target.GetHandedness(triangle);
   return jacobian;
 }

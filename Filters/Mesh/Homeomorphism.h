@@ -45,6 +45,45 @@ struct Jacobian
   }
 };
 
+/// What helps to find the next of many points; it changes how fast, never what is found.
+struct LocationHint
+{
+  TriangleIndex Triangle = -1;
+  /// How many points in a row were in one triangle lately.
+  int RunLength = 1;
+  /// For how many more blocks points are taken to be so far from each other that the last one's triangle
+  /// is no help.
+  int ScatteredBlocks = 0;
+};
+
+/// Some points that are located and mapped together, which takes a fraction of the time.
+struct PointBlock
+{
+  static constexpr int Capacity = SmoothLanes::Capacity;
+  static constexpr int Size = SmoothLanes::Size;
+
+  int Count = 0;
+  /// The points; after MapBlock, the images of those that are inside.
+  double Points[Capacity][3];
+
+  /// The places (see Location), each number in an array of its own.
+  TriangleIndex Triangles[Capacity];
+  int Corners[Capacity];
+  double InPlane[2][Size];
+  double Offsets[Capacity];
+  /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one before it.
+  /// MapBlock uses them up.
+  double Apex[Size];
+  double First[Size];
+  double Second[Size];
+
+  Location GetPlace(int i) const
+  {
+    return { this->Triangles[i], { { this->InPlane[0][i], this->InPlane[1][i] }, this->Offsets[i] },
+      this->Corners[i] };
+  }
+};
+
 /// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
 /// coordinates of a single one. Immutable; any number of threads may use it.
 class Homeomorphism
@@ -70,6 +109,13 @@ public:
   /// The image of a place of @a from's domain. Corners go to corners exactly.
   void MapPoint(Side from, const Location& place, double image[3]) const;
 
+  /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
+  int LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const;
+
+  /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose place has
+  /// no triangle stay.
+  void MapBlock(Side from, PointBlock& block) const;
+
   /// The derivative at a place; on an edge, the limit from the place's triangle.
   Jacobian GetJacobian(Side from, const Location& place) const;
 
@@ -87,11 +133,31 @@ public:
 private:
   Homeomorphism() = default;
 
+  /// A point's place, given in both coordinates.
+  Location Locate(Side side, const double point[3], const Vector3& working, double reach,
+    TriangleIndex hint) const;
+
+  /// The distance of a place's image from the plane of its triangle. Distances from a plane are lengths of
+  /// the input's space, not of either working space.
+  double OffsetOfImage(Side from, double offset) const
+  {
+    return offset == 0.0
+      ? 0.0
+      : offset / this->Pair->GetEmbedding(from).GetScale() *
+        this->Pair->GetEmbedding(Opposite(from)).GetScale();
+  }
+
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
 
-  /// From the triangle's frames to the input's coordinates.
-  Jacobian FromFrames(Side from, TriangleIndex triangle, const Matrix2& inFrames) const;
+  /// The derivative at a triangle's reference point.
+  template <typename Chart>
+  Jacobian Derive(Side from, TriangleIndex triangle, const Chart& chart, const Chart& other,
+    const typename Chart::Reference& reference) const;
+
+  /// From the triangle's frames to the input's coordinates. @a determinant is that of the matrix.
+  Jacobian FromFrames(
+    Side from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;

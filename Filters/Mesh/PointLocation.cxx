@@ -81,6 +81,7 @@ PointLocation::PointLocation(const Triangulation& triangulation, const Embedding
   }
   if (embedding.IsPlanar())
   {
+    this->PlantSeeds(triangles);
     this->PlaneTree.Build(
       std::move(triangles), [this](TriangleIndex t) { return this->PlaneBox(t); });
   }
@@ -108,6 +109,44 @@ Box<2> PointLocation::PlaneBox(TriangleIndex triangle) const
   return box;
 }
 
+void PointLocation::PlantSeeds(const std::vector<TriangleIndex>& triangles)
+{
+  Box<2> bounds;
+  for (const TriangleIndex t : triangles)
+  {
+    bounds.Add(this->PlaneBox(t));
+  }
+  const double width = bounds.Greatest[0] - bounds.Least[0];
+  const double height = bounds.Greatest[1] - bounds.Least[1];
+  const double cells = 0.5 * static_cast<double>(triangles.size());
+  const double columns = std::floor(std::sqrt(cells * width / height));
+  if (!(columns >= 1.0 && columns <= cells))
+  {
+    return;
+  }
+  this->SeedColumns = columns;
+  this->SeedRows = std::max(1.0, std::floor(cells / columns));
+  this->SeedOrigin = { bounds.Least[0], bounds.Least[1] };
+  this->SeedScale = { this->SeedColumns / width, this->SeedRows / height };
+  this->Seeds.assign(
+    static_cast<std::size_t>(this->SeedColumns) * static_cast<std::size_t>(this->SeedRows), -1);
+  for (const TriangleIndex t : triangles)
+  {
+    Vector2 middle;
+    for (const std::int32_t corner : this->Topology.GetCorners(t))
+    {
+      middle = middle + (1.0 / 3.0) * this->Geometry.GetPlanePoint(corner);
+    }
+    const double x = (middle.x - this->SeedOrigin.x) * this->SeedScale.x;
+    const double y = (middle.y - this->SeedOrigin.y) * this->SeedScale.y;
+    if (x >= 0.0 && y >= 0.0 && x < this->SeedColumns && y < this->SeedRows)
+    {
+      this->Seeds[static_cast<std::size_t>(y) * static_cast<std::size_t>(this->SeedColumns) +
+        static_cast<std::size_t>(x)] = t;
+    }
+  }
+}
+
 Location PointLocation::Find(
   const Vector3& working, double tolerance, TriangleIndex hint) const
 {
@@ -121,7 +160,7 @@ Location PointLocation::Find(
     return {};
   }
   Location location = this->Geometry.IsPlanar() ? this->FindInPlane(working, tolerance, hint)
-                                                : this->FindNearest(working, tolerance);
+                                                : this->FindNearest(working, tolerance, hint);
   if (!this->Geometry.IsColumnar())
   {
     location.Point.Offset = 0.0;
@@ -129,44 +168,152 @@ Location PointLocation::Find(
   return location;
 }
 
-/// The place of a point that is in a triangle of the plane.
-Location PointLocation::Place(TriangleIndex triangle, const Vector3& working) const
+int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& working) const
 {
-  Location location{ triangle, this->Geometry.ToFrame(triangle, working) };
   const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
+  int found = -1;
   for (int k = 0; k < 3; ++k)
   {
     const Vector3 corner = this->Geometry.GetPoint(corners[k]);
     if (working[0] == corner[0] && working[1] == corner[1] &&
       (this->Geometry.IsPlanar() || working[2] == corner[2]))
     {
-      location.Corner = k;
+      found = k;
     }
   }
-  return location;
+  return found;
+}
+
+/// The place of a point that is in a triangle of the plane.
+Location PointLocation::Place(TriangleIndex triangle, const Vector3& working) const
+{
+  return { triangle, this->Geometry.ToFrame(triangle, working),
+    this->FindCorner(triangle, working) };
+}
+
+/// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for certain in
+/// the triangle's interior, @a location has its place.
+TriangleIndex PointLocation::Walk(
+  const Vector2& point, TriangleIndex start, Location& location) const
+{
+  // Walks in triangulations that are not Delaunay's may go round in circles.
+  constexpr int longest = 64;
+  TriangleIndex t = start;
+  for (int step = 0; step < longest; ++step)
+  {
+    const PlaneFrame& frame = this->Geometry.GetPlaneFrame(t);
+    const PlaneRelation relation(frame, point);
+    if (relation.IsInside())
+    {
+      location.Triangle = t;
+      location.Point.InPlane = relation.InPlane;
+      return t;
+    }
+    // The edge to leave by: the one that the point is farthest beyond.
+    int edge = -1;
+    if (relation.IsOutside())
+    {
+      edge = frame.Apex;
+      double least = relation.Apex;
+      if (relation.First < least)
+      {
+        least = relation.First;
+        edge = NextCorner(frame.Apex);
+      }
+      if (relation.Second < least)
+      {
+        edge = PreviousCorner(frame.Apex);
+      }
+    }
+    else
+    {
+      const Triangulation::Corners& corners = this->Topology.GetCorners(t);
+      int onEdge = -1;
+      int edges = 0;
+      for (int k = 0; k < 3; ++k)
+      {
+        const int side = frame.Side *
+          Orientation(this->Geometry.GetPlanePoint(corners[NextCorner(k)]),
+            this->Geometry.GetPlanePoint(corners[PreviousCorner(k)]), point);
+        if (side < 0)
+        {
+          edge = k;
+        }
+        else if (side == 0)
+        {
+          onEdge = k;
+          ++edges;
+        }
+      }
+      if (edge < 0)
+      {
+        if (edges == 0)
+        {
+          return t;
+        }
+        // Within an edge of two triangles there is no third. At a vertex or on the boundary there may be
+        // more, also such that share no point of the mesh with this one.
+        const TriangleIndex other =
+          edges == 1 ? this->Topology.GetAcross(t, onEdge).Triangle : -1;
+        return other >= 0 ? std::min(t, other) : -1;
+      }
+    }
+    t = this->Topology.GetAcross(t, edge).Triangle;
+    if (t < 0)
+    {
+      return -1;
+    }
+  }
+  return -1;
+}
+
+TriangleIndex PointLocation::SearchPlane(const Vector2& point) const
+{
+  TriangleIndex found = -1;
+  this->PlaneTree.Search(
+    Box<2>::Around({ point.x, point.y }, 0.0), [this, &point, &found](TriangleIndex t) {
+      if ((found < 0 || t < found) &&
+        Containment(this->Geometry, this->Topology.GetCorners(t), point) >= 0)
+      {
+        found = t;
+      }
+      return true;
+    });
+  return found;
 }
 
 Location PointLocation::FindInPlane(
   const Vector3& working, double tolerance, TriangleIndex hint) const
 {
   const Vector2 point{ working[0], working[1] };
-  // No triangles overlap, so one that has the point in its interior is the only one.
-  TriangleIndex found = -1;
-  if (hint >= 0 && Containment(this->Geometry, this->Topology.GetCorners(hint), point) > 0)
+  Location location;
+  location.Point.Offset = working[2];
+  // From a triangle that is many of its sizes away it is shorter by way of the seed.
+  constexpr double far = -4.0;
+  // The domain's coordinates are near 1; products of huge ones would overflow.
+  constexpr double huge = 1e100;
+  const bool isHuge = std::abs(point.x) > huge || std::abs(point.y) > huge;
+  TriangleIndex start = isHuge || (hint >= 0 && this->Topology.IsMasked(hint)) ? -1 : hint;
+  if (start >= 0)
   {
-    found = hint;
+    const PlaneFrame& frame = this->Geometry.GetPlaneFrame(start);
+    start = PlaneRelation(frame, point).Least < far * frame.Height ? -1 : start;
   }
-  else
+  TriangleIndex found = -1;
+  for (const TriangleIndex candidate : { start, this->GetSeed(point) })
   {
-    this->PlaneTree.Search(
-      Box<2>::Around({ point.x, point.y }, 0.0), [this, &point, &found](TriangleIndex t) {
-        if ((found < 0 || t < found) &&
-          Containment(this->Geometry, this->Topology.GetCorners(t), point) >= 0)
-        {
-          found = t;
-        }
-        return true;
-      });
+    if (found < 0 && candidate >= 0)
+    {
+      found = this->Walk(point, candidate, location);
+    }
+  }
+  if (location.Triangle >= 0)
+  {
+    return location;
+  }
+  if (found < 0)
+  {
+    found = this->SearchPlane(point);
   }
   if (found >= 0)
   {
@@ -186,22 +333,31 @@ Location PointLocation::FindInPlane(
   return nearest.Found;
 }
 
-Location PointLocation::FindNearest(const Vector3& working, double tolerance) const
+Location PointLocation::FindNearest(
+  const Vector3& working, double tolerance, TriangleIndex hint) const
 {
   Nearest nearest{ {}, tolerance };
-  Box<3> reach = Box<3>::Around(working, tolerance);
-  this->SpaceTree.Search(reach, [&](TriangleIndex t) {
+  const auto offer = [&](TriangleIndex t) {
     FramePoint place = this->Geometry.ToFrame(t, working);
     const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), place.InPlane);
     const double distance = std::hypot(Distance(inTriangle, place.InPlane), place.Offset);
     place.InPlane = inTriangle;
     nearest.Offer(t, place, distance);
+  };
+  if (hint >= 0 && !this->Topology.IsMasked(hint))
+  {
+    // The nearest is no farther than this one.
+    offer(hint);
+  }
+  Box<3> reach = Box<3>::Around(working, nearest.Distance);
+  this->SpaceTree.Search(reach, [&](TriangleIndex t) {
+    offer(t);
     reach = Box<3>::Around(working, nearest.Distance);
     return true;
   });
   if (nearest.Found.Triangle >= 0)
   {
-    nearest.Found.Corner = this->Place(nearest.Found.Triangle, working).Corner;
+    nearest.Found.Corner = this->FindCorner(nearest.Found.Triangle, working);
   }
   return nearest.Found;
 }

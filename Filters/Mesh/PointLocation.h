@@ -11,6 +11,13 @@
 #include "Embedding.h"
 #include "Triangulation.h"
 
+#include "Kernel/Vectorize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
 namespace homeomorphism
 {
 
@@ -25,6 +32,43 @@ struct Location
   int Corner = -1;
 };
 
+/// How a point of the plane lies to a triangle, as far as rounding lets its frame tell.
+struct PlaneRelation
+{
+  Vector2 InPlane;
+  /// Barycentric coordinates of the apex, the corner after it, and the corner before it.
+  double Apex;
+  double First;
+  double Second;
+  /// The least of the three, times the triangle's height, and a bound of its error.
+  double Least;
+  double Margin;
+
+  HOMEOMORPHISM_ALWAYS_INLINE PlaneRelation(const PlaneFrame& frame, const Vector2& point)
+  {
+    const Vector2 d = point - frame.Origin;
+    this->InPlane = { Dot(d, frame.Tangent), frame.Side * Cross(frame.Tangent, d) };
+    // As in TriangleShape::ToBarycentric.
+    this->Apex = this->InPlane.y / frame.Height;
+    this->Second = (this->InPlane.x - frame.ApexX * this->Apex) / frame.Base;
+    this->First = 1.0 - this->Apex - this->Second;
+    double least = this->Apex < this->First ? this->Apex : this->First;
+    least = least < this->Second ? least : this->Second;
+    this->Least = least * frame.Height;
+    // With u half an ulp of 1, the error of y is at most 5 u |d| (a rounded difference, a tangent rounded
+    // twice, a product, a sum), hence that of the apex' coordinate, with the height's 8 u, 13 u |d| / height;
+    // that of the second at most 30 u |d| / height (x, the apex' coordinate, and 8 u base of the apex'
+    // place), since base > height; that of the first the sum, |d| being at least the distance of the
+    // opposite edge, which is more than the height, where it is zero. Products near the least normal
+    // number are not rounded relatively.
+    constexpr double u = 0.5 * std::numeric_limits<double>::epsilon();
+    this->Margin = 64.0 * u * (std::abs(d.x) + std::abs(d.y)) + 1e-290;
+  }
+
+  bool IsInside() const { return this->Least > this->Margin; }
+  bool IsOutside() const { return this->Least < -this->Margin; }
+};
+
 /// Finds the triangle of a point. The answer is a function of the point alone: it depends neither on
 /// the hint nor on earlier points or other threads.
 ///
@@ -32,6 +76,10 @@ struct Location
 /// predicates; of several triangles that share the point the one with the lowest number counts. In
 /// 3-space the nearest triangle counts, the lowest number of equally near ones. A point outside by no
 /// more than the tolerance is taken to the nearest point of the domain.
+///
+/// In a plane the search walks from triangle to adjacent triangle, from the hint if that is near, else
+/// from a triangle that a grid has near the point. A walk that comes to the boundary or takes too long
+/// gives way to a search of all boxes, which also answers whether a point is outside.
 class PointLocation
 {
 public:
@@ -39,8 +87,20 @@ public:
   PointLocation(const Triangulation& triangulation, const Embedding& embedding);
 
   /// @a working is the point in the embedding's working coordinates, @a tolerance a distance in
-  /// them, @a hint the triangle where the point probably is, or -1.
+  /// them, @a hint the triangle where the point probably is, or -1. The embedding must have its frames.
   Location Find(const Vector3& working, double tolerance, TriangleIndex hint) const;
+
+  /// A triangle of a planar mesh that is probably near a point, or -1.
+  TriangleIndex GetSeed(const Vector2& point) const
+  {
+    // Written so that a coordinate that is not a number has no seed.
+    const double x = (point.x - this->SeedOrigin.x) * this->SeedScale.x;
+    const double y = (point.y - this->SeedOrigin.y) * this->SeedScale.y;
+    return x >= 0.0 && y >= 0.0 && x < this->SeedColumns && y < this->SeedRows
+      ? this->Seeds[static_cast<std::size_t>(y) * static_cast<std::size_t>(this->SeedColumns) +
+          static_cast<std::size_t>(x)]
+      : -1;
+  }
 
   /// Calls visit(triangle) for the triangles of a planar domain whose boxes may meet a box, until it
   /// returns false.
@@ -52,14 +112,25 @@ public:
 
 private:
   Box<2> PlaneBox(TriangleIndex triangle) const;
+  void PlantSeeds(const std::vector<TriangleIndex>& triangles);
+  int FindCorner(TriangleIndex triangle, const Vector3& working) const;
   Location Place(TriangleIndex triangle, const Vector3& working) const;
   Location FindInPlane(const Vector3& working, double tolerance, TriangleIndex hint) const;
-  Location FindNearest(const Vector3& working, double tolerance) const;
+  TriangleIndex Walk(const Vector2& point, TriangleIndex start, Location& location) const;
+  TriangleIndex SearchPlane(const Vector2& point) const;
+  Location FindNearest(const Vector3& working, double tolerance, TriangleIndex hint) const;
 
   const Triangulation& Topology;
   const Embedding& Geometry;
   BoxTree<2> PlaneTree;
   BoxTree<3> SpaceTree;
+
+  // A grid over a planar domain; each cell has a triangle whose middle is in it, or -1.
+  std::vector<TriangleIndex> Seeds;
+  Vector2 SeedOrigin;
+  Vector2 SeedScale;
+  double SeedColumns = 0.0;
+  double SeedRows = 0.0;
 };
 
 } // namespace homeomorphism

@@ -17,6 +17,8 @@ Two ways to use it:
 True
 """
 
+from typing import TYPE_CHECKING
+
 from .vtkFiltersHomeomorphism import (
     vtkDifferentiableHomeomorphism,
     vtkHomeomorphismTransform,
@@ -24,6 +26,9 @@ from .vtkFiltersHomeomorphism import (
     vtkResampleThroughHomeomorphism,
     vtkTriangularCoordinates,
 )
+
+if TYPE_CHECKING:
+    from .arrays import Homeomorphism
 
 __all__ = [
     "Homeomorphism",

@@ -73,9 +73,8 @@ for system in "Linear", "Contour", "Smooth":
     save("pieces-mesh-" + system, simple.DifferentiableHomeomorphism(**settings))
     save("pieces-edges-" + system, simple.JacobianContinuity(**settings))
     settings.update({"Source": source, "Target": target})
-    # The first process measures, and answers.
-    continuity.UpdatePropertyInformation()
-    counts = [int(continuity.GetPropertyValue("NumberOf" + what))
+    # The first process measures.
+    counts = [getattr(continuity, "NumberOf" + what)
               for what in ("DifferentiableEdges", "Kinks", "UndecidedEdges")]
     if sum(counts) != 96 or (counts[1] == 0) != (system == "Smooth"):
         sys.exit("%s: %d edges are differentiable, %d are not, %d are undecided" % (system, *counts))

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes what the tests map: source.vtp, target.vtp, the same in three pieces as source.pvtp, target.pvtp,
-and other.vtp, which does not go with them."""
+other.vtp, which does not go with them, and moving.pvd, the target at three times."""
 
 import math
 import os
@@ -61,4 +61,12 @@ for name, move in (
         ("target", lambda i, j: (0.2 * math.cos(4 * i + j), 0.2 * math.sin(3 * i + 8 * j)))):
     write_mesh(os.path.join(folder, name + ".vtp"), 6, move)
     write_mesh_in_pieces(os.path.join(folder, name + ".pvtp"), 6, move)
+with open(os.path.join(folder, "moving.pvd"), "w") as series:
+    series.write('<VTKFile type="Collection" version="0.1"><Collection>')
+    for time in range(3):
+        name = "moving-%d.vtp" % time
+        write_mesh(os.path.join(folder, name), 6,
+                   lambda i, j: (0.2 * math.cos(4 * i + j + time), 0.2 * math.sin(3 * i + 8 * j)))
+        series.write('<DataSet timestep="%d" file="%s"/>' % (time, name))
+    series.write('</Collection></VTKFile>')
 write_mesh(os.path.join(folder, "other.vtp"), 5, lambda i, j: (0.0, 0.0))

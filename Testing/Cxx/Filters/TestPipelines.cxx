@@ -5,12 +5,22 @@
 
 #include "FilterRuns.h"
 
+#include "vtkJacobianContinuity.h"
+#include "vtkResampleThroughHomeomorphism.h"
 #include "vtkTriangularCoordinates.h"
 
 #include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDummyController.h"
+#include "vtkElevationFilter.h"
+#include "vtkGroupDataSetsFilter.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyDataAlgorithm.h"
 #include "vtkPolyDataStreamer.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkSphereSource.h"
@@ -20,6 +30,9 @@
 #include "vtkTransform.h"
 #include "vtkTransformPolyDataFilter.h"
 #include "vtkUnstructuredGrid.h"
+
+#include <set>
+#include <vector>
 
 namespace
 {
@@ -301,6 +314,169 @@ TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
   EXPECT_GT(DataOf(map)->GetNumberOfCells(), 0);
 }
 
+TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
+{
+  // One source of the mesh and the data cannot be asked for both whole and in pieces. The mesh is a sphere,
+  // mapped onto itself, whose source makes any piece.
+  const auto counts = [](vtkAlgorithm* filter) {
+    std::vector<vtkIdType> cells;
+    for (const int piece : { 0, 1, 2, 0 })
+    {
+      EXPECT_TRUE(filter->UpdatePiece(piece, 3, 0));
+      cells.push_back(DataOf(filter)->GetNumberOfCells());
+    }
+    return cells;
+  };
+  vtkNew<vtkSphereSource> mesh;
+  vtkNew<vtkSphereSource> same;
+  vtkNew<vtkElevationFilter> made;
+  made->SetInputConnection(mesh->GetOutputPort());
+  vtkNew<vtkSphereSource> other;
+  mesh->Update();
+  const vtkIdType whole = mesh->GetOutput()->GetNumberOfCells();
+  const std::vector<vtkIdType> first{ whole, 0, 0, whole };
+  for (vtkAlgorithm* data : { static_cast<vtkAlgorithm*>(mesh), static_cast<vtkAlgorithm*>(made),
+         static_cast<vtkAlgorithm*>(other) })
+  {
+    SCOPED_TRACE(data->GetClassName());
+    vtkNew<vtkDifferentiableHomeomorphism> map;
+    map->SetSourceConnection(mesh->GetOutputPort());
+    map->SetTargetConnection(same->GetOutputPort());
+    map->SetDataConnection(data->GetOutputPort());
+    vtkNew<vtkTriangularCoordinates> coordinates;
+    coordinates->SetInputConnection(0, mesh->GetOutputPort());
+    coordinates->SetDataConnection(data->GetOutputPort());
+    coordinates->GenerateLinesOff();
+    vtkNew<vtkResampleThroughHomeomorphism> resample;
+    resample->SetSourceConnection(mesh->GetOutputPort());
+    resample->SetTargetConnection(same->GetOutputPort());
+    resample->SetGridConnection(data->GetOutputPort());
+    for (vtkAlgorithm* filter : { static_cast<vtkAlgorithm*>(map),
+           static_cast<vtkAlgorithm*>(coordinates), static_cast<vtkAlgorithm*>(resample) })
+    {
+      SCOPED_TRACE(filter->GetClassName());
+      const std::vector<vtkIdType> cells = counts(filter);
+      if (data != other)
+      {
+        EXPECT_EQ(cells, first);
+        continue;
+      }
+      EXPECT_EQ(other->GetOutputInformation(0)->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 3);
+      EXPECT_GT(cells[1], 0);
+      EXPECT_GT(cells[2], 0);
+      EXPECT_EQ(cells[0] + cells[1] + cells[2], whole);
+    }
+    EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
+    EXPECT_EQ(resample->GetNumberOfMeshBuilds(), 1);
+  }
+
+  // What a map made of independent data with the same meshes comes in pieces nevertheless: the first map
+  // asks for its meshes whole as well.
+  vtkNew<vtkDifferentiableHomeomorphism> forth;
+  forth->SetSourceConnection(mesh->GetOutputPort());
+  forth->SetTargetConnection(same->GetOutputPort());
+  forth->SetDataConnection(other->GetOutputPort());
+  vtkNew<vtkDifferentiableHomeomorphism> back;
+  back->SetSourceConnection(mesh->GetOutputPort());
+  back->SetTargetConnection(same->GetOutputPort());
+  back->SetDataConnection(forth->GetOutputPort());
+  back->InverseOn();
+  const std::vector<vtkIdType> cells = counts(back);
+  EXPECT_GT(cells[1], 0);
+  EXPECT_EQ(cells[0] + cells[1] + cells[2], whole);
+  EXPECT_EQ(back->GetNumberOfMeshBuilds(), 1);
+}
+
+TEST(Pipelines, WhatIsMeasuredIsPartOfTheFirstPiece)
+{
+  const MeshPair pair = MakeWidePair(918);
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetSourceData(pair.Source);
+  continuity->SetTargetData(pair.Target);
+  continuity->SetCoordinateSystem(vtkJacobianContinuity::LINEAR);
+  continuity->Update();
+  const vtkIdType edges = continuity->GetOutput()->GetNumberOfCells();
+  ASSERT_GT(edges, 0);
+  const auto map = MakeFilter(Linear, pair);
+  map->MeasureContinuityOn();
+  vtkJacobianContinuity* inner = map->GetJacobianContinuity();
+  for (const int piece : { 1, 0, 2, 0 })
+  {
+    SCOPED_TRACE(piece);
+    for (const int port : { 0, 1 })
+    {
+      continuity->UpdateInformation();
+      vtkInformation* info = continuity->GetOutputInformation(port);
+      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 3);
+    }
+    continuity->Update(0);
+    continuity->Update(1);
+    const vtkIdType share = piece == 0 ? 1 : 0;
+    EXPECT_EQ(continuity->GetOutput(0)->GetNumberOfCells(), share * edges);
+    EXPECT_EQ(continuity->GetOutput(1)->GetNumberOfCells(), share * pair.Source->GetNumberOfCells());
+    EXPECT_EQ(continuity->GetNumberOfKinks(), share * edges);
+    EXPECT_EQ(continuity->GetLargestJump() > 0.0, piece == 0);
+
+    map->UpdateInformation();
+    vtkInformation* info = map->GetOutputInformation(1);
+    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 3);
+    map->Update(1);
+    auto* measured = vtkDataSet::SafeDownCast(map->GetOutputDataObject(1));
+    EXPECT_EQ(measured->GetNumberOfCells(), share * edges);
+  }
+  // It was measured once for all pieces.
+  EXPECT_EQ(inner->GetNumberOfKinks(), edges);
+}
+
+TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
+{
+  // Every other point outside belongs to another piece.
+  const MeshPair pair = MakeWidePair(917);
+  const auto cloud = MakeCloud({ { 0, 0, 0 }, { 99, 0, 0 }, { 98, 0, 0 }, { 97, 0, 0 }, { 1, 2, 0 } });
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (const int type : { 0, int(vtkDataSetAttributes::DUPLICATEPOINT), 0,
+         int(vtkDataSetAttributes::HIDDENPOINT), int(vtkDataSetAttributes::DUPLICATEPOINT) })
+  {
+    ghosts->InsertNextValue(static_cast<unsigned char>(type));
+  }
+  cloud->GetPointData()->AddArray(ghosts);
+  const auto map = MakeFilter(Smooth, pair, cloud);
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  coordinates->SetInputData(0, pair.Source);
+  coordinates->SetDataObject(cloud);
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  resample->SetSourceData(pair.Source);
+  resample->SetTargetData(pair.Target);
+  resample->SetGridData(cloud);
+  map->Update();
+  coordinates->Update();
+  resample->Update();
+  // With one process there is nothing to reduce, with a controller or without.
+  vtkNew<vtkDummyController> controller;
+  for (vtkMultiProcessController* reduced :
+    { static_cast<vtkMultiProcessController*>(controller), static_cast<vtkMultiProcessController*>(nullptr) })
+  {
+    EXPECT_EQ(map->GetNumberOfOutsidePoints(), 2);
+    EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 2);
+    EXPECT_EQ(resample->GetNumberOfOutsidePoints(), 2);
+    map->ReduceStatistics(reduced);
+    coordinates->ReduceStatistics(reduced);
+    resample->ReduceStatistics(reduced);
+  }
+  EXPECT_EQ(map->GetNumberOfOutsidePoints(), 2);
+  EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 2);
+  EXPECT_EQ(resample->GetNumberOfOutsidePoints(), 2);
+  // All of them are marked and hidden.
+  vtkDataArray* mask = PointArray(DataOf(map), "ValidPointMask");
+  for (vtkIdType i = 0; i < 5; ++i)
+  {
+    EXPECT_EQ(mask->GetTuple1(i), i == 0 || i == 4 ? 1.0 : 0.0);
+  }
+}
+
 TEST(Pipelines, MeshesMayComeFromFilters)
 {
   // A target that is the source moved by a pipeline, which is changed.
@@ -389,6 +565,168 @@ TEST(Pipelines, TimeStepsOfTheData)
   }
   // The meshes stand still.
   EXPECT_EQ(filters.Map->GetNumberOfMeshBuilds(), 1);
+}
+
+/// A mesh that is another one at each of its times: the points of @a base moved by the time, along x for
+/// points inside the square of MakeWidePair.
+class MovingMesh : public vtkPolyDataAlgorithm
+{
+public:
+  static MovingMesh* New() { VTK_STANDARD_NEW_BODY(MovingMesh); }
+  vtkTypeMacro(MovingMesh, vtkPolyDataAlgorithm);
+
+  static vtkSmartPointer<vtkPolyData> At(vtkPolyData* base, double time)
+  {
+    return Moved(base, [time](const Point& p) -> Point {
+      const bool inside = std::abs(p[0]) < 11.9 && std::abs(p[1]) < 11.9;
+      return { p[0] + (inside ? 0.1 * time : 0.0), p[1], p[2] };
+    });
+  }
+
+  vtkSmartPointer<vtkPolyData> Base;
+  std::vector<double> Times;
+  int Executions = 0;
+
+protected:
+  MovingMesh() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkInformation* info = outputs->GetInformationObject(0);
+    const double range[2] = { this->Times.front(), this->Times.back() };
+    info->Set(Pipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+    return 1;
+  }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    const double time = outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_TIME_STEP());
+    ++this->Executions;
+    vtkPolyData* output = vtkPolyData::GetData(outputs);
+    output->ShallowCopy(At(this->Base, time));
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+    return 1;
+  }
+};
+
+std::vector<double> TimesOf(vtkAlgorithm* filter, int port)
+{
+  vtkInformation* info = filter->GetOutputInformation(port);
+  const double* times = info->Get(Pipeline::TIME_STEPS());
+  return { times, times + info->Length(Pipeline::TIME_STEPS()) };
+}
+
+TEST(Pipelines, TimeStepsOfTheMeshes)
+{
+  // Either mesh moves, the other and the data stand still.
+  const MeshPair pair = MakeWidePair(935);
+  const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, 500, 61));
+  for (const int moving : { 0, 1 })
+  {
+    SCOPED_TRACE(moving);
+    vtkNew<MovingMesh> mesh;
+    mesh->Base = moving == 0 ? pair.Source : pair.Target;
+    mesh->Times = { 0.0, 1.0, 2.5 };
+    const auto map = MakeFilter(Smooth, pair, cloud);
+    map->SetInputConnection(moving, mesh->GetOutputPort());
+    map->MeasureContinuityOn();
+    vtkNew<vtkResampleThroughHomeomorphism> resample;
+    resample->SetSourceData(pair.Source);
+    resample->SetTargetData(pair.Target);
+    resample->SetInputConnection(moving, mesh->GetOutputPort());
+    vtkNew<vtkJacobianContinuity> continuity;
+    continuity->SetSourceData(pair.Source);
+    continuity->SetTargetData(pair.Target);
+    continuity->SetInputConnection(moving, mesh->GetOutputPort());
+    vtkIdType builds = 0;
+    // Back again, too: only what was made last is kept.
+    for (const double time : { 0.0, 1.0, 2.5, 1.0 })
+    {
+      SCOPED_TRACE(time);
+      map->UpdateInformation();
+      EXPECT_EQ(TimesOf(map, 0), mesh->Times);
+      EXPECT_EQ(TimesOf(map, 1), mesh->Times);
+      const auto moved = MovingMesh::At(mesh->Base, time);
+      const MeshPair pairThen = moving == 0 ? MeshPair{ moved, pair.Target } : MeshPair{ pair.Source, moved };
+      const auto expected = MakeFilter(Smooth, pairThen, cloud);
+      expected->MeasureContinuityOn();
+      expected->Update();
+      ++builds;
+      // Asked again for the same time, nothing is done.
+      for (int again = 0; again < 2; ++again)
+      {
+        ASSERT_TRUE(map->UpdateTimeStep(time));
+        EXPECT_EQ(map->GetNumberOfMeshBuilds(), builds);
+        EXPECT_EQ(DataOf(map)->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
+        ASSERT_TRUE(resample->UpdateTimeStep(time));
+        EXPECT_EQ(resample->GetNumberOfMeshBuilds(), builds);
+      }
+      EXPECT_EQ(CountDifferentPoints(DataOf(map), DataOf(expected)), 0);
+      ASSERT_TRUE(continuity->UpdateTimeStep(time));
+      EXPECT_EQ(TimesOf(continuity, 1), mesh->Times);
+      auto* measured = vtkPolyData::SafeDownCast(expected->GetOutputDataObject(1));
+      EXPECT_EQ(CountDifferentPoints(continuity->GetOutput(), measured), 0);
+      EXPECT_EQ(CountDifferentValues(continuity->GetOutput()->GetCellData()->GetArray("JacobianJump"),
+                  measured->GetCellData()->GetArray("JacobianJump")),
+        0);
+    }
+    // Each filter asked once for each time, and all asked for the same times.
+    EXPECT_EQ(mesh->Executions, 4);
+  }
+}
+
+TEST(Pipelines, TimeStepsOfAllInputs)
+{
+  // The data and the target have different times; the data is a tree.
+  const MeshPair pair = MakeWidePair(936);
+  vtkNew<vtkTimeSourceExample> source;
+  source->SetXAmplitude(3.0);
+  source->SetYAmplitude(2.0);
+  vtkNew<vtkSphereSource> sphere;
+  for (const int type : { VTK_MULTIBLOCK_DATA_SET, VTK_PARTITIONED_DATA_SET_COLLECTION })
+  {
+    vtkNew<vtkGroupDataSetsFilter> group;
+    group->SetOutputType(type);
+    group->AddInputConnection(source->GetOutputPort());
+    group->AddInputConnection(sphere->GetOutputPort());
+    const auto map = MakeFilter(Smooth, pair);
+    map->SetDataConnection(group->GetOutputPort());
+    map->UpdateInformation();
+    std::vector<double> expected = TimesOf(source, 0);
+    EXPECT_EQ(TimesOf(map, 0), expected);
+    const auto pointOf = [&]() {
+      auto* tree = vtkCompositeDataSet::SafeDownCast(map->GetOutputDataObject(0));
+      EXPECT_EQ(tree->GetDataObjectType(), type);
+      const auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+      leaves->InitTraversal();
+      return PointOf(vtkDataSet::SafeDownCast(leaves->GetCurrentDataObject()), 0);
+    };
+    std::set<Point> places;
+    for (const double time : expected)
+    {
+      ASSERT_TRUE(map->UpdateTimeStep(time));
+      places.insert(pointOf());
+      EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
+    }
+    EXPECT_GT(places.size(), expected.size() / 2);
+
+    vtkNew<MovingMesh> target;
+    target->Base = pair.Target;
+    target->Times = { expected[0], 0.5 * (expected[0] + expected[1]), expected.back() + 1.0 };
+    map->SetTargetConnection(target->GetOutputPort());
+    map->UpdateInformation();
+    expected.insert(expected.begin() + 1, target->Times[1]);
+    expected.push_back(target->Times[2]);
+    EXPECT_EQ(TimesOf(map, 0), expected);
+    EXPECT_EQ(TimesOf(map, 1), target->Times);
+    EXPECT_EQ(map->GetOutputInformation(0)->Get(Pipeline::TIME_RANGE())[1], expected.back());
+    map->UpdateTimeStep(target->Times[0]);
+    const Point before = pointOf();
+    map->UpdateTimeStep(target->Times[2]);
+    EXPECT_GT(Distance(pointOf(), before), 0.1);
+    EXPECT_EQ(map->GetNumberOfMeshBuilds(), 3);
+  }
 }
 
 /// A grid inside the square of more points than the filters take in one go.

@@ -10,6 +10,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkExtractVOI.h"
+#include "vtkFloatArray.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkImageData.h"
 #include "vtkMultiBlockDataSet.h"
@@ -20,6 +21,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <string>
 
 namespace
 {
@@ -202,6 +205,84 @@ TEST(Resample, AnyGridAndAnyDataWillDo)
     {
       EXPECT_NEAR(field->GetTuple1(i), expected, 1e-12);
     }
+  }
+}
+
+TEST(Resample, ImagesAreSampledLikeOtherData)
+{
+  // In a tree an image is data like any other, which VTK's own cells interpolate.
+  std::mt19937_64 generator(12);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const MeshPair pair = MakePair();
+  for (const int slices : { 1, 4 })
+  {
+    vtkNew<vtkImageData> image;
+    image->SetExtent(3, 40, -7, 30, 0, slices - 1);
+    image->SetSpacing(0.137, 0.143, 0.31);
+    image->SetOrigin(-0.9, 0.8, -0.1 * (slices - 1));
+    vtkNew<vtkFloatArray> real;
+    real->SetName("Field");
+    vtkNew<vtkUnsignedCharArray> color;
+    color->SetName("Color");
+    color->SetNumberOfComponents(3);
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+    {
+      real->InsertNextValue(static_cast<float>(number(generator)));
+      for (int c = 0; c < 3; ++c)
+      {
+        color->InsertNextValue(static_cast<unsigned char>(127.5 * (1.0 + number(generator))));
+      }
+    }
+    image->GetPointData()->SetScalars(real);
+    image->GetPointData()->AddArray(color);
+    vtkNew<vtkIntArray> cells;
+    cells->SetName("Cell");
+    for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
+    {
+      cells->InsertNextValue(static_cast<int>(i));
+    }
+    image->GetCellData()->AddArray(cells);
+    vtkNew<vtkMultiBlockDataSet> tree;
+    tree->SetBlock(0, image);
+
+    vtkNew<vtkImageData> grid;
+    grid->SetDimensions(61, 57, slices);
+    grid->SetSpacing(0.12, 0.11, 0.17);
+    grid->SetOrigin(-0.3, -0.2, 0.0);
+    vtkDataSet* outputs[2];
+    const auto direct = MakeResample(pair, image);
+    const auto general = MakeResample(pair, tree);
+    for (const auto& filter : { direct, general })
+    {
+      filter->SetGridData(grid);
+      filter->Update();
+      outputs[filter == general] = filter->GetOutput();
+    }
+    EXPECT_EQ(direct->GetNumberOfOutsidePoints(), general->GetNumberOfOutsidePoints());
+    EXPECT_GT(direct->GetNumberOfOutsidePoints(), 100);
+    EXPECT_STREQ(outputs[0]->GetPointData()->GetScalars()->GetName(), "Field");
+    vtkIdType valid = 0;
+    for (const char* name : { "ValidPointMask", "vtkGhostType", "Cell", "Color", "Field" })
+    {
+      vtkDataArray* values = outputs[0]->GetPointData()->GetArray(name);
+      vtkDataArray* expected = outputs[1]->GetPointData()->GetArray(name);
+      ASSERT_TRUE(values && expected) << name;
+      ASSERT_EQ(values->GetDataType(), expected->GetDataType());
+      ASSERT_EQ(values->GetNumberOfComponents(), expected->GetNumberOfComponents());
+      const double rounding = values == outputs[0]->GetPointData()->GetScalars() ? 1e-6 : 0.0;
+      for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+      {
+        for (int c = 0; c < values->GetNumberOfComponents(); ++c)
+        {
+          const double a = values->GetComponent(i, c);
+          const double b = expected->GetComponent(i, c);
+          ASSERT_TRUE(std::isnan(a) ? std::isnan(b) : std::abs(a - b) <= rounding)
+            << name << " " << i << ": " << a << " " << b;
+          valid += std::string(name) == "Field" && !std::isnan(a);
+        }
+      }
+    }
+    EXPECT_GT(valid, 1000);
   }
 }
 

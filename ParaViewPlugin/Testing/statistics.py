@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Counts what the filters count: statistics.py MESHES RESULT writes the counts that must not depend on how
+many processes there are to RESULT, each process that runs the script with its rank appended, and compares
+the others with the data."""
+
+import json
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import session
+from paraview import servermanager, simple
+
+meshes, result = sys.argv[1:3]
+session.load_plugin()
+source = session.read(meshes, "source")
+target = session.read(meshes, "target")
+other = session.read(meshes, "other")
+# In pieces; and of the first process alone: the others have no points.
+image = simple.Wavelet(WholeExtent=[-10, 10, -9, 9, -1, 1])
+plane = simple.Plane(Origin=[-9, -9, 0], Point1=[9, -9, 0], Point2=[-9, 9, 0], XResolution=36,
+                     YResolution=36)
+counts = {}
+
+
+def count(name, filter, *properties):
+    filter.UpdatePipeline()
+    for key in properties:
+        counts[name + " " + key] = getattr(filter, key)
+    return counts[name + " " + properties[0]]
+
+
+def count_in_data(filter):
+    """Outside points of all processes, as ParaView itself finds them; of this one if each runs the script."""
+    points = simple.MaskPoints(Input=filter, OnRatio=1, MaximumNumberofPoints=1000000,
+                               GenerateVertices=1, SingleVertexPerCell=1)
+    outside = simple.Threshold(Input=points, Scalars=["POINTS", "ValidPointMask"],
+                               LowerThreshold=0, UpperThreshold=0)
+    outside.UpdatePipeline()
+    return outside.GetDataInformation().GetNumberOfCells()
+
+
+outside = "NumberOfOutsidePoints"
+for system in "Contour", "Smooth":
+    settings = {"Source": source, "CoordinateSystem": system,
+                "DiscordantTriangles": "Carry by Linear"}
+    coordinates = simple.TriangularCoordinates(Data=plane, **settings)
+    count("coordinates " + system, coordinates, outside, "NumberOfDiscordantTriangles")
+    settings["Target"] = target
+    mapped = simple.DifferentiableHomeomorphism(Data=plane, **settings)
+    if count("mapped " + system, mapped, outside, "NumberOfDiscordantTriangles") <= 0:
+        sys.exit("No points are outside")
+    resampled = simple.ResampleThroughHomeomorphism(Data=image, Grid=plane, **settings)
+    count("resampled " + system, resampled, outside)
+    continuity = simple.JacobianContinuity(**settings)
+    count("continuity " + system, continuity, "NumberOfKinks", "NumberOfDifferentiableEdges",
+          "NumberOfUndecidedEdges", "LargestJump")
+    # Asked again, nothing is added again.
+    first = dict(counts)
+    count("mapped " + system, mapped, outside)
+    count("continuity " + system, continuity, "NumberOfDifferentiableEdges")
+    if counts != first:
+        sys.exit("The counts change: %s, %s" % (first, counts))
+
+# What several processes have counts more than once.
+mapped = simple.DifferentiableHomeomorphism(Source=source, Target=target, Data=image, BlankOutside=0)
+expected = count_in_data(mapped)
+# A later filter made it execute.
+actual = mapped.NumberOfOutsidePoints
+module = servermanager.vtkProcessModule.GetProcessModule()
+if actual != expected and not module.GetSymmetricMPIMode() or not 0 < expected <= actual:
+    sys.exit("%d points of the image are outside, not %d" % (expected, actual))
+
+# An error leaves nobody waiting.
+mapped = simple.DifferentiableHomeomorphism(Source=source, Target=other, Data=image)
+if count("refused", mapped, outside) != -1:
+    sys.exit("Points of refused meshes are counted")
+
+with open("%s-%d" % (result, module.GetPartitionId()), "w") as file:
+    json.dump(counts, file, indent=1, sort_keys=True)

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Points that are mapped many at a time go where each goes by itself, to the last bit, in whatever order
+// and company they come.
+
+#include "MappedPoints.h"
+
+#include "Mesh/Homeomorphism.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+
+namespace
+{
+
+using namespace homeomorphism;
+using namespace test_meshes;
+
+std::shared_ptr<const Homeomorphism> Make(
+  const MeshPair& pair, homeomorphism::CoordinateSystem system)
+{
+  MeshProblems problems;
+  HomeomorphismOptions options;
+  options.System = system;
+  options.DiscordantByLinear = true;
+  return Homeomorphism::Make(pair.Source, pair.Target, options, problems);
+}
+
+/// Equal to the last bit, the sign of zero and the kind of what is no number included.
+bool IsSame(const double* a, const double* b, int count)
+{
+  return std::memcmp(a, b, static_cast<std::size_t>(count) * sizeof(double)) == 0;
+}
+
+/// Points of the mesh, of its edges, rounded, of its triangles, row by row and anywhere, outside, far
+/// outside, and none at all.
+std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
+{
+  const std::vector<Point> corners = PointsOf(mesh);
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> proportion(0.0, 1.0);
+  std::vector<Point> queries = corners;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    const vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(cell, ids);
+    const auto combine = [&](double a, double b, double c) {
+      Point p;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        p[axis] = a * corners[ids->GetId(0)][axis] + b * corners[ids->GetId(1)][axis] +
+          c * corners[ids->GetId(2)][axis];
+      }
+      return p;
+    };
+    for (int i = 0; i < 40; ++i)
+    {
+      // Runs of points in one triangle, close to each other and at last not.
+      const double a = i < 30 ? 0.02 * i + 0.1 : proportion(generator);
+      const double b = i < 30 ? 0.2 : (1.0 - a) * proportion(generator);
+      queries.push_back(combine(a, b, 1.0 - a - b));
+    }
+    const double w = proportion(generator);
+    queries.push_back(combine(w, 1.0 - w, 0.0));
+    queries.push_back(combine(0.0, w, 1.0 - w));
+    queries.push_back(combine(1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0));
+    queries.push_back(combine(w, 1.2 - w, -0.2));
+  }
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : { none, infinity, -infinity, 1e300, -1e160, 1e20 })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      Point p = corners[corners.size() / 2];
+      p[axis] = bad;
+      queries.push_back(p);
+      queries.push_back(queries[queries.size() / 2]);
+    }
+  }
+  return queries;
+}
+
+void ExpectBlocksLikePoints(
+  const Homeomorphism& map, Side side, const std::vector<Point>& points, const std::string& what)
+{
+  const double reach = map.GetReach(side, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
+  PointBlock block;
+  LocationHint hint;
+  for (std::size_t first = 0; first < points.size(); first += block.Count)
+  {
+    // Blocks of any size.
+    block.Count = static_cast<int>(
+      std::min<std::size_t>(1 + (first * 7919) % PointBlock::Capacity, points.size() - first));
+    std::copy_n(points[first].data(), 3 * block.Count, &block.Points[0][0]);
+    const int outside = map.LocateBlock(side, block, reach, hint);
+    int expectedOutside = 0;
+    for (int i = 0; i < block.Count; ++i)
+    {
+      const Location expected = map.Locate(side, points[first + i].data(), reach, -1);
+      const Location place = block.GetPlace(i);
+      ASSERT_EQ(expected.Triangle, place.Triangle) << what << ", point " << first + i;
+      ASSERT_EQ(expected.Corner, place.Corner) << what << ", point " << first + i;
+      expectedOutside += expected.Triangle < 0;
+      if (expected.Triangle >= 0)
+      {
+        ASSERT_TRUE(IsSame(&expected.Point.InPlane.x, &place.Point.InPlane.x, 2)) << what;
+        ASSERT_TRUE(IsSame(&expected.Point.Offset, &place.Point.Offset, 1)) << what;
+      }
+    }
+    ASSERT_EQ(expectedOutside, outside) << what;
+    map.MapBlock(side, block);
+    for (int i = 0; i < block.Count; ++i)
+    {
+      Point image = points[first + i];
+      const Location place = map.Locate(side, image.data(), reach, -1);
+      if (place.Triangle >= 0)
+      {
+        map.MapPoint(side, place, image.data());
+      }
+      ASSERT_TRUE(IsSame(image.data(), block.Points[i], 3))
+        << what << ", point " << first + i << ": " << image[0] << " " << block.Points[i][0];
+    }
+  }
+}
+
+void ExpectBlocksLikePoints(const MeshPair& pair, const std::string& what)
+{
+  for (const auto system : { homeomorphism::CoordinateSystem::Linear,
+         homeomorphism::CoordinateSystem::Contour, homeomorphism::CoordinateSystem::Smooth })
+  {
+    const auto map = Make(pair, system);
+    ASSERT_TRUE(map) << what;
+    for (const Side side : { Side::Source, Side::Target })
+    {
+      std::vector<Point> points = Queries(side == Side::Source ? pair.Source : pair.Target, 5);
+      ExpectBlocksLikePoints(*map, side, points, what);
+      std::shuffle(points.begin(), points.end(), std::mt19937_64(6));
+      ExpectBlocksLikePoints(*map, side, points, what + ", shuffled");
+    }
+  }
+}
+
+MeshPair Moved(const MeshPair& pair, double (*height)(double, double))
+{
+  MeshPair moved;
+  const auto move = [height](vtkPolyData* mesh) {
+    std::vector<Point> points = PointsOf(mesh);
+    for (Point& p : points)
+    {
+      p[2] = height(p[0], p[1]);
+    }
+    const auto result = vtkSmartPointer<vtkPolyData>::New();
+    result->DeepCopy(MakeMesh(points, {}));
+    result->SetPolys(mesh->GetPolys());
+    return result;
+  };
+  moved.Source = move(pair.Source);
+  moved.Target = move(pair.Target);
+  return moved;
+}
+
+TEST(PointBlocks, InAPlane)
+{
+  ExpectBlocksLikePoints(MakePlanarPair(9, 21), "a plane");
+  ExpectBlocksLikePoints(MakePlanarPair(1, 22), "two triangles");
+}
+
+TEST(PointBlocks, InATiltedPlane)
+{
+  ExpectBlocksLikePoints(
+    Moved(MakePlanarPair(9, 23), [](double x, double y) { return 0.5 * x - 0.25 * y; }),
+    "a tilted plane");
+}
+
+TEST(PointBlocks, OnSurfaces)
+{
+  ExpectBlocksLikePoints(MakeClosedPair(4, 24), "a closed surface");
+  MeshPair mixed = MakePlanarPair(6, 25);
+  mixed.Target = Moved(mixed, [](double x, double y) { return 0.1 * x * y; }).Target;
+  ExpectBlocksLikePoints(mixed, "a plane and a surface");
+}
+
+} // namespace

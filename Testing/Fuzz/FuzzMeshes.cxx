@@ -1,0 +1,411 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Makes meshes and data of any bytes and sends points through all classes. Whatever the bytes, nothing may
+// crash, hang or say that it mapped what it did not: a point inside has an image, and that of the inverse.
+
+#include "FuzzInput.h"
+
+#include "Mesh/Homeomorphism.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDifferentiableHomeomorphism.h"
+#include "vtkDoubleArray.h"
+#include "vtkHomeomorphismTransform.h"
+#include "vtkIdTypeArray.h"
+#include "vtkJacobianContinuity.h"
+#include "vtkNew.h"
+#include "vtkObject.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkResampleThroughHomeomorphism.h"
+#include "vtkSMPTools.h"
+#include "vtkSmartPointer.h"
+#include "vtkTriangularCoordinates.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+
+namespace
+{
+
+using fuzz::Input;
+
+constexpr int MostPoints = 16;
+constexpr int MostCells = 16;
+
+vtkSmartPointer<vtkPoints> AnyPoints(Input& input, int count)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  const bool inFloat = input.Chance(8);
+  const bool inPlane = !input.Chance(4);
+  points->SetDataType(inFloat ? VTK_FLOAT : VTK_DOUBLE);
+  for (int i = 0; i < count; ++i)
+  {
+    const double x = input.Number();
+    const double y = input.Number();
+    points->InsertNextPoint(x, y, inPlane ? 0.0 : input.Number());
+  }
+  return points;
+}
+
+/// A cell array, sound or not.
+template <typename ArrayType>
+vtkSmartPointer<vtkCellArray> RawCells(Input& input, int count, int points)
+{
+  vtkNew<ArrayType> offsets;
+  vtkNew<ArrayType> connectivity;
+  offsets->InsertNextValue(0);
+  const bool sound = !input.Chance(8);
+  for (int i = 0; i < count; ++i)
+  {
+    const int corners = input.Chance(16) ? input.Below(6) : 3;
+    for (int k = 0; k < corners; ++k)
+    {
+      connectivity->InsertNextValue(
+        points == 0 || input.Chance(64) ? input.Byte() - 8 : input.Below(points));
+    }
+    const auto end = static_cast<int>(connectivity->GetNumberOfValues());
+    offsets->InsertNextValue(sound ? end : input.Byte() - 8);
+  }
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(offsets, connectivity);
+  return cells;
+}
+
+vtkSmartPointer<vtkCellArray> AnyCells(Input& input, int points)
+{
+  if (input.Chance(2))
+  {
+    // A grid, which is a mesh more often than random ids are.
+    const int side = 1 + input.Below(3);
+    auto cells = vtkSmartPointer<vtkCellArray>::New();
+    for (int j = 0; j < side; ++j)
+    {
+      for (int i = 0; i < side; ++i)
+      {
+        const vtkIdType a = j * (side + 1) + i;
+        const vtkIdType c = a + side + 1;
+        cells->InsertNextCell({ a, a + 1, c + 1 });
+        cells->InsertNextCell({ a, c + 1, c });
+      }
+    }
+    return cells;
+  }
+  const int count = input.Below(MostCells + 1);
+  return input.Chance(2) ? RawCells<vtkTypeInt32Array>(input, count, points)
+                         : RawCells<vtkTypeInt64Array>(input, count, points);
+}
+
+void AddGhosts(Input& input, vtkDataSetAttributes* attributes, vtkIdType tuples)
+{
+  if (!input.Chance(16))
+  {
+    return;
+  }
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(input.Chance(4) ? input.Below(40) : tuples);
+  for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
+  {
+    ghosts->SetValue(i, input.Byte());
+  }
+  attributes->AddArray(ghosts);
+}
+
+[[noreturn]] void Fail(const char* what)
+{
+  std::cerr << "Broken: " << what << std::endl;
+  std::abort();
+}
+
+bool IsTame(vtkPoints* points)
+{
+  for (vtkIdType i = 0; points && i < points->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    points->GetPoint(i, p);
+    for (const double x : p)
+    {
+      // Larger numbers may overflow on the way, and finer ones underflow.
+      if (!(std::abs(x) < 1e100) || (x != 0.0 && std::abs(x) < 1e-100))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+struct Setting
+{
+  int System;
+  int Center;
+  bool Mask;
+  bool ByLinear;
+  bool Inverse;
+};
+
+template <typename Algorithm>
+void Configure(Algorithm* algorithm, const Setting& setting)
+{
+  algorithm->SetCoordinateSystem(setting.System);
+  algorithm->SetCenterPoint(setting.Center);
+  algorithm->SetMaskInvalidTriangles(setting.Mask);
+  algorithm->SetDiscordantTriangles(setting.ByLinear ? 1 : 0);
+}
+
+/// The floor below the filters, which is far faster.
+void MapDirectly(
+  vtkPolyData* source, vtkPolyData* target, vtkPoints* points, const Setting& setting, bool tame)
+{
+  using namespace homeomorphism;
+  HomeomorphismOptions options;
+  options.System = static_cast<CoordinateSystem>(setting.System);
+  options.Center = static_cast<CenterPoint>(setting.Center);
+  options.MaskInvalidTriangles = setting.Mask;
+  options.DiscordantByLinear = setting.ByLinear;
+  MeshProblems problems;
+  const auto map = Homeomorphism::Make(source, target, options, problems);
+  if (!map)
+  {
+    if (!IsRefused(problems))
+    {
+      Fail("refused without a word");
+    }
+    return;
+  }
+  const Side from = setting.Inverse ? Side::Target : Side::Source;
+  constexpr double halfUlp = 0.5 * std::numeric_limits<double>::epsilon();
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double point[3];
+    points->GetPoint(i, point);
+    const Location place = map->Locate(from, point, map->GetReach(from, 0.0, halfUlp), -1);
+    if (place.Triangle < 0)
+    {
+      continue;
+    }
+    double image[3];
+    map->MapPoint(from, place, image);
+    const Jacobian jacobian = map->GetJacobian(from, place);
+    if (!tame)
+    {
+      continue;
+    }
+    if (!(std::isfinite(image[0]) && std::isfinite(image[1]) && std::isfinite(image[2])))
+    {
+      Fail("an image that is not finite");
+    }
+    if (std::isnan(jacobian.Determinant))
+    {
+      Fail("a determinant that is not a number");
+    }
+    if (map->Locate(Opposite(from), image, map->GetReach(Opposite(from), 0.0, halfUlp), -1).Triangle <
+      0)
+    {
+      Fail("an image outside the other domain");
+    }
+  }
+}
+
+void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& setting, bool tame)
+{
+  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  filter->SetSourceData(meshes[0]);
+  filter->SetTargetData(meshes[1]);
+  filter->SetDataObject(cloud);
+  Configure(filter.Get(), setting);
+  filter->SetInverse(setting.Inverse);
+  filter->ComputeJacobianDeterminantOn();
+  filter->ComputeTriangleIdOn();
+  filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  filter->Update();
+  auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+  const bool taken = filter->GetErrorCode() == 0;
+  if (taken != (output->GetNumberOfPoints() == cloud->GetNumberOfPoints()))
+  {
+    Fail("an error and an output, or neither");
+  }
+  if (taken)
+  {
+    auto* valid =
+      vtkUnsignedCharArray::SafeDownCast(output->GetPointData()->GetArray("ValidPointMask"));
+    vtkDataArray* determinant = output->GetPointData()->GetArray("JacobianDeterminant");
+    if (!valid || !determinant)
+    {
+      Fail("no mask or no determinant");
+    }
+    vtkNew<vtkDifferentiableHomeomorphism> back;
+    back->SetSourceData(meshes[0]);
+    back->SetTargetData(meshes[1]);
+    back->SetDataObject(output);
+    Configure(back.Get(), setting);
+    back->SetInverse(!setting.Inverse);
+    back->Update();
+    auto* returned = vtkPointSet::SafeDownCast(back->GetOutputDataObject(0));
+    auto* returnedValid =
+      vtkUnsignedCharArray::SafeDownCast(returned->GetPointData()->GetArray("ValidPointMask"));
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      if (!valid->GetValue(i) || !tame)
+      {
+        continue;
+      }
+      double image[3];
+      output->GetPoint(i, image);
+      if (!(std::isfinite(image[0]) && std::isfinite(image[1]) && std::isfinite(image[2])))
+      {
+        Fail("an image that is not finite");
+      }
+      if (std::isnan(determinant->GetComponent(i, 0)))
+      {
+        Fail("a determinant that is not a number");
+      }
+      if (!returnedValid || !returnedValid->GetValue(i))
+      {
+        Fail("an image outside the other domain");
+      }
+    }
+  }
+}
+
+void MapByTransform(vtkPolyData* meshes[2], vtkPoints* points, const Setting& setting)
+{
+  vtkNew<vtkHomeomorphismTransform> transform;
+  transform->SetSource(meshes[0]);
+  transform->SetTarget(meshes[1]);
+  Configure(transform.Get(), setting);
+  vtkNew<vtkPoints> images;
+  transform->TransformPoints(points, images);
+  transform->GetInverse()->TransformPoints(images, points);
+}
+
+void FindCoordinates(vtkPolyData* mesh, const Setting& setting)
+{
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  coordinates->SetInputData(mesh);
+  Configure(coordinates.Get(), setting);
+  coordinates->SetNumberOfContours(2);
+  coordinates->SetNumberOfRings(2);
+  coordinates->SetLineResolution(3);
+  coordinates->Update();
+}
+
+void MeasureAndResample(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& setting)
+{
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetInputDataObject(0, meshes[0]);
+  continuity->SetInputDataObject(1, meshes[1]);
+  Configure(continuity.Get(), setting);
+  continuity->SetSamplesPerEdge(1);
+  continuity->SetVertices(true);
+  continuity->Update();
+
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  resample->SetInputDataObject(0, meshes[0]);
+  resample->SetInputDataObject(1, meshes[1]);
+  resample->SetInputDataObject(2, setting.Inverse ? cloud : meshes[0]);
+  Configure(resample.Get(), setting);
+  resample->SetSamplingDimensions(4, 3);
+  resample->Update();
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***)
+{
+  vtkObject::GlobalWarningDisplayOff();
+  vtkSMPTools::SetBackend("Sequential");
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size)
+{
+  Input input(bytes, size);
+  const int way = input.Below(16);
+  const bool mapsTheMesh = input.Chance(4);
+  Setting setting;
+  setting.System = input.Below(3);
+  setting.Center = input.Below(2);
+  setting.Mask = input.Chance(2);
+  setting.ByLinear = input.Chance(2);
+  setting.Inverse = input.Chance(2);
+  const int numberOfPoints = input.Chance(2) ? 16 : input.Below(MostPoints + 1);
+
+  vtkNew<vtkPolyData> meshes[2];
+  const auto cells = AnyCells(input, numberOfPoints);
+  const bool ownCells = input.Chance(8);
+  for (int side = 0; side < 2; ++side)
+  {
+    meshes[side]->SetPoints(AnyPoints(input, numberOfPoints));
+    meshes[side]->SetPolys(side == 1 && ownCells ? AnyCells(input, numberOfPoints) : cells);
+    if (input.Chance(16))
+    {
+      meshes[side]->SetLines(RawCells<vtkTypeInt64Array>(input, input.Below(3), numberOfPoints));
+    }
+    if (input.Chance(16))
+    {
+      meshes[side]->SetStrips(RawCells<vtkTypeInt64Array>(input, input.Below(2), numberOfPoints));
+    }
+    AddGhosts(input, meshes[side]->GetPointData(), numberOfPoints);
+    AddGhosts(input, meshes[side]->GetCellData(), meshes[side]->GetPolys()->GetNumberOfCells());
+  }
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(AnyPoints(input, 1 + input.Below(12)));
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetName("Vectors");
+  vectors->SetNumberOfComponents(3);
+  for (int i = input.Chance(16) ? input.Below(40) : static_cast<int>(cloud->GetNumberOfPoints());
+       i > 0; --i)
+  {
+    vectors->InsertNextTuple3(1.0, input.Number(), -1.0);
+  }
+  cloud->GetPointData()->SetVectors(vectors);
+  if (input.Chance(4))
+  {
+    const auto points = static_cast<int>(cloud->GetNumberOfPoints());
+    cloud->SetLines(RawCells<vtkTypeInt64Array>(input, input.Below(4), points));
+    cloud->SetPolys(RawCells<vtkTypeInt32Array>(input, input.Below(6), points));
+    vtkNew<vtkDoubleArray> flux;
+    flux->SetName("Flux");
+    flux->SetNumberOfComponents(3);
+    flux->SetNumberOfTuples(input.Chance(8) ? input.Below(20) : cloud->GetNumberOfCells());
+    flux->Fill(1.0);
+    cloud->GetCellData()->SetVectors(flux);
+  }
+
+  const bool tame = IsTame(meshes[0]->GetPoints()) && IsTame(meshes[1]->GetPoints()) &&
+    IsTame(cloud->GetPoints());
+  vtkPolyData* pair[2] = { meshes[0], meshes[1] };
+  switch (way)
+  {
+    case 0:
+    case 1:
+      MapByFilter(
+        pair, mapsTheMesh ? pair[setting.Inverse ? 1 : 0] : cloud.Get(), setting, tame);
+      break;
+    case 2:
+      MapByTransform(pair, cloud->GetPoints(), setting);
+      break;
+    case 3:
+      FindCoordinates(meshes[0], setting);
+      break;
+    case 4:
+      MeasureAndResample(pair, cloud, setting);
+      break;
+    default:
+      MapDirectly(meshes[0], meshes[1], cloud->GetPoints(), setting, tame);
+  }
+  return 0;
+}
