@@ -30,12 +30,17 @@ struct StripFunction
     : K(k)
     , Tau(tau)
   {
-    const double overSum = 1.0 / (next + previous);
+    // One division for 1 / sum and k / (tau q) = k sum / product.
+    const double sum = next + previous;
+    const double product = tau * (next * previous);
+    const double over = 1.0 / (sum * product);
+    const double overSum = product * over;
     this->ShareNext = next * overSum;
     this->SharePrevious = previous * overSum;
-    double u = k / (tau * next * this->SharePrevious);
-    u = u > 0.0 ? u : 0.0;
+    double u = k * sum * (sum * over);
+    // Where it is not a number, at a corner, there is no strip.
     u = u < 1.0 ? u : 1.0;
+    u = u > 0.0 ? u : 0.0;
     const double lesser = next < previous ? next : previous;
     this->U = lesser > 0.0 ? u : 1.0;
   }

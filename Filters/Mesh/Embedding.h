@@ -104,6 +104,28 @@ public:
     return this->Planar ? this->ToTiltedPlane(p) : p;
   }
 
+  /// The same for many points, whose working coordinates are in arrays of their own.
+  void FromWorking(const double* x, const double* y, const double* z, int count, double (*points)[3]) const
+  {
+    if (!this->AxisParallel || this->AxisOrder[0] != 0 || this->AxisOrder[1] != 1)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        this->FromWorking({ x[i], y[i], z[i] }, points[i]);
+      }
+      return;
+    }
+    // A plane parallel to x and y, not turned over.
+    const double scale = this->InverseScale;
+    const double distance = this->PlaneDistance;
+    for (int i = 0; i < count; ++i)
+    {
+      points[i][0] = x[i] * scale;
+      points[i][1] = y[i] * scale;
+      points[i][2] = (z[i] + distance) * scale;
+    }
+  }
+
   void FromWorking(const Vector3& working, double point[3]) const
   {
     if (this->AxisParallel)

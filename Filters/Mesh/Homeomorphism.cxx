@@ -54,7 +54,7 @@ int FindRun(const PlaneFrame& frame, const double working[3][PointBlock::Size], 
 /// From barycentric coordinates, arrays by corner, to a plane.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const coordinates[3],
-  double plane[2][PointBlock::Size])
+  double plane[3][PointBlock::Size])
 {
   const PlaneFrame f = frame;
   const double* apex = coordinates[f.Apex];
@@ -414,13 +414,14 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
       {
         const PlaneFrame& frame = target.GetPlaneFrame(t);
         const double side = target.IsColumnar() ? 1.0 : frame.Side;
-        double mapped[2][PointBlock::Size];
+        double mapped[3][PointBlock::Size];
         LeaveFrame(frame, begin, end, coordinates.data(), mapped);
         for (int i = begin; i < end; ++i)
         {
-          const double offset = side * this->OffsetOfImage(from, block.Offsets[i]);
-          target.FromWorking({ mapped[0][i], mapped[1][i], offset }, block.Points[i]);
+          mapped[2][i] = side * this->OffsetOfImage(from, block.Offsets[i]);
         }
+        target.FromWorking(mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin,
+          block.Points + begin);
         return;
       }
       for (int i = begin; i < end; ++i)

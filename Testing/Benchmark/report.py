@@ -1,1 +1,197 @@
-def write(results, folder): pass
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Tables and a plot of what benchmark.py measured."""
+
+import statistics
+
+SYSTEMS = ("Linear", "Contour", "Smooth")
+DIRECTIONS = ("forward", "inverse")
+PARTS = {
+    "small": "{triangles} triangles, points row by row",
+    "large, scan": "{triangles} triangles, points row by row, fewer than triangles",
+    "large, dense": "{triangles} triangles, points row by row, more than triangles",
+    "large, random": "{triangles} triangles, points in random order",
+    "threads": "{triangles} triangles, many points",
+    "image": "warping an image",
+    "construction": "getting ready, per triangle",
+}
+
+
+class Results:
+    def __init__(self, results):
+        self.results = results
+        self.times = {
+            (part, m["name"], m["threads"]): [1e9 * s / m["points"] for s in m["seconds"]]
+            for part, measurements in results["measurements"].items()
+            for m in measurements
+            if part != "construction"
+        }
+        self.construction = {
+            (m["name"], m["threads"], m["points"]): [1e9 * s / m["points"] for s in m["seconds"]]
+            for m in results["measurements"].get("construction", [])
+        }
+
+    def median(self, part, name, threads=1):
+        times = self.times.get((part, name, threads))
+        return statistics.median(times) if times else None
+
+    def built(self, name, triangles, threads=1):
+        times = self.construction.get((name, threads, triangles))
+        return statistics.median(times) if times else None
+
+    def sizes(self):
+        return sorted({size for _, _, size in self.construction})
+
+
+def number(value):
+    return f"{value:.3g}" if value < 1000 else f"{value:,.0f}"
+
+
+def goals(r):
+    """What is to be reached: in words, the ratio that was measured, and its limit."""
+    found = []
+
+    def add(words, value, peer, limit):
+        """At most limit times the peer's."""
+        if value and peer:
+            found.append((words, value / peer, "≤", limit, value / peer <= limit))
+
+    def add_faster(words, value, peer, limit):
+        if value and peer:
+            found.append((words, peer / value, "≥", limit, peer / value >= limit))
+
+    for d in DIRECTIONS:
+        smooth = r.median("small", f"transform/Smooth/{d}")
+        add(f"Smooth {d} / SciPy LinearNDInterpolator", smooth, r.median("small", f"LinearNDInterpolator/{d}"), 1.0)
+        add(f"Smooth {d} / PROJ tinshift", smooth, r.median("small", f"tinshift/{d}"), 1.0 / 3.0)
+        add(f"Contour {d} / SciPy CloughTocher2DInterpolator", r.median("small", f"transform/Contour/{d}"),
+            r.median("small", f"CloughTocher2DInterpolator/{d}"), 1.0)
+    for d in DIRECTIONS:
+        small = r.median("small", f"transform/Smooth/{d}")
+        for part, words in (("large, dense", "more points than triangles"), ("large, scan", "fewer points than triangles")):
+            add(f"Smooth {d}, large meshes row by row, {words} / small meshes",
+                r.median(part, f"transform/Smooth/{d}"), small, 2.0)
+        add(f"Smooth {d}, large meshes, random order / vtkStaticCellLocator::FindCell",
+            r.median("large, random", f"transform/Smooth/{d}"), r.median("large, random", f"FindCell/{d}"), 1.0 / 3.0)
+    for system in SYSTEMS:
+        for d in DIRECTIONS:
+            name = f"transform/{system}/{d}"
+            add_faster(f"{system} {d}, two threads faster than one", r.median("threads", name, 2), r.median("threads", name), 1.8)
+    for way in ("resample", "reslice"):
+        name = f"{way}/Smooth"
+        words = {"resample": "vtkResampleThroughHomeomorphism", "reslice": "vtkImageReslice with Smooth"}[way]
+        add_faster(f"image, {words} on two threads faster than scikit-image's piecewise affine warp",
+                   r.median("image", name, 2), r.median("image", "warp/PiecewiseAffineTransform"), 20.0)
+        add_faster(f"image, {words} on two threads faster than vtkImageReslice with a thin plate spline on two",
+                   r.median("image", name, 2), r.median("image", "reslice/ThinPlateSpline", 2), 5.0)
+    sizes = r.sizes()
+    if sizes:
+        last = sizes[-1]
+        add(f"getting ready, Smooth, {last:,} triangle pairs / vtkStaticCellLocator of one mesh",
+            r.built("construct/Smooth", last), r.built("construct/vtkStaticCellLocator", last), 1.0)
+        add(f"getting ready per triangle, Smooth, {last:,} triangle pairs / {sizes[0]:,}",
+            r.built("construct/Smooth", last), r.built("construct/Smooth", sizes[0]), 1.25)
+        for system in SYSTEMS:
+            kept = r.results["memory"][f"{system}/{last}"][0]
+            found.append((f"bytes kept for a triangle pair, {system}", kept, "≤", 400.0, kept <= 400.0))
+    add("Smooth forward / the affine map with the triangle known", r.median("small", "transform/Smooth/forward"),
+        r.median("small", "affine/forward"), 6.0)
+    return found
+
+
+def tables(results):
+    r = Results(results)
+    lines = ["# Benchmark", ""]
+    if results["quick"]:
+        lines += ["**A quick run: smaller, repeated less often, no numbers to rely on.**", ""]
+    lines += ["Medians of runs that took turns. Ratios are what counts; nanoseconds are those of one machine.", ""]
+    lines += ["| what was to be reached | measured | limit | reached |", "|---|---:|---:|---|"]
+    for words, value, relation, limit, good in goals(r):
+        lines.append(f"| {words} | {number(value)} | {relation} {number(limit)} | {'yes' if good else '**no**'} |")
+    lines.append("")
+    for part, title in PARTS.items():
+        measurements = results["measurements"].get(part)
+        if not measurements or part == "construction":
+            continue
+        triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
+        lines += [f"## {title.format(triangles=f'{triangles:,}').capitalize()}", ""]
+        lines += ["| | threads | points | ns a point | fastest and slowest run | runs |", "|---|---:|---:|---:|---:|---:|"]
+        rows = [(statistics.median(r.times[part, m["name"], m["threads"]]), m) for m in measurements]
+        for median, m in sorted(rows, key=lambda row: row[0]):
+            times = r.times[part, m["name"], m["threads"]]
+            lines.append(f"| {m['name']} | {m['threads']} | {m['points']:,} | {number(median)} | "
+                         f"{number(min(times))} to {number(max(times))} | {len(times)} |")
+        lines.append("")
+    if r.construction:
+        lines += ["## Getting ready", "", "Nanoseconds a triangle pair, one thread; bytes a triangle pair that are kept, "
+                  "and at most meanwhile.", "", "| | triangles | ns | ns, two threads | bytes kept | bytes at most |", "|---|---:|---:|---:|---:|---:|"]
+        for size in r.sizes():
+            for name in (*(f"construct/{s}" for s in SYSTEMS), "construct/vtkStaticCellLocator"):
+                memory = results["memory"].get(f"{name.split('/')[1]}/{size}")
+                kept, peak = (number(b) for b in memory) if memory else ("", "")
+                lines.append(f"| {name.split('/')[1]} | {size:,} | {number(r.built(name, size))} | "
+                             f"{number(r.built(name, size, 2))} | {kept} | {peak} |")
+        lines.append("")
+    lines += ["## Do they compute the same?", "", "| | largest difference | tolerance | |", "|---|---:|---:|---|"]
+    for check in results["checks"]:
+        lines.append(f"| {check['part']}: {check['what']} | {check['error']:.2g} | {check['tolerance']:.2g} | "
+                     f"{'yes' if check['good'] else '**no**'} |")
+    return "\n".join(lines) + "\n"
+
+
+PEERS = (("LinearNDInterpolator", "SciPy LinearND (C⁰)"), ("tinshift", "PROJ tinshift (C⁰)"),
+         ("FindCell", "VTK FindCell + affine (C⁰)"), ("vtkProbeFilter", "VTK probe filter (C⁰)"),
+         ("CloughTocher2DInterpolator", "SciPy CloughTocher (C¹, no inverse)"),
+         ("PiecewiseAffineTransform", "scikit-image piecewise affine (C⁰)"),
+         ("vtkThinPlateSplineTransform", "VTK thin plate spline (C¹)"))
+OURS = (("transform/Linear", "Linear (C⁰)"), ("transform/Smooth", "Smooth (C², with its inverse)"),
+        ("transform/Contour", "Contour (C⁰)"))
+
+
+def plot(results, path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    r = Results(results)
+    parts = [p for p in ("small", "large, scan", "large, random") if p in results["measurements"]]
+    if not parts:
+        return
+    figure, axes = plt.subplots(1, len(parts), figsize=(5.6 * len(parts), 5.2), squeeze=False)
+    for axis, part in zip(axes[0], parts):
+        bars = []
+        for name, label in (("affine", "affine map, triangle known"), *PEERS, *OURS):
+            value = r.median(part, f"{name}/forward")
+            if value:
+                ours = name.startswith("transform")
+                color = "#1b6ca8" if name == "transform/Smooth" else ("#8fbcd9" if ours else ("#d8d8d8" if name == "affine" else "#c7a76c"))
+                bars.append((value, label, color, name == "transform/Smooth"))
+        bars.sort(key=lambda bar: bar[0], reverse=True)
+        positions = range(len(bars))
+        axis.barh(positions, [b[0] for b in bars], color=[b[2] for b in bars])
+        axis.set_yticks(positions)
+        axis.set_yticklabels([b[1] for b in bars], fontsize=9)
+        for tick, bar in zip(axis.get_yticklabels(), bars):
+            tick.set_fontweight("bold" if bar[3] else "normal")
+        for position, bar in zip(positions, bars):
+            axis.text(bar[0] * 1.08, position, number(bar[0]), va="center", fontsize=8.5, color="#444444")
+        axis.set_xscale("log")
+        axis.set_xlim(1.0, 20.0 * max(b[0] for b in bars))
+        triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
+        axis.set_title(PARTS[part].format(triangles=f"{triangles:,}").replace(", fewer than triangles", ""), fontsize=10)
+        axis.set_xlabel("nanoseconds a point, forward, one thread (logarithmic)", fontsize=9)
+        for side in ("top", "right"):
+            axis.spines[side].set_visible(False)
+        axis.grid(axis="x", color="#eeeeee")
+        axis.set_axisbelow(True)
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+
+
+def write(results, folder):
+    text = tables(results)
+    (folder / "benchmark.md").write_text(text)
+    plot(results, folder / "benchmark.png")
+    print(text)
