@@ -1061,7 +1061,8 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     {
       const Point p = PointOf(image, i);
       const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0;
-      outside += isOutside;
+      // Those of another piece are marked, but not counted.
+      outside += isOutside && !(hasGhosts && i % 5 == 0);
       ASSERT_EQ(PointArray(output, "ValidPointMask")->GetComponent(i, 0), isOutside ? 0 : 1);
       ASSERT_EQ(PointArray(output, "TriangleId")->GetComponent(i, 0) < 0, isOutside);
       ASSERT_EQ(
