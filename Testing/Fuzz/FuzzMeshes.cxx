@@ -233,7 +233,7 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
   filter->Update();
   auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
   const bool taken = filter->GetErrorCode() == 0;
-  if (taken != (output->GetNumberOfPoints() == cloud->GetNumberOfPoints()))
+  if (output->GetNumberOfPoints() != (taken ? cloud->GetNumberOfPoints() : 0))
   {
     Fail("an error and an output, or neither");
   }

@@ -36,7 +36,6 @@ namespace
 using namespace torture;
 using homeomorphism::ChartedTriangulation;
 using homeomorphism::Embedding;
-using homeomorphism::FramePoint;
 using homeomorphism::Homeomorphism;
 using homeomorphism::HomeomorphismOptions;
 using homeomorphism::Jacobian;
@@ -646,8 +645,14 @@ private:
     // The frame's orientation is the corners', whatever their order in the plane.
     const double handedness = this->EmbeddingOf(Opposite(from)).GetHandedness(place.Triangle);
     const double rounding = 64.0 * HalfUlp * targetSize;
-    for (double size = room / 64.0; size > 1e-13; size *= 0.125)
+    constexpr int tries = 16;
+    for (int attempt = 0; attempt < tries; ++attempt)
     {
+      const double size = std::ldexp(room, -6 - 3 * attempt);
+      if (size < 1e-13)
+      {
+        return;
+      }
       std::array<Location, 3> places;
       std::array<Matrix2, 3> derivatives;
       std::array<int, 3> edges{};
@@ -760,6 +765,7 @@ Report RunCases(const Options& options, const TestedSystem& system, int family, 
   std::atomic<std::int64_t> next{ 0 };
   std::vector<Report> reports(options.Threads);
   std::vector<std::thread> threads;
+  threads.reserve(reports.size());
   for (Report& report : reports)
   {
     threads.emplace_back([&]() {
