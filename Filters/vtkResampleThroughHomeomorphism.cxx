@@ -131,7 +131,24 @@ private:
   std::string Ids;
 };
 
-/// What would make VTK's locators read memory that is not theirs; empty if nothing would.
+/// The first array of some attributes that does not have a value for each point or cell; empty if all have.
+std::string DescribeArrays(
+  vtkDataSetAttributes* attributes, const std::string& what, vtkIdType count)
+{
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = attributes->GetAbstractArray(i);
+    if (array->GetNumberOfTuples() != count)
+    {
+      return "The " + what + " array " + (array->GetName() ? array->GetName() : "(without a name)") +
+        " of the data has " + std::to_string(array->GetNumberOfTuples()) + " values for " +
+        std::to_string(count) + " " + what + "s. Remove it (vtkPassSelectedArrays) or complete it.";
+    }
+  }
+  return "";
+}
+
+/// What would make VTK's locators and interpolation read memory that is not theirs; empty if nothing would.
 std::string DescribeDefects(vtkDataSet* data)
 {
   // With the least number of points that such a cell has.
@@ -199,7 +216,8 @@ std::string DescribeDefects(vtkDataSet* data)
     return points.Tell("point") +
       " coordinates that are not finite, among which values cannot be looked for. Remove them.";
   }
-  return "";
+  const std::string text = DescribeArrays(data->GetPointData(), "point", numberOfPoints);
+  return !text.empty() ? text : DescribeArrays(data->GetCellData(), "cell", data->GetNumberOfCells());
 }
 
 /// The same of a data set or a tree of them: the first defect found.

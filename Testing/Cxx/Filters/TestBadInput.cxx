@@ -848,6 +848,13 @@ std::vector<BadInput> Table()
       mesh->SetPolys(polygons);
       return resampled(mesh);
     });
+  add(dataToMap, "Values wanted of data with an array of another length",
+    { "The point array Velocity of the data has 2 values for 3 points." },
+    "vtkResampleThroughHomeomorphism refuses.", [resampled]() {
+      const auto mesh = MakeMesh({ { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 } }, { { 0, 1, 2 } });
+      mesh->GetPointData()->AddArray(RandomArray("Velocity", 3, 2, 5));
+      return resampled(mesh);
+    });
   add(dataToMap, "No points", {}, "Nothing comes out.", []() {
     return RunWithData(MakeCloud(std::vector<Point>{}),
       [](vtkPointSet* output) { return output->GetNumberOfPoints() == 0; }, 0);

@@ -304,6 +304,31 @@ TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
   }
 }
 
+/// Two needles on a short edge, both 1e11 times as long as it: the components of the Smooth chart's offset
+/// cancel, and did not sum to 0.
+TEST(RoundTrip, OfNeedlesOnAShortEdge)
+{
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };
+  const MeshPair pair{ MakeMesh({ { 476514376170425.75, 487995329171615.19, 0 },
+                                  { 476514376170426.62, 487995329171615.62, 0 },
+                                  { 476424604967477.62, 488184883545877.62, 0 },
+                                  { 511738598038534.19, 413618411899735.5, 0 } },
+                         triangles),
+    MakeMesh({ { -1080.6706916666099, 1259.1673662958972, 0 },
+               { -1079.6706916666099, 1259.1673662958972, 0 },
+               { -1079.934357594829, 1260.2940985012667, 0 },
+               { -1080.3772553135082, 1259.1625654312259, 0 } },
+      triangles) };
+  const auto start = MakeCloud({ { 476509391827976.56, 488005853748351.94, 0.0 } });
+  const auto filter = MakeFilter(Smooth, pair, start);
+  const auto back = MakeFilter(Smooth, pair, Output(filter));
+  back->InverseOn();
+  const double error = Distance(PointOf(Output(back), 0), PointOf(start, 0));
+  EXPECT_EQ(back->GetNumberOfOutsidePoints(), 0);
+  // The rounding of coordinates of 5e14, and that of the image, along needles of 2e11.
+  EXPECT_LT(error, 64.0 * Ulp * 5e14);
+}
+
 /// Two ulp beside the corner of a triangle whose edges are longer than its coordinates.
 TEST(Reach, MeasuringTheDistanceRoundsToo)
 {

@@ -36,7 +36,6 @@ namespace
 using namespace torture;
 using homeomorphism::ChartedTriangulation;
 using homeomorphism::Embedding;
-using homeomorphism::FramePoint;
 using homeomorphism::Homeomorphism;
 using homeomorphism::HomeomorphismOptions;
 using homeomorphism::Jacobian;
@@ -67,7 +66,7 @@ constexpr std::array<const char*, NUMBER_OF_QUANTITIES> QuantityNames{ "location
 // The constants of the limits, see Documentation/Limits.md.
 constexpr double LocationLimit = 16.0;
 constexpr double InsideLimit = 8.0;
-constexpr double RoundTripLimit = 64.0;
+constexpr double RoundTripLimit = 128.0;
 
 struct Worst
 {
@@ -646,16 +645,25 @@ private:
     // The frame's orientation is the corners', whatever their order in the plane.
     const double handedness = this->EmbeddingOf(Opposite(from)).GetHandedness(place.Triangle);
     const double rounding = 64.0 * HalfUlp * targetSize;
-    for (double size = room / 64.0; size > 1e-13; size *= 0.125)
+    constexpr int tries = 16;
+    for (int attempt = 0; attempt < tries; ++attempt)
     {
-      std::array<Location, 3> places;
-      std::array<Matrix2, 3> derivatives;
-      std::array<int, 3> edges{};
-      for (int k = 0; k < 3; ++k)
+      const double size = std::ldexp(room, -6 - 3 * attempt);
+      if (size < 1e-13)
+      {
+        return;
+      }
+      // The corners, and the middles of the edges.
+      constexpr int count = 6;
+      std::array<Location, count> places;
+      std::array<Matrix2, count> derivatives;
+      std::array<int, count> edges{};
+      for (int k = 0; k < count; ++k)
       {
         Barycentric moved = l;
-        moved[k] += size;
-        moved[(k + 1 + turn) % 3] -= size;
+        const double step = k < 3 ? size : -0.5 * size;
+        moved[k % 3] += step;
+        moved[(k % 3 + 1 + turn) % 3] -= step;
         places[k].Triangle = place.Triangle;
         places[k].Point.InPlane = shape.FromBarycentric(moved);
         derivatives[k] = this->FrameDerivativeAt(from, places[k]);
@@ -664,7 +672,7 @@ private:
           edges[k] = this->Map->GetCoordinates(from, places[k]).Edge;
         }
       }
-      if (edges[0] != edges[1] || edges[1] != edges[2])
+      if (std::count(edges.begin(), edges.end(), edges[0]) < count)
       {
         continue;
       }
@@ -680,15 +688,15 @@ private:
       {
         return;
       }
-      // Almost affine: whichever of the corners' derivatives is taken, the image is much the same.
+      // Almost affine: whichever of the derivatives is taken, the image is much the same.
       const double predicted = Cross(Times(derivatives[0], first), Times(derivatives[0], second));
       bool tame = predicted > 0.0;
       double longest = 0.0;
-      for (int a = 0; a < 3 && tame; ++a)
+      for (int a = 0; a < count && tame; ++a)
       {
         longest =
           std::max({ longest, Norm(Times(derivatives[a], first)), Norm(Times(derivatives[a], second)) });
-        for (int b = 0; b < 3; ++b)
+        for (int b = 0; b < count; ++b)
         {
           const double other = Cross(Times(derivatives[a], first), Times(derivatives[b], second));
           tame = tame && other > 0.8 * predicted && other < 1.25 * predicted;
@@ -760,6 +768,7 @@ Report RunCases(const Options& options, const TestedSystem& system, int family, 
   std::atomic<std::int64_t> next{ 0 };
   std::vector<Report> reports(options.Threads);
   std::vector<std::thread> threads;
+  threads.reserve(reports.size());
   for (Report& report : reports)
   {
     threads.emplace_back([&]() {

@@ -42,7 +42,7 @@ struct TestedSystem
 constexpr std::array<TestedSystem, 4> Systems{ {
   { "Linear", homeomorphism::CoordinateSystem::Linear, CenterPoint::Centroid, -280.0, 1.0 },
   { "Contour", homeomorphism::CoordinateSystem::Contour, CenterPoint::Centroid, -140.0, 1.0 },
-  { "Incenter", homeomorphism::CoordinateSystem::Contour, CenterPoint::Incenter, -5.0, 1.0 / 3.0 },
+  { "Incenter", homeomorphism::CoordinateSystem::Contour, CenterPoint::Incenter, -3.0, 0.2 },
   { "Smooth", homeomorphism::CoordinateSystem::Smooth, CenterPoint::Centroid, -280.0, 1.0 },
 } };
 
