@@ -186,7 +186,11 @@ struct ThroughEquation : RootLanes<Width, true>
     const ArcOfHalfDerivative derivative(h, b, s, arc);
     double sine = y * arc.Curvature;
     sine = sine < 1.0 ? sine : 1.0;
-    const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+    const double root = std::sqrt((1.0 - sine) * (1.0 + sine));
+    // An arc turns by phi at most. Near a right angle the sine has forgotten the cosine, and a cosine of 0
+    // would be an infinite slope, whose step of 0 looks like a root.
+    const double least = h * (1.0 + s) / arc.R;
+    const double cosine = root > least ? root : least;
     const double overOne = 1.0 / (1.0 + cosine);
     // On the edge, where the curvature at the corner is infinite, there is no inset.
     const double inset = y > 0.0 ? y * sine * overOne : 0.0;
