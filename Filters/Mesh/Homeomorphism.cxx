@@ -17,8 +17,9 @@ namespace homeomorphism
 namespace
 {
 
-/// Places points from @a begin on in a triangle's frame, up to the first that is not for certain in its
-/// interior or higher over the plane than @a highest. Returns the number of that one, @a end if there is none.
+/// Places points from @a begin on in a triangle's frame, up to the first that is not for certain in
+/// its interior or higher over the plane than @a highest. Returns the number of that one, @a end if
+/// there is none.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 int FindRun(const PlaneFrame& frame, const double working[3][PointBlock::Size], int begin, int end,
   double highest, PointBlock& block)
@@ -75,8 +76,9 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
 /// Half an ulp of 1.
 constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
 
-/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a triangle
-/// or its neighbour is so thin that the columns are almost parallel; the charts know better.
+/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a
+/// triangle or its neighbour is so thin that the columns are almost parallel; the charts know
+/// better.
 double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
 {
   return (other.Base / shape.Base) * (other.Height / shape.Height);
@@ -103,12 +105,11 @@ double Determinant(const ContourChart&, const ContourChart&, const TriangleShape
 
 } // namespace
 
-std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
-  vtkPolyData* target, const HomeomorphismOptions& options, MeshProblems& problems)
+std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vtkPolyData* target,
+  const HomeomorphismOptions& options, MeshProblems& problems)
 {
   std::unique_ptr<Homeomorphism> result(new Homeomorphism);
-  result->Pair =
-    TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
+  result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
   if (!result->Pair)
   {
     return nullptr;
@@ -144,8 +145,7 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
         carriedByLinear[t] = 1;
         if (problem.FirstCells.size() < MeshProblem::MaximumIds)
         {
-          problem.FirstCells.push_back(
-            FirstPolygon(side == Side::Source ? source : target) + t);
+          problem.FirstCells.push_back(FirstPolygon(side == Side::Source ? source : target) + t);
         }
       }
       problems.push_back(problem);
@@ -157,8 +157,8 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
   }
   for (const Side side : sides)
   {
-    result->Charts[int(side)] = std::make_unique<ChartedTriangulation>(topology,
-      result->Pair->GetEmbedding(side), options.System, options.Center, carriedByLinear);
+    result->Charts[int(side)] = std::make_unique<ChartedTriangulation>(
+      topology, result->Pair->GetEmbedding(side), options.System, options.Center, carriedByLinear);
   }
   return std::shared_ptr<const Homeomorphism>(std::move(result));
 }
@@ -166,8 +166,9 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
 double Homeomorphism::GetReach(Side side, double tolerance, double precision) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
-  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself is
-  // measured in a triangle's frame, as doubles, with edges up to three times as long as the coordinates.
+  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself
+  // is measured in a triangle's frame, as doubles, with edges up to three times as long as the
+  // coordinates.
   const double rounding =
     (8.0 * std::max(precision, embedding.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
     embedding.GetLargestCoordinate();
@@ -180,8 +181,8 @@ Location Homeomorphism::Locate(
   return this->Locate(side, point, this->Pair->GetEmbedding(side).ToWorking(point), reach, hint);
 }
 
-Location Homeomorphism::Locate(Side side, const double point[3], const Vector3& working, double reach,
-  TriangleIndex hint) const
+Location Homeomorphism::Locate(
+  Side side, const double point[3], const Vector3& working, double reach, TriangleIndex hint) const
 {
   Location place = this->Pair->GetLocation(side).Find(working, reach, hint);
   if (place.Corner >= 0 &&
@@ -194,8 +195,7 @@ Location Homeomorphism::Locate(Side side, const double point[3], const Vector3& 
   return place;
 }
 
-int Homeomorphism::LocateBlock(
-  Side side, PointBlock& block, double reach, LocationHint& hint) const
+int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
   const Triangulation& topology = this->Pair->GetTriangulation();
@@ -234,7 +234,8 @@ int Homeomorphism::LocateBlock(
     start = scattered && steps == 0 ? seeds[i] : start;
     if (planar && start >= 0 && steps < MaximumSteps)
     {
-      // Points in a row are often in one triangle: as many are tried as there were last time, and more.
+      // Points in a row are often in one triangle: as many are tried as there were last time, and
+      // more.
       const int end =
         scattered ? i + 1 : std::min(block.Count, i + std::max(WidestVector, 2 * hint.RunLength));
       const PlaneFrame& frame = embedding.GetPlaneFrame(start);
@@ -273,8 +274,8 @@ int Homeomorphism::LocateBlock(
       }
     }
     steps = 0;
-    const Location place = this->Locate(side, block.Points[i],
-      { working[0][i], working[1][i], working[2][i] }, reach, start);
+    const Location place = this->Locate(
+      side, block.Points[i], { working[0][i], working[1][i], working[2][i] }, reach, start);
     block.Triangles[i] = place.Triangle;
     block.Corners[i] = place.Corner;
     block.InPlane[0][i] = place.Point.InPlane.x;
@@ -313,7 +314,8 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
-  // Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of it.
+  // Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of
+  // it.
   const auto forEachRun = [&block](auto&& use, auto&& useOther) {
     for (int begin = 0; begin < block.Count;)
     {
@@ -365,10 +367,8 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
       },
       [&](int other) { FillSmoothLanes(lanes, other, other + 1); });
     MapSmoothLanes(lanes, block.Count);
-    forEachRun(
-      [&](int begin, int end, TriangleIndex t) {
-        GetSmoothLanes(lanes, begin, end, byCorner(t).data());
-      },
+    forEachRun([&](int begin, int end,
+                 TriangleIndex t) { GetSmoothLanes(lanes, begin, end, byCorner(t).data()); },
       [](int) {});
   }
   else if (charts.GetSystem() == CoordinateSystem::Contour)
@@ -428,8 +428,8 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
       {
         const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
         target.FromWorking(
-          target.FromFrame(t, { target.GetShape(t).FromBarycentric(l),
-                                this->OffsetOfImage(from, block.Offsets[i]) }),
+          target.FromFrame(t,
+            { target.GetShape(t).FromBarycentric(l), this->OffsetOfImage(from, block.Offsets[i]) }),
           block.Points[i]);
       }
     },
@@ -469,8 +469,8 @@ void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) 
   }
   FramePoint point;
   point.Offset = offset;
-  point.InPlane = this->VisitCharts(from, place.Triangle,
-    [&place](const auto& chart, const auto& other) {
+  point.InPlane =
+    this->VisitCharts(from, place.Triangle, [&place](const auto& chart, const auto& other) {
       return homeomorphism::MapPoint(chart, other, place.Point.InPlane);
     });
   target.FromWorking(target.FromFrame(place.Triangle, point), image);
@@ -489,8 +489,8 @@ Jacobian Homeomorphism::Derive(Side from, TriangleIndex triangle, const Chart& c
 
 Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 {
-  return this->VisitCharts(from, place.Triangle,
-    [this, from, &place](const auto& chart, const auto& other) {
+  return this->VisitCharts(
+    from, place.Triangle, [this, from, &place](const auto& chart, const auto& other) {
       return this->Derive(
         from, place.Triangle, chart, other, chart.ToReference(place.Point.InPlane));
     });
@@ -499,8 +499,8 @@ Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 Jacobian Homeomorphism::GetJacobian(
   Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
 {
-  return this->VisitCharts(from, triangle,
-    [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
+  return this->VisitCharts(
+    from, triangle, [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
       return this->Derive(from, triangle, chart, other, chart.FromCoordinates(coordinates));
     });
 }
@@ -527,8 +527,8 @@ Jacobian Homeomorphism::FromFrames(
         alongInward * from3[1][column] + to3[2][row] * from3[2][column];
     }
   }
-  jacobian.Determinant = determinant * rescale * rescale *
-    source.GetHandedness(triangle) * target.GetHandedness(triangle);
+  jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
+    target.GetHandedness(triangle);
   return jacobian;
 }
 

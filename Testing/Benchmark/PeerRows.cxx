@@ -113,9 +113,8 @@ void AddTinshift(const Workload& workload, Rows& rows)
       // PROJ maps points in place.
       task.Out->DeepCopy(task.In);
     };
-    row.Run = [tinshift, inverse](Task& task) {
-      tinshift->Map(inverse ? PJ_INV : PJ_FWD, task.Out);
-    };
+    row.Run = [tinshift, inverse](
+                Task& task) { tinshift->Map(inverse ? PJ_INV : PJ_FWD, task.Out); };
   }
 }
 

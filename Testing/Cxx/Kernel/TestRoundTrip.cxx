@@ -295,8 +295,8 @@ TYPED_TEST(RoundTrip, CoordinatesToPointToCoordinates)
   EXPECT_LT(worst, 1e-13);
 }
 
-/// Near the tip of a flat cap, where arcs turn by almost a right angle, whose cosine was lost: a root was
-/// taken for found that was half an edge away.
+/// Near the tip of a flat cap, where arcs turn by almost a right angle, whose cosine was lost: a
+/// root was taken for found that was half an edge away.
 TEST(ContourRoundTrip, NearTheTipOfACap)
 {
   const PlacedTriangle triangle({ Vector2{ 40.334549577597691, 0.0 }, { 0.0, 0.0 },
