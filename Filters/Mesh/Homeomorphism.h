@@ -146,6 +146,13 @@ private:
         this->Pair->GetEmbedding(Opposite(from)).GetScale();
   }
 
+  /// The block's barycentric coordinates, ordered as a triangle's corners.
+  std::array<double*, 3> ByCorner(Side side, TriangleIndex triangle, PointBlock& block) const;
+  void MapByStrips(Side from, PointBlock& block) const;
+  void MapByContours(Side from, PointBlock& block) const;
+  void LeaveTriangle(
+    Side from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
+
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
 

@@ -207,7 +207,8 @@ private:
     images->SetDataTypeToDouble();
     images->SetNumberOfPoints(task.In->GetNumberOfPoints());
     vtkNew<vtkPoints> preimages;
-    preimages->DeepCopy(images);
+    preimages->SetDataTypeToDouble();
+    preimages->SetNumberOfPoints(task.In->GetNumberOfPoints());
     images->GetData()->DeepCopy(this->Result);
     Task returning{ images, preimages, 1, nullptr };
     this->Run(back, returning);
