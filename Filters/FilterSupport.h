@@ -12,6 +12,7 @@
 
 #include "Mesh/HomeomorphismCache.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkAlgorithm.h"
 #include "vtkArrayDispatch.h"
 #include "vtkCellData.h"
@@ -91,6 +92,11 @@ inline double PrecisionOfType(int dataType)
 inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
 {
   double* coordinates = &block.Points[0][0];
+  if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    std::copy_n(doubles->GetPointer(3 * first), 3 * block.Count, coordinates);
+    return;
+  }
   const auto read = [first, coordinates, &block](auto* typed) {
     const auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
     std::transform(values.begin(), values.end(), coordinates,
@@ -121,6 +127,11 @@ inline void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
 inline void WritePoints(const PointBlock& block, vtkIdType first, vtkDataArray* array)
 {
   const double* coordinates = &block.Points[0][0];
+  if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    std::copy_n(coordinates, 3 * block.Count, doubles->GetPointer(3 * first));
+    return;
+  }
   const auto write = [first, coordinates, &block](auto* typed) {
     using Value = vtk::GetAPIType<std::remove_pointer_t<decltype(typed)>>;
     auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));

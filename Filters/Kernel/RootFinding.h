@@ -99,6 +99,11 @@ public:
   /// the smallest root that matters, an ulp of 1 cubed.
   HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
   {
+    // Some of many nearly always need three steps, and to ask takes as long as one.
+    if (Width > 1 && steps < 3)
+    {
+      return false;
+    }
     double done = 1.0;
     for (int lane = 0; lane < Width; ++lane)
     {

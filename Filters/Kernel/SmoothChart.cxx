@@ -108,10 +108,10 @@ struct StripEquation : RootLanes<Width, false>
     const double beta = this->Root[lane];
     const StripFunction function(
       k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau);
-    // The relative second derivative times beta is below 2^12 even where tau is as small as in
-    // needles.
+    // What a step leaves, about its square times half the relative second derivative, which tau
+    // bounds, is a fraction of what a barycentric coordinate's rounding makes of it.
     this->Step(lane, function.Residual(beta, k, kappa),
-      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-30);
+      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-24 * tau * tau);
   }
 };
 
@@ -289,7 +289,7 @@ void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 void MapSmoothLanes(SmoothLanes& lanes, int count)
 {
-  constexpr int width = 16;
+  constexpr int width = 32;
   static_assert(SmoothLanes::Capacity % width == 0, "whole groups of lanes");
   const int end = (count + width - 1) / width * width;
   FillSmoothLanes(lanes, count, end);

@@ -88,6 +88,7 @@ public:
 
   /// Working coordinates over input coordinates, a power of two.
   double GetScale() const { return this->Scale; }
+  double GetInverseScale() const { return this->InverseScale; }
   /// Largest absolute working coordinate of a point, about 1.
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
   /// Length of the diagonal of the box around the points, in working coordinates.

@@ -360,17 +360,6 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
     });
 }
 
-std::array<double*, 3> Homeomorphism::ByCorner(
-  Side side, TriangleIndex triangle, PointBlock& block) const
-{
-  std::array<double*, 3> coordinates;
-  const int apex = this->Pair->GetEmbedding(side).GetApex(triangle);
-  coordinates[apex] = block.Apex;
-  coordinates[NextCorner(apex)] = block.First;
-  coordinates[PreviousCorner(apex)] = block.Second;
-  return coordinates;
-}
-
 /// Takes barycentric coordinates from the source's affine charts to the target's.
 void Homeomorphism::MapByStrips(Side from, PointBlock& block) const
 {

@@ -141,13 +141,21 @@ private:
   /// lengths of the input's space, not of either working space.
   double OffsetOfImage(Side from, double offset) const
   {
-    return offset == 0.0 ? 0.0
-                         : offset / this->Pair->GetEmbedding(from).GetScale() *
-        this->Pair->GetEmbedding(Opposite(from)).GetScale();
+    // Powers of two: nothing is rounded.
+    return offset * this->Pair->GetEmbedding(from).GetInverseScale() *
+      this->Pair->GetEmbedding(Opposite(from)).GetScale();
   }
 
   /// The block's barycentric coordinates, ordered as a triangle's corners.
-  std::array<double*, 3> ByCorner(Side side, TriangleIndex triangle, PointBlock& block) const;
+  std::array<double*, 3> ByCorner(Side side, TriangleIndex triangle, PointBlock& block) const
+  {
+    std::array<double*, 3> coordinates;
+    const int apex = this->Pair->GetEmbedding(side).GetApex(triangle);
+    coordinates[apex] = block.Apex;
+    coordinates[NextCorner(apex)] = block.First;
+    coordinates[PreviousCorner(apex)] = block.Second;
+    return coordinates;
+  }
   void MapByStrips(Side from, PointBlock& block) const;
   void MapByContours(Side from, PointBlock& block) const;
   void LeaveTriangle(
