@@ -80,8 +80,7 @@ vtkSmartPointer<vtkDataArray> CarryArray(
   const vtkIdType count = array->GetNumberOfTuples();
   // A carried integer vector is no integer any more.
   const int type = array->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE;
-  const auto result =
-    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  const auto result = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   result->SetName(array->GetName());
   result->SetNumberOfComponents(components);
   result->SetNumberOfTuples(count);

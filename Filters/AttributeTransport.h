@@ -15,8 +15,8 @@ class vtkDoubleArray;
 namespace homeomorphism
 {
 
-/// Carries values at one point, where the map's Jacobian is J (row-major, invertible). Where J is NaN,
-/// outside the domain, so are all results.
+/// Carries values at one point, where the map's Jacobian is J (row-major, invertible). Where J is
+/// NaN, outside the domain, so are all results.
 class TensorTransport
 {
 public:
@@ -47,9 +47,9 @@ enum class TransportRule
   Normal
 };
 
-/// A copy of @a array carried tuple by tuple by the Jacobians of @a jacobians (9 components). Arrays of
-/// 3 components are vectors, of 9 tensors (row-major), of 6 symmetric tensors in VTK's order XX, YY,
-/// ZZ, XY, YZ, XZ. Integers become doubles. Null if the rule does not apply to the
+/// A copy of @a array carried tuple by tuple by the Jacobians of @a jacobians (9 components).
+/// Arrays of 3 components are vectors, of 9 tensors (row-major), of 6 symmetric tensors in VTK's
+/// order XX, YY, ZZ, XY, YZ, XZ. Integers become doubles. Null if the rule does not apply to the
 /// array, or if it has another number of tuples.
 vtkSmartPointer<vtkDataArray> CarryArray(
   vtkDataArray* array, vtkDoubleArray* jacobians, TransportRule rule);

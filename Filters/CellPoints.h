@@ -19,9 +19,9 @@
 namespace homeomorphism
 {
 
-/// The ids of the points of a data set's cells, as they are stored. vtkPolyData's own GetCellPoints reads
-/// from a null pointer if one of its cells has fewer points than a line or polygon needs, or if offsets do
-/// not fit.
+/// The ids of the points of a data set's cells, as they are stored. vtkPolyData's own GetCellPoints
+/// reads from a null pointer if one of its cells has fewer points than a line or polygon needs, or
+/// if offsets do not fit.
 class CellPoints
 {
 public:

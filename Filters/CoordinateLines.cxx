@@ -105,19 +105,18 @@ void AddGuides(LineCollector& lines, TriangleIndex triangle, const ContourChart&
 {
   const Vector2 center = construction.Center();
   const auto addSegment = [&](const Vector2& from, const Vector2& to, int type, int edge) {
-    lines.Add(triangle,
-      Sample(pieces, [&](double t) { return carry((1.0 - t) * from + t * to); }), type, edge,
-      none, none);
+    lines.Add(triangle, Sample(pieces, [&](double t) { return carry((1.0 - t) * from + t * to); }),
+      type, edge, none, none);
   };
   for (int edge = 1; edge <= 3; ++edge)
   {
     const Vector2 foot = construction.Foot(edge);
     const Vector2 middle = 0.5 * (center + foot);
     addSegment(center, foot, vtkTriangularCoordinates::CENTER_SEGMENT, edge);
-    addSegment(shape.Corner(NextCorner(edge - 1)), middle,
-      vtkTriangularCoordinates::WING_SEGMENT, edge);
-    addSegment(shape.Corner(PreviousCorner(edge - 1)), middle,
-      vtkTriangularCoordinates::WING_SEGMENT, edge);
+    addSegment(
+      shape.Corner(NextCorner(edge - 1)), middle, vtkTriangularCoordinates::WING_SEGMENT, edge);
+    addSegment(
+      shape.Corner(PreviousCorner(edge - 1)), middle, vtkTriangularCoordinates::WING_SEGMENT, edge);
   }
 }
 
@@ -168,8 +167,7 @@ void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
       for (int i = 0; i < options.NumberOfContours; ++i)
       {
         const double p = static_cast<double>(i) / options.NumberOfContours;
-        lines.Add(t,
-          Sample(options.Resolution, [&](double c) { return pointAt(edge, p, c); }),
+        lines.Add(t, Sample(options.Resolution, [&](double c) { return pointAt(edge, p, c); }),
           vtkTriangularCoordinates::CONTOUR_LINE, edge, p, none);
       }
     }

@@ -24,8 +24,8 @@ struct CoordinateLineOptions
 };
 
 /// Fills @a output with the lines of all triangles of the source, as output 1 of
-/// vtkTriangularCoordinates describes. On behalf of @a self, whose request to abort leaves the lines of
-/// the triangles done by then.
+/// vtkTriangularCoordinates describes. On behalf of @a self, whose request to abort leaves the
+/// lines of the triangles done by then.
 void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
   const CoordinateLineOptions& options, vtkPolyData* output);
 

@@ -55,8 +55,8 @@ LineCrossing EdgeCrossings::GetCrossing(
   {
     const Vector3 apex = this->GetPosition(Side::Source, edge.Apexes[side]);
     crossing.Inward[side] = UnitAcross(start, crossing.Tangent, apex);
-    // Where the perpendicular leaves the triangle again: through the edge to the apex from the start,
-    // or that from the end.
+    // Where the perpendicular leaves the triangle again: through the edge to the apex from the
+    // start, or that from the end.
     const Vector3 toApex = Difference(apex, start);
     const double foot = Dot3(toApex, crossing.Tangent);
     const double height = Dot3(toApex, crossing.Inward[side]);
@@ -91,8 +91,7 @@ LineCrossing EdgeCrossings::GetCrossing(
   return crossing;
 }
 
-JacobianJump EdgeCrossings::GetExactJump(
-  std::size_t edgeIndex, const LineCrossing& crossing) const
+JacobianJump EdgeCrossings::GetExactJump(std::size_t edgeIndex, const LineCrossing& crossing) const
 {
   const MeshEdge& edge = this->InteriorEdges[edgeIndex];
   const Embedding& source = this->Map.GetPair().GetEmbedding(Side::Source);

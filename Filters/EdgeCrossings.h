@@ -38,10 +38,9 @@ public:
   const std::vector<MeshEdge>& GetInteriorEdges() const { return this->InteriorEdges; }
   const std::vector<MeshEdge>& GetBoundaryEdges() const { return this->BoundaryEdges; }
 
-  /// The crossing at a proportion of an interior edge's length. The image's axes follow from the target,
-  /// if there is one, or from the map's values.
-  LineCrossing GetCrossing(
-    std::size_t edge, double proportion, const MapUnderTest& evaluate) const;
+  /// The crossing at a proportion of an interior edge's length. The image's axes follow from the
+  /// target, if there is one, or from the map's values.
+  LineCrossing GetCrossing(std::size_t edge, double proportion, const MapUnderTest& evaluate) const;
 
   /// The jump at a crossing of the edge by the map's closed form.
   JacobianJump GetExactJump(std::size_t edge, const LineCrossing& crossing) const;

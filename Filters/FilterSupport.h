@@ -12,6 +12,7 @@
 
 #include "Mesh/HomeomorphismCache.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkAlgorithm.h"
 #include "vtkArrayDispatch.h"
 #include "vtkCellData.h"
@@ -60,8 +61,9 @@ inline std::string DescribeProblems(const MeshProblems& problems, MeshProblem::O
   return text;
 }
 
-/// Errors for what made the meshes be refused, warnings for what was left out of them. That the Linear
-/// system carries discordant triangles is no surprise to who asked for it, and shows in an array.
+/// Errors for what made the meshes be refused, warnings for what was left out of them. That the
+/// Linear system carries discordant triangles is no surprise to who asked for it, and shows in an
+/// array.
 inline void ReportProblems(vtkObject* self, const MeshProblems& problems)
 {
   const std::string errors = DescribeProblems(problems, MeshProblem::Outcome::Refused);
@@ -90,6 +92,11 @@ inline double PrecisionOfType(int dataType)
 inline void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
 {
   double* coordinates = &block.Points[0][0];
+  if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    std::copy_n(doubles->GetPointer(3 * first), 3 * block.Count, coordinates);
+    return;
+  }
   const auto read = [first, coordinates, &block](auto* typed) {
     const auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
     std::transform(values.begin(), values.end(), coordinates,
@@ -120,6 +127,11 @@ inline void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
 inline void WritePoints(const PointBlock& block, vtkIdType first, vtkDataArray* array)
 {
   const double* coordinates = &block.Points[0][0];
+  if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    std::copy_n(coordinates, 3 * block.Count, doubles->GetPointer(3 * first));
+    return;
+  }
   const auto write = [first, coordinates, &block](auto* typed) {
     using Value = vtk::GetAPIType<std::remove_pointer_t<decltype(typed)>>;
     auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
@@ -133,11 +145,11 @@ inline void WritePoints(const PointBlock& block, vtkIdType first, vtkDataArray* 
 }
 
 /// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
-/// and a request to abort is honoured; a block should take a fraction of a second. Returns the number
-/// of items done: less than count only if aborted.
+/// and a request to abort is honoured; a block should take a fraction of a second. Returns the
+/// number of items done: less than count only if aborted.
 template <typename Work>
-vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
-  double progressEnd, Work&& work, vtkIdType blockSize = 1 << 17)
+vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin, double progressEnd,
+  Work&& work, vtkIdType blockSize = 1 << 17)
 {
   for (vtkIdType begin = 0; begin < count; begin += blockSize)
   {
@@ -152,8 +164,9 @@ vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
   return count;
 }
 
-/// Whether the algorithm's input may be a data set or a tree of them. The type of trees comes first:
-/// executives that iterate over composite inputs on behalf of simple filters look only at it.
+/// Whether the algorithm's input may be a data set or a tree of them. The type of trees comes
+/// first: executives that iterate over composite inputs on behalf of simple filters look only at
+/// it.
 inline void AcceptDataSetsAndTrees(vtkInformation* info)
 {
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
@@ -161,9 +174,9 @@ inline void AcceptDataSetsAndTrees(vtkInformation* info)
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
 }
 
-/// Tells that an output may change whenever one of the first @a ports inputs does: its time steps and time
-/// range are all of theirs. By default they are those of port 0, and at other times the executive takes
-/// what was made before for good.
+/// Tells that an output may change whenever one of the first @a ports inputs does: its time steps
+/// and time range are all of theirs. By default they are those of port 0, and at other times the
+/// executive takes what was made before for good.
 inline void DescribeTimesInOutput(vtkInformationVector** inputs, int ports, vtkInformation* outInfo)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -242,8 +255,8 @@ inline vtkInformationIntegerKey* AskedForWhole()
   return key;
 }
 
-/// Adds the algorithms that the ones connected to a port depend on, themselves included; @a inPieces: only
-/// if the same piece is asked from them.
+/// Adds the algorithms that the ones connected to a port depend on, themselves included; @a
+/// inPieces: only if the same piece is asked from them.
 inline void CollectUpstream(
   vtkAlgorithm* algorithm, int port, bool inPieces, std::set<vtkAlgorithm*>& found)
 {
@@ -264,9 +277,10 @@ inline void CollectUpstream(
   }
 }
 
-/// Whether what comes in at a port and what comes in at the ports before it, which are asked for whole,
-/// are made from the same things. Those cannot be asked for both whole and in pieces at the same time:
-/// then this port must be asked for whole, too, and what becomes of it is part of piece 0.
+/// Whether what comes in at a port and what comes in at the ports before it, which are asked for
+/// whole, are made from the same things. Those cannot be asked for both whole and in pieces at the
+/// same time: then this port must be asked for whole, too, and what becomes of it is part of piece
+/// 0.
 inline bool SharesUpstreamWithPortsBefore(vtkAlgorithm* algorithm, int port)
 {
   std::set<vtkAlgorithm*> whole;
@@ -296,8 +310,8 @@ inline void MakeOutputLike(vtkDataObject* data, vtkInformation* outInfo)
   vtkDataObject* current = vtkDataObject::GetData(outInfo);
   if (!current || std::string(current->GetClassName()) != data->GetClassName())
   {
-    outInfo->Set(vtkDataObject::DATA_OBJECT(),
-      vtkSmartPointer<vtkDataObject>::Take(data->NewInstance()));
+    outInfo->Set(
+      vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(data->NewInstance()));
   }
 }
 
@@ -324,8 +338,8 @@ HomeomorphismOptions GetOptions(Algorithm* self)
   return options;
 }
 
-/// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input. Each
-/// conversion's progress counts as a part of the whole.
+/// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input.
+/// Each conversion's progress counts as a part of the whole.
 template <typename Convert>
 void ConvertLeaves(
   vtkAlgorithm* self, vtkCompositeDataSet* input, vtkCompositeDataSet* output, Convert&& convert)
@@ -372,7 +386,8 @@ inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkId
   return ghosts;
 }
 
-/// Number of points that @a mask leaves out, those of @a data that belong to another piece excepted.
+/// Number of points that @a mask leaves out, those of @a data that belong to another piece
+/// excepted.
 inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
 {
   const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
@@ -391,8 +406,8 @@ inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
   return outside;
 }
 
-/// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use them or
-/// points that do not exist. @a cells has the output's cells.
+/// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use
+/// them or points that do not exist. @a cells has the output's cells.
 inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet* output)
 {
   const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
@@ -415,8 +430,7 @@ inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet
           return point < 0 || point >= numberOfPoints || !mask->GetValue(point);
         }))
     {
-      cellGhosts->SetValue(
-        cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
+      cellGhosts->SetValue(cell, cellGhosts->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
     }
   }
 }

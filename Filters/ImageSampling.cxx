@@ -122,8 +122,8 @@ ImageSampling::ImageSampling(vtkImageData* image, vtkDataSetAttributes* output, 
     }
     this->ToIndex[4 * axis + 3] -= extent[2 * axis];
     // A few roundings of coordinates as large as the image's.
-    this->Tolerance[axis] = 64.0 * std::numeric_limits<double>::epsilon() *
-      (scale * largest + this->Dimensions[axis]);
+    this->Tolerance[axis] =
+      64.0 * std::numeric_limits<double>::epsilon() * (scale * largest + this->Dimensions[axis]);
     this->StencilSize *= this->Dimensions[axis] > 1 ? 2 : 1;
   }
 }
@@ -143,7 +143,8 @@ bool ImageSampling::MakeStencil(const double point[3], Stencil& stencil) const
       return false;
     }
     const double inside = std::min(std::max(index, 0.0), static_cast<double>(last));
-    lower[axis] = std::min(static_cast<vtkIdType>(inside), static_cast<vtkIdType>(std::max(0, last - 1)));
+    lower[axis] =
+      std::min(static_cast<vtkIdType>(inside), static_cast<vtkIdType>(std::max(0, last - 1)));
     fraction[axis] = inside - static_cast<double>(lower[axis]);
   }
   const vtkIdType rowStep = this->Dimensions[0];
@@ -208,8 +209,8 @@ void ImageSampling::Sample(const double (*points)[3], const bool* wanted, int co
           double sum = 0.0;
           for (int k = 0; k < size; ++k)
           {
-            sum += stencil.Weights[k] *
-              static_cast<double>(values[stencil.Points[k] * components + c]);
+            sum +=
+              stencil.Weights[k] * static_cast<double>(values[stencil.Points[k] * components + c]);
           }
           results[stencil.Tuple * components + c] = FromDouble<Value>(sum);
         }

@@ -24,23 +24,25 @@ namespace homeomorphism
 /// Array of the same type and name with @a tuples tuples, all NaN or 0.
 vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples);
 
-/// Fills arrays with the values of an image: of its point arrays interpolated linearly in each direction
-/// (rounded to the nearest number in arrays of integers), of its cell arrays those of the cell that a point
-/// is in. A point outside by rounding counts as on the border. Different ranges may be sampled in parallel.
+/// Fills arrays with the values of an image: of its point arrays interpolated linearly in each
+/// direction (rounded to the nearest number in arrays of integers), of its cell arrays those of the
+/// cell that a point is in. A point outside by rounding counts as on the border. Different ranges
+/// may be sampled in parallel.
 class ImageSampling
 {
 public:
   /// How many points are dealt with at a time.
   static constexpr int Capacity = 256;
 
-  /// Whether the image has a value everywhere: nothing is hidden, and all arrays are of numbers and have names
-  /// and the right size.
+  /// Whether the image has a value everywhere: nothing is hidden, and all arrays are of numbers and
+  /// have names and the right size.
   static bool CanSample(vtkImageData* image);
 
   /// Adds an array for each of the image's to @a output, NaN or 0, in the same roles.
   ImageSampling(vtkImageData* image, vtkDataSetAttributes* output, vtkIdType count);
 
-  /// Sets tuples @a first to @a first + @a count of the arrays, at most Capacity, from what the image has at
+  /// Sets tuples @a first to @a first + @a count of the arrays, at most Capacity, from what the
+  /// image has at
   /// @a points where @a wanted says so and there is something; @a mask tells where.
   void Sample(const double (*points)[3], const bool* wanted, int count, vtkIdType first,
     vtkUnsignedCharArray* mask) const;

@@ -130,8 +130,7 @@ InnerLines::PointOnLine InnerLines::GetPoint(
   return { (1.0 - t) * start + t * end, Unit(end - start), std::min(t, 1.0 - t) * length };
 }
 
-Vector3 InnerLines::GetPosition(
-  TriangleIndex triangle, InnerLine kind, int number, double t) const
+Vector3 InnerLines::GetPosition(TriangleIndex triangle, InnerLine kind, int number, double t) const
 {
   const Embedding& source = this->GetSource();
   Vector3 position;
@@ -141,8 +140,8 @@ Vector3 InnerLines::GetPosition(
   return position;
 }
 
-LineCrossing InnerLines::GetCrossing(TriangleIndex triangle, InnerLine kind, int number, double t,
-  const MapUnderTest& evaluate) const
+LineCrossing InnerLines::GetCrossing(
+  TriangleIndex triangle, InnerLine kind, int number, double t, const MapUnderTest& evaluate) const
 {
   const Embedding& source = this->GetSource();
   const TriangleShape& shape = source.GetShape(triangle);
@@ -163,8 +162,8 @@ LineCrossing InnerLines::GetCrossing(TriangleIndex triangle, InnerLine kind, int
   return crossing;
 }
 
-JacobianJump InnerLines::GetExactJump(TriangleIndex triangle, InnerLine kind, int number, double t,
-  const LineCrossing& crossing) const
+JacobianJump InnerLines::GetExactJump(
+  TriangleIndex triangle, InnerLine kind, int number, double t, const LineCrossing& crossing) const
 {
   if (kind != InnerLine::Spoke ||
     this->Map.GetCharts(Side::Source).GetSystemOf(triangle) != CoordinateSystem::Contour)
@@ -179,8 +178,8 @@ JacobianJump InnerLines::GetExactJump(TriangleIndex triangle, InnerLine kind, in
     this->Map.GetJacobian(Side::Source, triangle, { NextCorner(number) + 1, 1.0, t });
   const Jacobian right =
     this->Map.GetJacobian(Side::Source, triangle, { PreviousCorner(number) + 1, 0.0, t });
-  return CompareDerivatives(crossing, { left * crossing.Inward[0], right * crossing.Inward[1] },
-    left * crossing.Tangent);
+  return CompareDerivatives(
+    crossing, { left * crossing.Inward[0], right * crossing.Inward[1] }, left * crossing.Tangent);
 }
 
 } // namespace homeomorphism

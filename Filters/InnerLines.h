@@ -41,8 +41,8 @@ public:
   /// The number of lines of a kind in each triangle.
   static int GetNumberOfLines(InnerLine kind) { return kind == InnerLine::WingSegment ? 6 : 3; }
 
-  /// Not so for the center and wing segments of an edge that the centre has no foot on, nor for the strip
-  /// of a boundary edge.
+  /// Not so for the center and wing segments of an edge that the centre has no foot on, nor for the
+  /// strip of a boundary edge.
   bool Exists(TriangleIndex triangle, InnerLine kind, int number) const;
 
   /// The point at a proportion t, from 0 to 1, of the line.
@@ -51,8 +51,8 @@ public:
   LineCrossing GetCrossing(TriangleIndex triangle, InnerLine kind, int number, double t,
     const MapUnderTest& evaluate) const;
 
-  /// The jump across the line by the map's closed form: that of the Contour system at spokes. Nowhere
-  /// else within a triangle is there one, in any system.
+  /// The jump across the line by the map's closed form: that of the Contour system at spokes.
+  /// Nowhere else within a triangle is there one, in any system.
   JacobianJump GetExactJump(TriangleIndex triangle, InnerLine kind, int number, double t,
     const LineCrossing& crossing) const;
 

@@ -62,8 +62,8 @@ MeasuredPlaces::MeasuredPlaces(const Homeomorphism& map, CenterPoint center,
   };
   addEdges(PlaceKind::Edge, this->Edges.GetInteriorEdges());
   addEdges(PlaceKind::BoundaryEdge, this->Edges.GetBoundaryEdges());
-  for (const PlaceKind kind : { PlaceKind::Spoke, PlaceKind::WingSegment,
-         PlaceKind::CenterSegment, PlaceKind::StripBorder })
+  for (const PlaceKind kind :
+    { PlaceKind::Spoke, PlaceKind::WingSegment, PlaceKind::CenterSegment, PlaceKind::StripBorder })
   {
     if (isSelected(kind))
     {
@@ -180,8 +180,7 @@ MeasuredPlaces::Sample MeasuredPlaces::Measure(const MeasuredPlace& place, int s
     crossing = this->Lines.GetCrossing(place.Item, line, place.Line, t, map);
     if (exact)
     {
-      sample.Exact =
-        this->Lines.GetExactJump(place.Item, line, place.Line, t, crossing).Jump;
+      sample.Exact = this->Lines.GetExactJump(place.Item, line, place.Line, t, crossing).Jump;
     }
   }
   sample.First = EstimateJump(map, crossing, 1, resolution);

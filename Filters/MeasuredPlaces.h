@@ -47,8 +47,9 @@ struct MeasuredPlace
   int Line = 0;
 };
 
-/// The places of a map's source: first points (centroids, vertices), then lines (edges, boundary edges,
-/// spokes, wing segments, center segments, strip borders), which is the order of a vtkPolyData's cells.
+/// The places of a map's source: first points (centroids, vertices), then lines (edges, boundary
+/// edges, spokes, wing segments, center segments, strip borders), which is the order of a
+/// vtkPolyData's cells.
 class MeasuredPlaces
 {
 public:
@@ -89,16 +90,16 @@ public:
   /// The position of a point that shows the place.
   Vector3 GetPosition(const MeasuredPlace& place, int point) const;
 
-  /// At a sample, counted from 0: the measured jump, that of the second derivative if it is asked for and
-  /// the place is a line, and the closed form, if there is one (else NaN).
+  /// At a sample, counted from 0: the measured jump, that of the second derivative if it is asked
+  /// for and the place is a line, and the closed form, if there is one (else NaN).
   struct Sample
   {
     JacobianJump First;
     JacobianJump Second;
     double Exact = JacobianJump::None;
   };
-  Sample Measure(const MeasuredPlace& place, int sample, const MapUnderTest& map,
-    double resolution, bool secondDerivatives) const;
+  Sample Measure(const MeasuredPlace& place, int sample, const MapUnderTest& map, double resolution,
+    bool secondDerivatives) const;
 
 private:
   double GetProportion(int point) const { return point / (this->Samples + 1.0); }

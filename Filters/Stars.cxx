@@ -50,16 +50,14 @@ Stars::Stars(const Homeomorphism& map, CenterPoint center, int raysBetween)
     offset = end;
   }
   this->Triangles.resize(end);
-  visitCorners([&](std::int32_t point, TriangleIndex t) {
-    this->Triangles[--this->Offsets[point]] = t;
-  });
+  visitCorners(
+    [&](std::int32_t point, TriangleIndex t) { this->Triangles[--this->Offsets[point]] = t; });
 }
 
 TriangleIndex Stars::GetTriangleAt(std::int32_t point) const
 {
-  return this->Offsets[point] < this->Offsets[point + 1]
-    ? this->Triangles[this->Offsets[point]]
-    : -1;
+  return this->Offsets[point] < this->Offsets[point + 1] ? this->Triangles[this->Offsets[point]]
+                                                         : -1;
 }
 
 template <typename ReachOf>
@@ -137,8 +135,8 @@ JacobianJump Stars::GetExactJumpAtCenter(TriangleIndex triangle, const Star& sta
   {
     // The contour that starts along the ray: contours are straight near the centre.
     const Vector3 beside = Sum(star.Point, 0.25 * ray.Reach, ray.Direction);
-    TriangularCoordinates contour = charts.ToCoordinates(triangle,
-      source.ToFrame(triangle, source.ToWorking(beside.data())).InPlane);
+    TriangularCoordinates contour = charts.ToCoordinates(
+      triangle, source.ToFrame(triangle, source.ToWorking(beside.data())).InPlane);
     contour.ContourParameter = 0.0;
     derivatives.push_back(this->Map.GetJacobian(Side::Source, triangle, contour) * ray.Direction);
   }

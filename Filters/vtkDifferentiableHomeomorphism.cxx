@@ -51,8 +51,7 @@ public:
   std::map<std::string, TransportRule> Transports;
 
   /// Lets Continuity measure the map between the meshes.
-  void Measure(
-    vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target);
+  void Measure(vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target);
 
   vtkNew<vtkJacobianContinuity> Continuity;
   /// What Continuity has as its meshes.
@@ -105,13 +104,12 @@ public:
     this->MapPoints(carriesPoints);
     if (carriesPoints)
     {
-      this->CarryArrays(
-        this->Input->GetPointData(), this->Output->GetPointData(), this->Jacobians);
+      this->CarryArrays(this->Input->GetPointData(), this->Output->GetPointData(), this->Jacobians);
     }
     if (this->CarriesAny(this->Input->GetCellData()))
     {
-      this->CarryArrays(this->Input->GetCellData(), this->Output->GetCellData(),
-        this->ComputeCellJacobians());
+      this->CarryArrays(
+        this->Input->GetCellData(), this->Output->GetCellData(), this->ComputeCellJacobians());
     }
     this->AddPointArrays();
     this->MarkOutside();
@@ -207,8 +205,8 @@ private:
     {
       ghosts = nullptr;
     }
-    const vtkIdType done = RunInBlocks(
-      this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
+    const vtkIdType done =
+      RunInBlocks(this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
         LocationHint hint;
         PointBlock block;
         for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
@@ -218,7 +216,8 @@ private:
           this->Map.LocateBlock(this->From, block, reach, hint);
           for (int i = 0; i < block.Count && ghosts; ++i)
           {
-            // What is hidden in the input is not there: above all what an earlier map found outside.
+            // What is hidden in the input is not there: above all what an earlier map found
+            // outside.
             if ((ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT) != 0)
             {
               block.Triangles[i] = -1;
@@ -303,11 +302,12 @@ private:
         double reach = pointReach;
         for (vtkIdType k = 0; k < count && !embedding.IsColumnar(); ++k)
         {
-          // The mean of points on a surface lies off it, but no farther than they do from each other.
+          // The mean of points on a surface lies off it, but no farther than they do from each
+          // other.
           double point[3];
           this->Input->GetPoint(ids->GetId(k), point);
-          reach = std::max(reach,
-            embedding.GetScale() * std::sqrt(vtkMath::Distance2BetweenPoints(mean, point)));
+          reach = std::max(
+            reach, embedding.GetScale() * std::sqrt(vtkMath::Distance2BetweenPoints(mean, point)));
         }
         const Location place =
           count > 0 ? this->Map.Locate(this->From, mean, reach, hint) : Location{};
@@ -315,8 +315,7 @@ private:
         if (place.Triangle >= 0)
         {
           const Jacobian jacobian = this->Map.GetJacobian(this->From, place);
-          std::copy(
-            jacobian.Matrix.begin(), jacobian.Matrix.end(), jacobians->GetPointer(9 * i));
+          std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), jacobians->GetPointer(9 * i));
         }
       }
     });
@@ -558,8 +557,7 @@ int vtkDifferentiableHomeomorphism::RequestDataObject(
 int vtkDifferentiableHomeomorphism::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  DescribeDataInOutput(
-    inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeDataInOutput(inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
   DescribeTimesInOutput(inputs, 3, outputs->GetInformationObject(0));
   DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
   return 1;
@@ -624,8 +622,7 @@ void vtkDifferentiableHomeomorphism::Internals::Measure(
     outer->UpdateProgress(inner->GetProgress());
     inner->SetAbortExecute(outer->GetAbortExecute());
   });
-  const unsigned long observer =
-    continuity->AddObserver(vtkCommand::ProgressEvent, passOn);
+  const unsigned long observer = continuity->AddObserver(vtkCommand::ProgressEvent, passOn);
   continuity->Update();
   continuity->RemoveObserver(observer);
   if (continuity->GetAbortExecute())

@@ -14,25 +14,26 @@
  * - CONTOUR: the construction published as "Constructing Differentiable Homeomorphisms between
  *   Isomorphic Triangulations". It needs concordant triangles, and is kinked at most edges too;
  * - SMOOTH (default): barycentric coordinates in a chart of each triangle that continues its
- *   neighbours'. The map is twice continuously differentiable, and so is its inverse, everywhere but
- *   at the vertices (across edges of surfaces: after unfolding); it is one to one for any triangles
- *   that have an area.
+ *   neighbours'. The map is twice continuously differentiable, and so is its inverse, everywhere
+ * but at the vertices (across edges of surfaces: after unfolding); it is one to one for any
+ * triangles that have an area.
  *
  * In all three, edges are mapped linearly onto edges, P = Q gives the identity, maps compose, and
  * Inverse is exactly the map with P and Q exchanged: round trips close to a few units in the last
  * place.
  *
- * The output is the data with its points moved: vtkPointSets keep their type, images and rectilinear
- * grids become vtkStructuredGrids, trees of data sets (vtkMultiBlockDataSet,
+ * The output is the data with its points moved: vtkPointSets keep their type, images and
+ * rectilinear grids become vtkStructuredGrids, trees of data sets (vtkMultiBlockDataSet,
  * vtkPartitionedDataSetCollection, ...) keep their structure. Point, cell and field data pass. The
- * active vectors, normals and tensors are carried by the Jacobian J, point data with J at the point,
- * cell data with J at the mean of the cell's points (where that is outside, the result is NaN):
+ * active vectors, normals and tensors are carried by the Jacobian J, point data with J at the
+ * point, cell data with J at the mean of the cell's points (where that is outside, the result is
+ * NaN):
  *
  * - vectors as tangent vectors (velocities, displacements), J v, with their length changed;
  * - normals by the inverse transpose, J^-T n, made unit vectors again;
  * - tensors of 9 (row-major) and 6 components (XX, YY, ZZ, XY, YZ, XZ) as J T J^T;
- * - arrays named with SetArrayTransport and GRADIENT_TRANSPORT as gradients: vectors J^-T g, tensors
- *   J^-T T J^-1, so that the gradient of a scalar stays its gradient.
+ * - arrays named with SetArrayTransport and GRADIENT_TRANSPORT as gradients: vectors J^-T g,
+ * tensors J^-T T J^-1, so that the gradient of a scalar stays its gradient.
  *
  * See CarryVectors, CarryAllVectors and SetArrayTransport to change what is carried.
  *
@@ -44,33 +45,34 @@
  * - with ComputeTriangleId, point array `TriangleId` (vtkIdType): cell id in P, -1 outside;
  * - with ComputeJacobian, point array `Jacobian` (double, 9 components): row-major, NaN outside. On
  *   an edge it is the limit from the triangle TriangleId;
- * - with ComputeJacobianDeterminant, point array `JacobianDeterminant` (double): the ratio of areas,
- *   negative where a planar map reverses orientation; NaN outside. Orientation is with respect to the
- *   planes' normals: the source's is the one that points along the axis it is closest to, the target's
- *   is less than a right angle from it. On surfaces the ratio is positive.
+ * - with ComputeJacobianDeterminant, point array `JacobianDeterminant` (double): the ratio of
+ * areas, negative where a planar map reverses orientation; NaN outside. Orientation is with respect
+ * to the planes' normals: the source's is the one that points along the axis it is closest to, the
+ * target's is less than a right angle from it. On surfaces the ratio is positive.
  *
  * With MeasureContinuity, output port 1 tells at each interior edge of the mesh that is mapped from
- * whether the Jacobian is the same on both sides, as measured from the map's values: polylines with the
- * arrays of vtkJacobianContinuity (`JacobianJump`, `Verdict`, ...). What else is measured, and how
- * finely, is set with GetJacobianContinuity(). Without, output port 1 is empty.
+ * whether the Jacobian is the same on both sides, as measured from the map's values: polylines with
+ * the arrays of vtkJacobianContinuity (`JacobianJump`, `Verdict`, ...). What else is measured, and
+ * how finely, is set with GetJacobianContinuity(). Without, output port 1 is empty.
  *
- * Outside points are given no image. They stay where they are, marked by ValidPointMask, with NaN in
- * arrays that would have been carried; GetNumberOfOutsidePoints counts them; and they, with the cells
- * that use them, are blanked (vtkGhostType), so that no later filter or view takes them for mapped
- * ones; see BlankOutside. Points that are blanked in the input count as outside, so that a map back
- * does not take them for mapped ones either.
+ * Outside points are given no image. They stay where they are, marked by ValidPointMask, with NaN
+ * in arrays that would have been carried; GetNumberOfOutsidePoints counts them; and they, with the
+ * cells that use them, are blanked (vtkGhostType), so that no later filter or view takes them for
+ * mapped ones; see BlankOutside. Points that are blanked in the input count as outside, so that a
+ * map back does not take them for mapped ones either.
  *
  * If both meshes are planar (in any planes), points off P's plane are mapped along with their foot,
  * and their distance from the plane is kept, so that heights pass through a map of the plane. The
- * Jacobian takes the plane's normal to the other plane's. On surfaces, points must lie on the surface
- * to the rounding of their coordinates, or within Tolerance; their images lie on the other surface, and
- * the Jacobian takes normal to normal.
+ * Jacobian takes the plane's normal to the other plane's. On surfaces, points must lie on the
+ * surface to the rounding of their coordinates, or within Tolerance; their images lie on the other
+ * surface, and the Jacobian takes normal to normal.
  *
  * The meshes are validated, and refused with a message that names the kind of defect, how many
  * triangles have it and the first of their ids; see MaskInvalidTriangles. Empty meshes leave all
- * points outside. What is computed from the meshes is kept until their points or cells change. If the
- * output is asked for in pieces, the meshes are asked for whole, and what is made from them is part of
- * piece 0: the mesh if it is its own data, and data that is made upstream from what a mesh is made from.
+ * points outside. What is computed from the meshes is kept until their points or cells change. If
+ * the output is asked for in pieces, the meshes are asked for whole, and what is made from them is
+ * part of piece 0: the mesh if it is its own data, and data that is made upstream from what a mesh
+ * is made from.
  *
  * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
  *
@@ -89,8 +91,7 @@ class vtkJacobianContinuity;
 class vtkMultiProcessController;
 class vtkPolyData;
 
-class VTKFILTERSHOMEOMORPHISM_EXPORT vtkDifferentiableHomeomorphism
-  : public vtkDataObjectAlgorithm
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkDifferentiableHomeomorphism : public vtkDataObjectAlgorithm
 {
 public:
   static vtkDifferentiableHomeomorphism* New();
@@ -164,8 +165,8 @@ public:
   ///@}
 
   ///@{
-  /// The point where the contours of the Contour system start: CENTROID (default), or INCENTER, with
-  /// which every triangle is concordant.
+  /// The point where the contours of the Contour system start: CENTROID (default), or INCENTER,
+  /// with which every triangle is concordant.
   vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
   vtkGetMacro(CenterPoint, int);
   ///@}
@@ -178,8 +179,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether triangles that are invalid by themselves (no area, not finite, flipped, overlapping, at
-  /// an edge of more than two) are left out with a warning, as if there were holes, instead of
+  /// Whether triangles that are invalid by themselves (no area, not finite, flipped, overlapping,
+  /// at an edge of more than two) are left out with a warning, as if there were holes, instead of
   /// refusing the meshes. Of triangles that overlap each other, all are. Off by default.
   vtkSetMacro(MaskInvalidTriangles, bool);
   vtkGetMacro(MaskInvalidTriangles, bool);
@@ -195,7 +196,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether to add the point arrays `TriangleId`, `Jacobian`, `JacobianDeterminant`. Off by default.
+  /// Whether to add the point arrays `TriangleId`, `Jacobian`, `JacobianDeterminant`. Off by
+  /// default.
   vtkSetMacro(ComputeTriangleId, bool);
   vtkGetMacro(ComputeTriangleId, bool);
   vtkBooleanMacro(ComputeTriangleId, bool);
@@ -208,8 +210,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether the active vectors, normals and tensors are carried by the Jacobian (default on) or left
-  /// alone, arrays named with SetArrayTransport excepted.
+  /// Whether the active vectors, normals and tensors are carried by the Jacobian (default on) or
+  /// left alone, arrays named with SetArrayTransport excepted.
   vtkSetMacro(CarryVectors, bool);
   vtkGetMacro(CarryVectors, bool);
   vtkBooleanMacro(CarryVectors, bool);
@@ -217,8 +219,8 @@ public:
 
   ///@{
   /// Whether all other floating-point arrays of 3, 6 and 9 components are carried too, as tangent
-  /// vectors and tensors; texture coordinates, active scalars and arrays named `Jacobian` are not. Off
-  /// by default.
+  /// vectors and tensors; texture coordinates, active scalars and arrays named `Jacobian` are not.
+  /// Off by default.
   vtkSetMacro(CarryAllVectors, bool);
   vtkGetMacro(CarryAllVectors, bool);
   vtkBooleanMacro(CarryAllVectors, bool);
@@ -241,15 +243,15 @@ public:
   ///@}
 
   ///@{
-  /// Whether output port 1 tells where the map is differentiable. Off by default: it takes about as long
-  /// as mapping 500 points for each edge.
+  /// Whether output port 1 tells where the map is differentiable. Off by default: it takes about as
+  /// long as mapping 500 points for each edge.
   vtkSetMacro(MeasureContinuity, bool);
   vtkGetMacro(MeasureContinuity, bool);
   vtkBooleanMacro(MeasureContinuity, bool);
   ///@}
 
-  /// The filter that measures, for its settings (SamplesPerEdge, Resolution, the kinds of places) and,
-  /// after an update, its counts. Its meshes and coordinate system are set by this filter.
+  /// The filter that measures, for its settings (SamplesPerEdge, Resolution, the kinds of places)
+  /// and, after an update, its counts. Its meshes and coordinate system are set by this filter.
   vtkJacobianContinuity* GetJacobianContinuity();
 
   ///@{
@@ -259,21 +261,22 @@ public:
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}
 
-  /// Number of points of the data, or of the piece of it that was asked for, that the last execution found
-  /// outside, without those that vtkGhostType says are another piece's; -1 if the meshes or the data were
-  /// refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
+  /// Number of points of the data, or of the piece of it that was asked for, that the last
+  /// execution found outside, without those that vtkGhostType says are another piece's; -1 if the
+  /// meshes or the data were refused, in which case GetErrorCode() is not 0 either. See
+  /// ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
   /// Number of triangles that are discordant in P or Q and are carried by the Linear system.
   vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
 
   /// Makes the numbers that this filter counts (NumberOfOutsidePoints,
-  /// NumberOfDiscordantTriangles, and those of GetJacobianContinuity) the same in all processes that
-  /// have pieces of the data: counts of points become sums, -1 if one of the processes has -1, numbers
-  /// of triangles the largest. Each process of @a controller (null: the global controller; if there is
-  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
-  /// error: executing the filter never waits for other processes, this does. They are one process's own
-  /// again after the next execution. In ParaView the plugin does it.
+  /// NumberOfDiscordantTriangles, and those of GetJacobianContinuity) the same in all processes
+  /// that have pieces of the data: counts of points become sums, -1 if one of the processes has -1,
+  /// numbers of triangles the largest. Each process of @a controller (null: the global controller;
+  /// if there is none, nothing happens) must call this after its update, also one that had nothing
+  /// to update or had an error: executing the filter never waits for other processes, this does.
+  /// They are one process's own again after the next execution. In ParaView the plugin does it.
   void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// How often the meshes have been read and validated since this filter was made.
@@ -318,8 +321,8 @@ private:
   vtkDifferentiableHomeomorphism(const vtkDifferentiableHomeomorphism&) = delete;
   void operator=(const vtkDifferentiableHomeomorphism&) = delete;
 
-  int MapData(vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
+  int MapData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   class Internals;
   class Mapping;

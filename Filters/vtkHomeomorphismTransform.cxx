@@ -27,9 +27,9 @@ public:
   /// Where a point is whose coordinates were stored with a relative error.
   Location Locate(Side from, const double point[3], double precision, TriangleIndex hint) const
   {
-    return this->Map ? this->Map->Locate(from, point,
-                         this->Map->GetReach(from, this->Tolerance, precision), hint)
-                     : Location{};
+    return this->Map
+      ? this->Map->Locate(from, point, this->Map->GetReach(from, this->Tolerance, precision), hint)
+      : Location{};
   }
 
   void MapPlace(Side from, const Location& place, double image[3]) const
@@ -47,21 +47,19 @@ public:
   Location MapPoint(Side from, const Real in[3], Real out[3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
-    // Callers that go from point to point, as vtkImageReslice does, mostly stay in a triangle. Each thread
-    // remembers its last one; that it may be one of another mesh or side only costs time.
+    // Callers that go from point to point, as vtkImageReslice does, mostly stay in a triangle. Each
+    // thread remembers its last one; that it may be one of another mesh or side only costs time.
     thread_local TriangleIndex last = -1;
     const bool isHint = this->Map && last >= 0 &&
       last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
-    const Location place =
-      this->Locate(from, point, 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()),
-        isHint ? last : -1);
+    const Location place = this->Locate(from, point,
+      0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), isHint ? last : -1);
     last = place.Triangle;
     double image[3];
     this->MapPlace(from, place, image);
     const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
-    std::transform(image, image + 3, out, [largest](double x) {
-      return static_cast<Real>(std::max(-largest, std::min(largest, x)));
-    });
+    std::transform(image, image + 3, out,
+      [largest](double x) { return static_cast<Real>(std::max(-largest, std::min(largest, x))); });
     return place;
   }
 
@@ -152,8 +150,7 @@ void vtkHomeomorphismTransform::InternalUpdate()
       return;
     }
     this->Internal->OutsideCoordinate = std::max(this->Internal->OutsideCoordinate,
-      std::min(
-        VTK_DOUBLE_MAX, 1e3 * embedding.GetLargestCoordinate() / embedding.GetScale()));
+      std::min(VTK_DOUBLE_MAX, 1e3 * embedding.GetLargestCoordinate() / embedding.GetScale()));
   }
   this->Internal->Map = map;
 }
@@ -199,9 +196,9 @@ void vtkHomeomorphismTransform::TransformPoints(vtkPoints* inPts, vtkPoints* out
     inPts, outPts, nullptr, nullptr, nullptr, nullptr, 0, nullptr, nullptr);
 }
 
-void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
-  vtkPoints* outPts, vtkDataArray* inNms, vtkDataArray* outNms, vtkDataArray* inVrs,
-  vtkDataArray* outVrs, int nOptionalVectors, vtkDataArray** inVrsArr, vtkDataArray** outVrsArr)
+void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, vtkPoints* outPts,
+  vtkDataArray* inNms, vtkDataArray* outNms, vtkDataArray* inVrs, vtkDataArray* outVrs,
+  int nOptionalVectors, vtkDataArray** inVrsArr, vtkDataArray** outVrsArr)
 {
   this->Update();
   // VTK appends the results to what the outputs hold already.
@@ -254,8 +251,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
     PointBlock block;
     for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
     {
-      block.Count =
-        static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+      block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
       if (internals.Map)
       {
         ReadPoints(inPts->GetData(), first, block);
@@ -273,8 +269,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts,
       for (int i = 0; i < block.Count && !carried.empty(); ++i)
       {
         double derivative[3][3];
-        internals.GetDerivative(
-          from, internals.Map ? block.GetPlace(i) : Location{}, derivative);
+        internals.GetDerivative(from, internals.Map ? block.GetPlace(i) : Location{}, derivative);
         const TensorTransport transport(&derivative[0][0]);
         for (const Carried& array : carried)
         {

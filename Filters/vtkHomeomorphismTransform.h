@@ -4,25 +4,26 @@
  * @class   vtkHomeomorphismTransform
  * @brief   the homeomorphism between two planar triangulations as a VTK transform
  *
- * A vtkWarpTransform that carries the domain of one triangulation onto that of another with the same
- * triangles, one to one; see vtkDifferentiableHomeomorphism for the map and its coordinate systems.
- * It goes wherever VTK takes a transform: vtkTransformFilter, vtkTransformPolyDataFilter,
- * vtkGeneralTransform, and vtkImageReslice, which wants the map from the output's grid to the input,
- * that is, GetInverse() (or source and target exchanged).
+ * A vtkWarpTransform that carries the domain of one triangulation onto that of another with the
+ * same triangles, one to one; see vtkDifferentiableHomeomorphism for the map and its coordinate
+ * systems. It goes wherever VTK takes a transform: vtkTransformFilter, vtkTransformPolyDataFilter,
+ * vtkGeneralTransform, and vtkImageReslice, which wants the map from the output's grid to the
+ * input, that is, GetInverse() (or source and target exchanged).
  *
  * Forward, inverse and derivative are in closed form or solved to the last few bits; the tolerance
  * and the number of iterations of vtkWarpTransform play no part.
  *
- * Both meshes must be planar, in any plane. A point's distance from the source's plane is kept as its
- * distance from the target's, in the direction of the planes' normals (the source's is the one that
- * points along the axis it is closest to, the target's is less than a right angle from it), so a map of
- * the xy plane leaves z alone, and the derivative takes normal to normal.
+ * Both meshes must be planar, in any plane. A point's distance from the source's plane is kept as
+ * its distance from the target's, in the direction of the planes' normals (the source's is the one
+ * that points along the axis it is closest to, the target's is less than a right angle from it), so
+ * a map of the xy plane leaves z alone, and the derivative takes normal to normal.
  *
- * A transform has no way to mark a point as outside. Points outside the domain go to a place that is in
- * no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is more, a
- * thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its background
- * colour (do not combine with its Wrap or Mirror modes). Derivatives there are NaN. IsInside tells, too.
- * Before both meshes are set, and if they are refused (an error says why), every point is outside.
+ * A transform has no way to mark a point as outside. Points outside the domain go to a place that
+ * is in no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is
+ * more, a thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its
+ * background colour (do not combine with its Wrap or Mirror modes). Derivatives there are NaN.
+ * IsInside tells, too. Before both meshes are set, and if they are refused (an error says why),
+ * every point is outside.
  *
  * Once updated, the transform may be used by any number of threads; TransformPoints and
  * TransformPointsNormalsVectors use vtkSMPTools themselves, with the same result for any number of
@@ -95,8 +96,8 @@ public:
   ///@}
 
   ///@{
-  /// In the Contour system, whether discordant triangles are an error (REFUSE, default) or are carried
-  /// by the Linear system (CARRY_BY_LINEAR).
+  /// In the Contour system, whether discordant triangles are an error (REFUSE, default) or are
+  /// carried by the Linear system (CARRY_BY_LINEAR).
   vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
   vtkGetMacro(DiscordantTriangles, int);
   ///@}
@@ -115,8 +116,8 @@ public:
   vtkGetMacro(Tolerance, double);
   ///@}
 
-  /// Whether a point is in the domain that the transform maps from (the target's if it is inverted).
-  /// Updates the transform.
+  /// Whether a point is in the domain that the transform maps from (the target's if it is
+  /// inverted). Updates the transform.
   bool IsInside(const double point[3]);
 
   /// The value of all three coordinates of a point outside. Updates the transform.
@@ -144,14 +145,12 @@ protected:
 
   void ForwardTransformPoint(const float in[3], float out[3]) override;
   void ForwardTransformPoint(const double in[3], double out[3]) override;
-  void ForwardTransformDerivative(
-    const float in[3], float out[3], float derivative[3][3]) override;
+  void ForwardTransformDerivative(const float in[3], float out[3], float derivative[3][3]) override;
   void ForwardTransformDerivative(
     const double in[3], double out[3], double derivative[3][3]) override;
   void InverseTransformPoint(const float in[3], float out[3]) override;
   void InverseTransformPoint(const double in[3], double out[3]) override;
-  void InverseTransformDerivative(
-    const float in[3], float out[3], float derivative[3][3]) override;
+  void InverseTransformDerivative(const float in[3], float out[3], float derivative[3][3]) override;
   void InverseTransformDerivative(
     const double in[3], double out[3], double derivative[3][3]) override;
 

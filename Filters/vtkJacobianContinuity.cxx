@@ -130,20 +130,19 @@ private:
     double exact = samples.front().Exact;
     for (const Sample& sample : samples)
     {
-      error = sample.First.Error > error || std::isnan(sample.First.Error) ? sample.First.Error
-                                                                          : error;
+      error =
+        sample.First.Error > error || std::isnan(sample.First.Error) ? sample.First.Error : error;
       exact = std::max(exact, sample.Exact);
     }
     const double values[8] = { worst.First.Jump, error, exact, worst.First.Normal,
-      worst.First.Tangential, vtkMath::DegreesFromRadians(worst.First.Angle),
-      worst.First.Stretch, worst.First.Order };
+      worst.First.Tangential, vtkMath::DegreesFromRadians(worst.First.Angle), worst.First.Stretch,
+      worst.First.Order };
     for (std::size_t i = 0; i < 8; ++i)
     {
       this->Doubles[i]->SetValue(index, values[i]);
     }
     this->Verdict->SetValue(index, Conclude(samples, &Sample::First));
-    if (this->SecondVerdict &&
-      !MeasuredPlaces::IsPoint(this->Places.GetPlace(index).Kind))
+    if (this->SecondVerdict && !MeasuredPlaces::IsPoint(this->Places.GetPlace(index).Kind))
     {
       const Sample worstSecond = largest(&Sample::Second);
       this->Doubles[8]->SetValue(index, worstSecond.Second.Jump);
@@ -199,8 +198,8 @@ vtkSmartPointer<vtkDoubleArray> NewJumpArray(const char* name, vtkIdType tuples)
   return array;
 }
 
-/// The homeomorphism as a map that is known by its values only. Remembers the triangle found last, so
-/// each place needs one of its own: results must not depend on what was measured before.
+/// The homeomorphism as a map that is known by its values only. Remembers the triangle found last,
+/// so each place needs one of its own: results must not depend on what was measured before.
 MapUnderTest MakeMapUnderTest(const std::shared_ptr<const Homeomorphism>& map)
 {
   const double reach = map->GetReach(Side::Source, 0.0, PrecisionOfType(VTK_DOUBLE));
@@ -288,8 +287,8 @@ int vtkJacobianContinuity::RequestData(
   const int success = this->Measure(request, inputs, outputs);
   ProcessStatistics& own = this->Internal->Own;
   own.Sums[0] = static_cast<double>(this->NumberOfBoundaryEdges);
-  std::transform(std::cbegin(this->Counts[0]), std::cend(this->Counts[VERTEX]), own.Sums.begin() + 1,
-    [](vtkIdType count) { return static_cast<double>(count); });
+  std::transform(std::cbegin(this->Counts[0]), std::cend(this->Counts[VERTEX]),
+    own.Sums.begin() + 1, [](vtkIdType count) { return static_cast<double>(count); });
   own.Largest[0] = this->LargestJump;
   return success;
 }
@@ -327,8 +326,8 @@ int vtkJacobianContinuity::Measure(
   if (this->Transform)
   {
     this->Transform->Update();
-    // A homeomorphism of the very triangulation has a closed form; of another map's domain, only the
-    // edges are wanted here.
+    // A homeomorphism of the very triangulation has a closed form; of another map's domain, only
+    // the edges are wanted here.
     const bool known = ours && !ours->GetInverseFlag() && ours->GetTarget() && ours->GetSource() &&
       ours->GetSource()->GetPoints() == source->GetPoints() &&
       ours->GetSource()->GetPolys() == source->GetPolys();
@@ -351,8 +350,9 @@ int vtkJacobianContinuity::Measure(
   if (this->Transform && !map->GetPair().GetEmbedding(Side::Source).IsPlanar())
   {
     this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro(<< "A transform is measured on a planar triangulation only. For a surface, give the "
-                     "target mesh (input port 1).");
+    vtkErrorMacro(
+      << "A transform is measured on a planar triangulation only. For a surface, give the "
+         "target mesh (input port 1).");
     return 0;
   }
   if (!IsFirstPiece(request, outputs))
@@ -363,15 +363,15 @@ int vtkJacobianContinuity::Measure(
   const bool planar = map->GetPair().HasTarget()
     ? map->GetPair().GetEmbedding(Side::Source).IsColumnar()
     : map->GetPair().GetEmbedding(Side::Source).IsPlanar();
-  const homeomorphism::CenterPoint center = options.System == homeomorphism::CoordinateSystem::Contour
+  const homeomorphism::CenterPoint center =
+    options.System == homeomorphism::CoordinateSystem::Contour
     ? options.Center
     : homeomorphism::CenterPoint::Centroid;
   const MeasuredPlaces places(*map, center,
     { true, this->BoundaryEdges, this->Spokes, this->WingSegments, this->CenterSegments,
       this->StripBorders, this->Centroids, this->Vertices },
     planar, this->SamplesPerEdge);
-  this->NumberOfBoundaryEdges =
-    static_cast<vtkIdType>(places.GetEdges().GetBoundaryEdges().size());
+  this->NumberOfBoundaryEdges = static_cast<vtkIdType>(places.GetEdges().GetBoundaryEdges().size());
 
   // Each place's points follow those of the place before it.
   const vtkIdType count = places.GetNumberOfPlaces();
@@ -405,8 +405,8 @@ int vtkJacobianContinuity::Measure(
         values.clear();
         for (int i = 0; i < samples; ++i)
         {
-          values.push_back(places.Measure(
-            place, i, evaluate, this->Resolution, this->SecondDerivatives));
+          values.push_back(
+            places.Measure(place, i, evaluate, this->Resolution, this->SecondDerivatives));
           pointJump->SetValue(firstSample + i, values[i].First.Jump);
           pointError->SetValue(firstSample + i, values[i].First.Error);
           pointExact->SetValue(firstSample + i, values[i].Exact);

@@ -6,23 +6,23 @@
  *
  * vtkJacobianContinuity takes a triangulation (input port 0) and a map of its domain, and tells for
  * each interior edge whether the map's Jacobian is the same on both sides. The map is either any
- * vtkAbstractTransform (SetTransform; the triangulation must then be planar), or the homeomorphism onto
- * a second triangulation with the same triangles (input port 1), planar or a surface in 3-space; on
- * surfaces the two sides are compared after unfolding them about the edge. On request it tells the same
- * for other places where a map made of pieces may fail; see PlaceTypes.
+ * vtkAbstractTransform (SetTransform; the triangulation must then be planar), or the homeomorphism
+ * onto a second triangulation with the same triangles (input port 1), planar or a surface in
+ * 3-space; on surfaces the two sides are compared after unfolding them about the edge. On request
+ * it tells the same for other places where a map made of pieces may fail; see PlaceTypes.
  *
  * The map is only evaluated, never looked into: derivatives are one-sided differences over halving
- * steps, extrapolated to step 0 (Richardson), with a bound on their error from how the extrapolations
- * disagree and from the rounding of the map's values. Steps are proportions of the triangles, so
- * nothing depends on the units.
+ * steps, extrapolated to step 0 (Richardson), with a bound on their error from how the
+ * extrapolations disagree and from the rounding of the map's values. Steps are proportions of the
+ * triangles, so nothing depends on the units.
  *
- * What is measured so has limits, and the error bounds and verdicts are estimates, not proofs. Nothing is
- * known between the samples, nor of what happens within distances where the change of the map's values is
- * lost in their rounding. So a second line along which the map is not smooth, too close to tell apart, may
- * leave a place undecided, rarely make it a kink; a derivative that does have a limit but approaches it
- * more slowly than the 0.1th power of the distance is taken for a kink; and beside needles with an area below
- * about 1e-4 of their neighbour's the Smooth system turns within a layer too thin to see. Far from the
- * origin less can be told than near it.
+ * What is measured so has limits, and the error bounds and verdicts are estimates, not proofs.
+ * Nothing is known between the samples, nor of what happens within distances where the change of
+ * the map's values is lost in their rounding. So a second line along which the map is not smooth,
+ * too close to tell apart, may leave a place undecided, rarely make it a kink; a derivative that
+ * does have a limit but approaches it more slowly than the 0.1th power of the distance is taken for
+ * a kink; and beside needles with an area below about 1e-4 of their neighbour's the Smooth system
+ * turns within a layer too thin to see. Far from the origin less can be told than near it.
  *
  * Output port 0 has a polyline through the sample points of each interior edge, from one of its
  * vertices to the other, with these cell arrays (double unless it says otherwise):
@@ -30,40 +30,43 @@
  * - `JacobianJump`: norm of the difference of the two Jacobians over the norm of the Jacobian, the
  *   largest over the edge's samples; the arrays below are for the sample where it is largest;
  * - `JacobianJumpError`: bound on the error of the estimate, the largest over the samples;
- * - `JacobianJumpExact`: the same jump in closed form, if the map is the homeomorphism onto the target,
- *   or a vtkHomeomorphismTransform whose source has the triangulation's own vtkPoints; else NaN, as at
- *   vertices;
+ * - `JacobianJumpExact`: the same jump in closed form, if the map is the homeomorphism onto the
+ * target, or a vtkHomeomorphismTransform whose source has the triangulation's own vtkPoints; else
+ * NaN, as at vertices;
  * - `NormalJump`, `TangentialJump`: the jump's parts across the line's image and along it;
- * - `AngleJump` (degrees) and `StretchJump`: the angle between the images of the direction across the
- *   line on the two sides, and the ratio of the longer to the shorter, less 1;
- * - `ConvergenceOrder`: the exponent with which the difference of the plain quotients on the two sides
- *   shrinks with the step, 1 for a differentiable map, 0 for a kink; NaN where it is all rounding;
+ * - `AngleJump` (degrees) and `StretchJump`: the angle between the images of the direction across
+ * the line on the two sides, and the ratio of the longer to the shorter, less 1;
+ * - `ConvergenceOrder`: the exponent with which the difference of the plain quotients on the two
+ * sides shrinks with the step, 1 for a differentiable map, 0 for a kink; NaN where it is all
+ * rounding;
  * - `Verdict` (int): see Verdicts. A kink is a jump larger than Resolution that stands out from its
  *   error bound; a map is called differentiable where the jump, its error bound added, is below
  *   Resolution;
- * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles; the same one twice for
- *   places within a triangle; the second is -1 for boundary edges and vertices;
+ * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles; the same one twice
+ * for places within a triangle; the second is -1 for boundary edges and vertices;
  * - `PlaceType` (int): see PlaceTypes;
- * - with SecondDerivatives, `SecondDerivativeJump`, `SecondDerivativeJumpError` (times the reach of the
- *   steps over the norm of the Jacobian) and `SecondDerivativeVerdict` (int): the same for the second
- *   derivative across the line.
+ * - with SecondDerivatives, `SecondDerivativeJump`, `SecondDerivativeJumpError` (times the reach of
+ * the steps over the norm of the Jacobian) and `SecondDerivativeVerdict` (int): the same for the
+ * second derivative across the line.
  *
- * The point arrays `JacobianJump`, `JacobianJumpError` and `JacobianJumpExact` have the values at the
- * samples (NaN at the ends of lines).
+ * The point arrays `JacobianJump`, `JacobianJumpError` and `JacobianJumpExact` have the values at
+ * the samples (NaN at the ends of lines).
  *
  * Centroids and vertices are vertex cells, which come first in the cell arrays. There the one-sided
- * derivatives in directions all around are compared with those of the linear map that fits them best (by
- * least squares); the jump is the largest deviation, over the norm. Its parts, angle and stretch have no
- * meaning and are NaN. Where there is nothing to compare, at boundary edges and at the vertices of
- * surfaces, which have no tangent plane, all numbers are NaN and the verdict is NOTHING_TO_COMPARE.
+ * derivatives in directions all around are compared with those of the linear map that fits them
+ * best (by least squares); the jump is the largest deviation, over the norm. Its parts, angle and
+ * stretch have no meaning and are NaN. Where there is nothing to compare, at boundary edges and at
+ * the vertices of surfaces, which have no tangent plane, all numbers are NaN and the verdict is
+ * NOTHING_TO_COMPARE.
  *
- * Output port 1 is the triangulation with a cell array and a point array `JacobianJump`: the largest of
- * the triangle's interior edges, and of the edges at the point; NaN where there is none.
+ * Output port 1 is the triangulation with a cell array and a point array `JacobianJump`: the
+ * largest of the triangle's interior edges, and of the edges at the point; NaN where there is none.
  *
- * The meshes are asked for whole, and if the outputs are asked for in pieces, all is part of piece 0.
+ * The meshes are asked for whole, and if the outputs are asked for in pieces, all is part of piece
+ * 0.
  *
- * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The
- * transform must allow concurrent calls once updated, as VTK's do.
+ * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
+ * The transform must allow concurrent calls once updated, as VTK's do.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform
  */
@@ -95,21 +98,23 @@ public:
     UNDECIDED = 2
   };
 
-  /// The kinds of places. All but the first are measured on request only. Those within triangles are
-  /// where one of the coordinate systems is made of pieces; they follow from the triangulation alone and
-  /// can be asked for whatever the map is. The centre of a triangle is its centroid, or in the Contour
-  /// system the point that CenterPoint says.
+  /// The kinds of places. All but the first are measured on request only. Those within triangles
+  /// are where one of the coordinate systems is made of pieces; they follow from the triangulation
+  /// alone and can be asked for whatever the map is. The centre of a triangle is its centroid, or
+  /// in the Contour system the point that CenterPoint says.
   enum PlaceTypes
   {
-    EDGE = 0,           ///< interior edge
-    BOUNDARY_EDGE = 1,  ///< has one side only, and no jump
-    SPOKE = 2,          ///< from a triangle's centre to a corner
-    WING_SEGMENT = 3,   ///< from the middle of a center segment to an end of its edge
-    CENTER_SEGMENT = 4, ///< from a triangle's centre to its foot on an edge; where the foot is outside
-                        ///< the edge, neither this nor the edge's wing segments are measured
-    STRIP_BORDER = 5,   ///< of the strip along an interior edge in which the Smooth chart is not affine
+    EDGE = 0,          ///< interior edge
+    BOUNDARY_EDGE = 1, ///< has one side only, and no jump
+    SPOKE = 2,         ///< from a triangle's centre to a corner
+    WING_SEGMENT = 3,  ///< from the middle of a center segment to an end of its edge
+    CENTER_SEGMENT =
+      4, ///< from a triangle's centre to its foot on an edge; where the foot is outside
+         ///< the edge, neither this nor the edge's wing segments are measured
+    STRIP_BORDER =
+      5, ///< of the strip along an interior edge in which the Smooth chart is not affine
     TRIANGLE_CENTER = 6, ///< a triangle's centre; asked for as Centroids
-    VERTEX = 7          ///< a point of the triangulation, on the boundary too
+    VERTEX = 7           ///< a point of the triangulation, on the boundary too
   };
 
   /// The coordinate systems; see vtkDifferentiableHomeomorphism.
@@ -141,7 +146,8 @@ public:
   ///@}
 
   ///@{
-  /// The target of the homeomorphism to be measured, input port 1; not used if there is a transform.
+  /// The target of the homeomorphism to be measured, input port 1; not used if there is a
+  /// transform.
   void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
   void SetTargetData(vtkPolyData* target);
   ///@}
@@ -153,8 +159,8 @@ public:
   ///@}
 
   ///@{
-  /// Of the homeomorphism onto the target: LINEAR, CONTOUR or SMOOTH (default), and how Contour is to
-  /// be understood. See vtkDifferentiableHomeomorphism.
+  /// Of the homeomorphism onto the target: LINEAR, CONTOUR or SMOOTH (default), and how Contour is
+  /// to be understood. See vtkDifferentiableHomeomorphism.
   vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
   vtkGetMacro(CoordinateSystem, int);
   vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
@@ -192,8 +198,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of points of a line at which the jump is estimated, evenly spaced, and of directions in each
-  /// sector at a centroid or vertex, besides those that bound it. 5 by default, from 1.
+  /// Number of points of a line at which the jump is estimated, evenly spaced, and of directions in
+  /// each sector at a centroid or vertex, besides those that bound it. 5 by default, from 1.
   vtkSetClampMacro(SamplesPerEdge, int, 1, 1000);
   vtkGetMacro(SamplesPerEdge, int);
   ///@}
@@ -221,17 +227,17 @@ public:
   vtkGetMacro(LargestJump, double);
   ///@}
 
-  /// The number of places of a type (see PlaceTypes) about which the last execution concluded @a verdict
-  /// (DIFFERENTIABLE, KINK or UNDECIDED).
+  /// The number of places of a type (see PlaceTypes) about which the last execution concluded @a
+  /// verdict (DIFFERENTIABLE, KINK or UNDECIDED).
   vtkIdType GetNumberOfPlaces(int placeType, int verdict);
 
   /// Makes the numbers that this filter counts (NumberOfKinks, LargestJump and
   /// the like, GetNumberOfPlaces) the same in all processes that
-  /// have pieces of the data: counts become sums, LargestJump the largest; all is measured by the process
-  /// that has piece 0. Each process of @a controller (null: the global controller; if there is
-  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
-  /// error: executing the filter never waits for other processes, this does. They are one process's own
-  /// again after the next execution. In ParaView the plugin does it.
+  /// have pieces of the data: counts become sums, LargestJump the largest; all is measured by the
+  /// process that has piece 0. Each process of @a controller (null: the global controller; if there
+  /// is none, nothing happens) must call this after its update, also one that had nothing to update
+  /// or had an error: executing the filter never waits for other processes, this does. They are one
+  /// process's own again after the next execution. In ParaView the plugin does it.
   void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// Includes the transform's.
@@ -271,8 +277,8 @@ private:
   vtkJacobianContinuity(const vtkJacobianContinuity&) = delete;
   void operator=(const vtkJacobianContinuity&) = delete;
 
-  int Measure(vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
+  int Measure(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   class Internals;
   std::unique_ptr<Internals> Internal;

@@ -131,7 +131,8 @@ private:
   std::string Ids;
 };
 
-/// The first array of some attributes that does not have a value for each point or cell; empty if all have.
+/// The first array of some attributes that does not have a value for each point or cell; empty if
+/// all have.
 std::string DescribeArrays(
   vtkDataSetAttributes* attributes, const std::string& what, vtkIdType count)
 {
@@ -140,15 +141,17 @@ std::string DescribeArrays(
     vtkAbstractArray* array = attributes->GetAbstractArray(i);
     if (array->GetNumberOfTuples() != count)
     {
-      return "The " + what + " array " + (array->GetName() ? array->GetName() : "(without a name)") +
-        " of the data has " + std::to_string(array->GetNumberOfTuples()) + " values for " +
-        std::to_string(count) + " " + what + "s. Remove it (vtkPassSelectedArrays) or complete it.";
+      return "The " + what + " array " +
+        (array->GetName() ? array->GetName() : "(without a name)") + " of the data has " +
+        std::to_string(array->GetNumberOfTuples()) + " values for " + std::to_string(count) + " " +
+        what + "s. Remove it (vtkPassSelectedArrays) or complete it.";
     }
   }
   return "";
 }
 
-/// What would make VTK's locators and interpolation read memory that is not theirs; empty if nothing would.
+/// What would make VTK's locators and interpolation read memory that is not theirs; empty if
+/// nothing would.
 std::string DescribeDefects(vtkDataSet* data)
 {
   // With the least number of points that such a cell has.
@@ -170,16 +173,16 @@ std::string DescribeDefects(vtkDataSet* data)
   {
     if (array && !array->IsValid())
     {
-      return "The offsets of the data's cells do not fit their points. The data is corrupt: read or "
+      return "The offsets of the data's cells do not fit their points. The data is corrupt: read "
+             "or "
              "build it again.";
     }
     vtkNew<vtkIdList> ids;
     for (vtkIdType cell = 0; array && cell < array->GetNumberOfCells(); ++cell)
     {
       array->GetCellAtId(cell, ids);
-      if (std::any_of(ids->begin(), ids->end(), [numberOfPoints](vtkIdType id) {
-            return id < 0 || id >= numberOfPoints;
-          }))
+      if (std::any_of(ids->begin(), ids->end(),
+            [numberOfPoints](vtkIdType id) { return id < 0 || id >= numberOfPoints; }))
       {
         cells.Add(first + cell);
       }
@@ -217,7 +220,8 @@ std::string DescribeDefects(vtkDataSet* data)
       " coordinates that are not finite, among which values cannot be looked for. Remove them.";
   }
   const std::string text = DescribeArrays(data->GetPointData(), "point", numberOfPoints);
-  return !text.empty() ? text : DescribeArrays(data->GetCellData(), "cell", data->GetNumberOfCells());
+  return !text.empty() ? text
+                       : DescribeArrays(data->GetCellData(), "cell", data->GetNumberOfCells());
 }
 
 /// The same of a data set or a tree of them: the first defect found.
@@ -391,8 +395,7 @@ int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
   return 1;
 }
 
-vtkDataSet* vtkResampleThroughHomeomorphism::Map(
-  vtkDataSet* data, bool inverse, bool carryVectors)
+vtkDataSet* vtkResampleThroughHomeomorphism::Map(vtkDataSet* data, bool inverse, bool carryVectors)
 {
   this->Mapping->SetDataObject(data);
   this->Mapping->SetInverse(inverse);
@@ -460,10 +463,11 @@ int vtkResampleThroughHomeomorphism::Resample(
     (this->Inverse ? source : target)->GetBounds(bounds);
     if (bounds[4] != bounds[5] && bounds[4] <= bounds[5])
     {
-      vtkErrorMacro(<< "An image can be laid over a mesh that is parallel to the xy plane only; this "
-                       "one's z goes from "
-                    << bounds[4] << " to " << bounds[5]
-                    << ". Give the points at which values are wanted (input port 3).");
+      vtkErrorMacro(
+        << "An image can be laid over a mesh that is parallel to the xy plane only; this "
+           "one's z goes from "
+        << bounds[4] << " to " << bounds[5]
+        << ". Give the points at which values are wanted (input port 3).");
       this->SetErrorCode(vtkErrorCode::UserError);
       return 0;
     }
@@ -482,8 +486,8 @@ int vtkResampleThroughHomeomorphism::Resample(
     }
     image->SetOrigin(bounds[0], bounds[2], bounds[4]);
     image->SetSpacing(spacing);
-    image->SetExtent(outputs->GetInformationObject(0)->Get(
-      vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
+    image->SetExtent(
+      outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
   }
 
   auto* image = vtkImageData::SafeDownCast(data);
@@ -509,7 +513,8 @@ int vtkResampleThroughHomeomorphism::Resample(
   }
   this->UpdateProgress(0.3);
   vtkDataArray* isInside = pulledBack->GetPointData()->GetArray(maskName);
-  const vtkSmartPointer<vtkDataArray> triangles = pulledBack->GetPointData()->GetArray("TriangleId");
+  const vtkSmartPointer<vtkDataArray> triangles =
+    pulledBack->GetPointData()->GetArray("TriangleId");
   for (vtkIdType i = 0; i < count; ++i)
   {
     if (isInside && isInside->GetTuple1(i) != 0.0)
@@ -523,8 +528,8 @@ int vtkResampleThroughHomeomorphism::Resample(
     return 1;
   }
 
-  // What the data has there. A point on the data's border may be outside by rounding: it is looked for
-  // again, a rounding error closer to the middle of its triangle.
+  // What the data has there. A point on the data's border may be outside by rounding: it is looked
+  // for again, a rounding error closer to the middle of its triangle.
   vtkDataObject* probed = data ? data : (this->Inverse ? target : source);
   const std::string defects = DescribeDefects(probed);
   if (!defects.empty())
@@ -618,8 +623,7 @@ int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyD
   vtkImageData* image, vtkDataSet* grid, vtkDataSet* output)
 {
   HomeomorphismCache& cache = this->Internal->Cache;
-  const std::shared_ptr<const Homeomorphism> map =
-    cache.Get(source, target, GetOptions(this));
+  const std::shared_ptr<const Homeomorphism> map = cache.Get(source, target, GetOptions(this));
   ReportProblems(this, cache.GetProblems());
   if (!map)
   {
@@ -638,8 +642,9 @@ int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyD
   vtkPoints* points = pointSet ? pointSet->GetPoints() : nullptr;
   const double reach = map->GetReach(
     from, this->Tolerance, PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
-  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
-    grid ? grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) : nullptr);
+  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(grid
+      ? grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())
+      : nullptr);
   ghosts = ghosts && ghosts->GetNumberOfValues() == count ? ghosts : nullptr;
   static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
   RunInBlocks(this, count, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {

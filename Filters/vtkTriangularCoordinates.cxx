@@ -40,8 +40,7 @@ namespace
 {
 
 template <typename ArrayType>
-vtkSmartPointer<ArrayType> NewArray(
-  const char* name, vtkIdType tuples, int components = 1)
+vtkSmartPointer<ArrayType> NewArray(const char* name, vtkIdType tuples, int components = 1)
 {
   auto array = vtkSmartPointer<ArrayType>::New();
   array->SetName(name);
@@ -107,8 +106,7 @@ double SmallestAngle(const EdgeViews& views)
   // Seen from another edge: its opposite corner's height over the foot's distance.
   const EdgeView& beside = views[PreviousCorner(shortest)];
   // That edge runs from the corner after it, which is the one opposite the shortest edge.
-  return vtkMath::DegreesFromRadians(
-    std::atan2(beside.Height, beside.Foot * beside.Length));
+  return vtkMath::DegreesFromRadians(std::atan2(beside.Height, beside.Foot * beside.Length));
 }
 
 /// The least distance of a foot of the centroid from an end of its edge, over the edge's length.
@@ -226,8 +224,7 @@ int vtkTriangularCoordinates::RequestDataObject(
 int vtkTriangularCoordinates::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  DescribeDataInOutput(
-    inputs[1]->GetInformationObject(0), outputs->GetInformationObject(0));
+  DescribeDataInOutput(inputs[1]->GetInformationObject(0), outputs->GetInformationObject(0));
   DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
   return 1;
 }

@@ -4,28 +4,29 @@
  * @class   vtkTriangularCoordinates
  * @brief   attach triangular coordinates (e, p, c) to points
  *
- * Given a triangulation (input port 0) and any data set or tree of data sets (input port 1; if there
- * is none, the triangulation itself), vtkTriangularCoordinates finds the triangle of each point and
- * the point's triangular coordinates in it. *Contours* run from the triangle's centre to its edges;
- * e tells the edge at which the point's contour ends, p where on the edge it ends, and c how far
- * along the contour the point is. Two points of two isomorphic triangulations that have the same
- * triangle and the same coordinates (the triangle's points being listed in the same order)
+ * Given a triangulation (input port 0) and any data set or tree of data sets (input port 1; if
+ * there is none, the triangulation itself), vtkTriangularCoordinates finds the triangle of each
+ * point and the point's triangular coordinates in it. *Contours* run from the triangle's centre to
+ * its edges; e tells the edge at which the point's contour ends, p where on the edge it ends, and c
+ * how far along the contour the point is. Two points of two isomorphic triangulations that have the
+ * same triangle and the same coordinates (the triangle's points being listed in the same order)
  * correspond: that is the homeomorphism of vtkDifferentiableHomeomorphism.
  *
  * Output port 0 is the data with these point arrays added (an array of the same name is replaced):
  *
  * - `TriangleId` (vtkIdType): cell id of the triangle in input 0, -1 outside;
  * - `EdgeLabel` (int): e, 1 to 3, 0 outside. Edge k is opposite the k-th point of the triangle;
- * - `EdgeParameter` (double): p in [0, 1], the proportion of the edge's length from the next point in
- *   cyclic order towards the one after; NaN outside;
+ * - `EdgeParameter` (double): p in [0, 1], the proportion of the edge's length from the next point
+ * in cyclic order towards the one after; NaN outside;
  * - `ContourParameter` (double): c in [0, 1], 0 at the centre, 1 on the edge; NaN outside;
  * - `ValidPointMask` (unsigned char): 1 inside, 0 outside.
  *
  * Output port 1 shows the coordinates as polylines: the guides of the construction (center and wing
- * segments) and grid lines (contours at evenly spaced p, rings at evenly spaced c) of every triangle,
- * with the cell arrays `LineType` (see LineTypes), `TriangleId`, `EdgeLabel`, `EdgeParameter` (of a
- * contour) and `ContourParameter` (of a ring); what does not apply is 0 or NaN. In the Linear and
- * Smooth systems the guides are those of the equilateral triangle, carried over.
+ * segments) and grid lines (contours at evenly spaced p, rings at evenly spaced c) of every
+ * triangle, with the cell arrays `LineType` (see LineTypes), `TriangleId`, `EdgeLabel`,
+ * `EdgeParameter` (of a contour) and `ContourParameter` (of a ring); what does not apply is 0 or
+ * NaN. In the Linear and Smooth systems the guides are those of the equilateral triangle, carried
+ * over.
  *
  * Output port 2 is the triangulation with these cell arrays:
  *
@@ -41,13 +42,13 @@
  *   over that of the affine chart. Small beside a far smaller neighbour.
  *
  * If there is no data on port 1, output 0 has these cell arrays too. If the
- * outputs are asked for in pieces, the triangulation is asked for whole, and what is made from it is part
- * of piece 0, as is data that is made upstream from what the triangulation is made from.
+ * outputs are asked for in pieces, the triangulation is asked for whole, and what is made from it
+ * is part of piece 0, as is data that is made upstream from what the triangulation is made from.
  *
- * The triangulation may lie in any plane, where its points' distance from the plane is ignored, or be
- * a surface in 3-space, closed or not. It is validated, and refused with a message that names the
- * kind of defect, how many triangles have it and the first of their ids; see MaskInvalidTriangles.
- * An empty triangulation leaves every point outside.
+ * The triangulation may lie in any plane, where its points' distance from the plane is ignored, or
+ * be a surface in 3-space, closed or not. It is validated, and refused with a message that names
+ * the kind of defect, how many triangles have it and the first of their ids; see
+ * MaskInvalidTriangles. An empty triangulation leaves every point outside.
  *
  * Coordinates are computed to a few units in the last place, in needles as well. The points are
  * processed in parallel (vtkSMPTools); results do not depend on the number of threads.
@@ -78,8 +79,8 @@ public:
   enum CoordinateSystems
   {
     LINEAR = 0,  ///< straight contours
-    CONTOUR = 1, ///< the published construction: a straight piece, then an arc at right angles to the
-                 ///< edge; concordant triangles only
+    CONTOUR = 1, ///< the published construction: a straight piece, then an arc at right angles to
+                 ///< the edge; concordant triangles only
     SMOOTH = 2   ///< twice continuously differentiable across edges, any triangle
   };
 
@@ -93,8 +94,9 @@ public:
   /// What becomes of discordant triangles in the Contour system.
   enum DiscordantTrianglesModes
   {
-    REFUSE = 0,         ///< an error that names them
-    CARRY_BY_LINEAR = 1 ///< the Linear system stands in for them (`UsedCoordinateSystem` tells where)
+    REFUSE = 0, ///< an error that names them
+    CARRY_BY_LINEAR =
+      1 ///< the Linear system stands in for them (`UsedCoordinateSystem` tells where)
   };
 
   /// What a line of output 1 is.
@@ -120,8 +122,8 @@ public:
   ///@}
 
   ///@{
-  /// The point where the contours of the Contour system start: CENTROID (default), or INCENTER, with
-  /// which every triangle is concordant.
+  /// The point where the contours of the Contour system start: CENTROID (default), or INCENTER,
+  /// with which every triangle is concordant.
   vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
   vtkGetMacro(CenterPoint, int);
   ///@}
@@ -144,23 +146,24 @@ public:
 
   ///@{
   /// How far outside the domain a point may be and still be taken to the nearest point of it, as a
-  /// proportion of the diagonal of the triangulation's bounding box. 0 (default) allows only for the
-  /// rounding of coordinates. Not negative.
+  /// proportion of the diagonal of the triangulation's bounding box. 0 (default) allows only for
+  /// the rounding of coordinates. Not negative.
   vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Tolerance, double);
   ///@}
 
   ///@{
-  /// Whether output 1 is made (default on). At the default resolution its lines take about 27 kB for
-  /// every triangle: turn it off for large meshes if only the coordinates are wanted.
+  /// Whether output 1 is made (default on). At the default resolution its lines take about 27 kB
+  /// for every triangle: turn it off for large meshes if only the coordinates are wanted.
   vtkSetMacro(GenerateLines, bool);
   vtkGetMacro(GenerateLines, bool);
   vtkBooleanMacro(GenerateLines, bool);
   ///@}
 
   ///@{
-  /// Number of intervals into which the contours drawn divide an edge, and into which the rings drawn
-  /// divide a contour; 1 draws only the contours to the vertices, or no rings. 4 by default, 1 to 100.
+  /// Number of intervals into which the contours drawn divide an edge, and into which the rings
+  /// drawn divide a contour; 1 draws only the contours to the vertices, or no rings. 4 by default,
+  /// 1 to 100.
   vtkSetClampMacro(NumberOfContours, int, 1, 100);
   vtkGetMacro(NumberOfContours, int);
   vtkSetClampMacro(NumberOfRings, int, 1, 100);
@@ -168,15 +171,15 @@ public:
   ///@}
 
   ///@{
-  /// Number of straight pieces of a contour, and of a ring along one edge, in output 1. 16 by default,
-  /// 1 to 1000.
+  /// Number of straight pieces of a contour, and of a ring along one edge, in output 1. 16 by
+  /// default, 1 to 1000.
   vtkSetClampMacro(LineResolution, int, 1, 1000);
   vtkGetMacro(LineResolution, int);
   ///@}
 
-  /// Number of points of the data, or of the piece of it that was asked for, that the last execution found
-  /// outside, without those that vtkGhostType says are another piece's; -1 if the triangulation was
-  /// refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
+  /// Number of points of the data, or of the piece of it that was asked for, that the last
+  /// execution found outside, without those that vtkGhostType says are another piece's; -1 if the
+  /// triangulation was refused, in which case GetErrorCode() is not 0 either. See ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
   /// Number of triangles that the last execution found discordant, masked ones excepted.
@@ -184,11 +187,11 @@ public:
 
   /// Makes the numbers that this filter counts (NumberOfOutsidePoints and
   /// NumberOfDiscordantTriangles) the same in all processes that
-  /// have pieces of the data: counts of points become sums, -1 if one of the processes has -1, numbers
-  /// of triangles the largest. Each process of @a controller (null: the global controller; if there is
-  /// none, nothing happens) must call this after its update, also one that had nothing to update or had an
-  /// error: executing the filter never waits for other processes, this does. They are one process's own
-  /// again after the next execution. In ParaView the plugin does it.
+  /// have pieces of the data: counts of points become sums, -1 if one of the processes has -1,
+  /// numbers of triangles the largest. Each process of @a controller (null: the global controller;
+  /// if there is none, nothing happens) must call this after its update, also one that had nothing
+  /// to update or had an error: executing the filter never waits for other processes, this does.
+  /// They are one process's own again after the next execution. In ParaView the plugin does it.
   void ReduceStatistics(vtkMultiProcessController* controller);
 
   /// The polylines and the triangulation of the last execution.
@@ -226,8 +229,8 @@ private:
   vtkTriangularCoordinates(const vtkTriangularCoordinates&) = delete;
   void operator=(const vtkTriangularCoordinates&) = delete;
 
-  int AttachCoordinates(vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
+  int AttachCoordinates(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   class Internals;
   std::unique_ptr<Internals> Internal;

@@ -7,8 +7,8 @@
 //
 //   CarryFaces [--generated] [OUTPUT_FOLDER]
 //
-// The photographs and their meshes are those of Debian's package gtkmorph-example. With --generated,
-// a test chart and a random pair of meshes take their place.
+// The photographs and their meshes are those of Debian's package gtkmorph-example. With
+// --generated, a test chart and a random pair of meshes take their place.
 
 #include "Measure.h"
 #include "Picture.h"
@@ -214,8 +214,8 @@ vtkSmartPointer<vtkImageData> CarryImage(const Task& task, int coordinateSystem,
   reslice->SetInterpolationModeToCubic();
   reslice->SetOutputOrigin(0.0, 0.0, 0.0);
   reslice->SetOutputSpacing(1.0 / refinement, 1.0 / refinement, 1.0);
-  reslice->SetOutputExtent(0, refinement * (task.TargetSize[0] - 1), 0,
-    refinement * (task.TargetSize[1] - 1), 0, 0);
+  reslice->SetOutputExtent(
+    0, refinement * (task.TargetSize[0] - 1), 0, refinement * (task.TargetSize[1] - 1), 0, 0);
   reslice->SetBackgroundColor(255.0, 255.0, 255.0, 255.0);
   reslice->Update();
   return reslice->GetOutput();
@@ -256,8 +256,8 @@ void Run(const Task& task, const std::string& folder)
   const double center[3] = { task.CloseUp[0], task.CloseUp[1], 0.0 };
   double sourceCenter[3];
   map->GetInverse()->TransformPoint(center, sourceCenter);
-  panels.push_back({ "Source", task.SourceImage, task.Source, grid,
-    task.MeshColor, task.LineColor, { sourceCenter[0], sourceCenter[1], task.CloseUp[2] } });
+  panels.push_back({ "Source", task.SourceImage, task.Source, grid, task.MeshColor, task.LineColor,
+    { sourceCenter[0], sourceCenter[1], task.CloseUp[2] } });
 
   std::array<Measurements, 3> measurements;
   for (int system = 0; system < 3; ++system)
@@ -270,8 +270,8 @@ void Run(const Task& task, const std::string& folder)
     Write<vtkXMLPolyDataWriter>(carriedGrid, prefix + "-grid.vtp");
     Write<vtkXMLPolyDataWriter>(
       CarryLines(task, parallelLines, system), prefix + "-parallel-lines.vtp");
-    panels.push_back({ systemNames[system], image, task.Target, carriedGrid,
-      task.MeshColor, task.LineColor, task.CloseUp });
+    panels.push_back({ systemNames[system], image, task.Target, carriedGrid, task.MeshColor,
+      task.LineColor, task.CloseUp });
     measurements[system] = Measure(task.Source, task.Target, system);
   }
   if (task.TargetImage)

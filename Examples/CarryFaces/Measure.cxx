@@ -155,10 +155,9 @@ Measurements Measure(vtkPolyData* source, vtkPolyData* target, int coordinateSys
     double after[3];
     grid->GetPoint(i, before);
     returned->GetPoint(i, after);
-    result.RoundTripError = std::max(
-      result.RoundTripError, std::sqrt(vtkMath::Distance2BetweenPoints(before, after)));
-    result.SmallestDeterminant =
-      std::min(result.SmallestDeterminant, determinants->GetTuple1(i));
+    result.RoundTripError =
+      std::max(result.RoundTripError, std::sqrt(vtkMath::Distance2BetweenPoints(before, after)));
+    result.SmallestDeterminant = std::min(result.SmallestDeterminant, determinants->GetTuple1(i));
   }
 
   // The meshes have been read by then, so that only the mapping is timed.

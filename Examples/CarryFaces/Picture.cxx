@@ -109,8 +109,7 @@ void WritePicture(const std::vector<Panel>& panels, const std::string& fileName)
     title->GetTextProperty()->SetColor(0.1, 0.1, 0.1);
     title->GetTextProperty()->SetJustificationToCentered();
     title->GetTextProperty()->SetVerticalJustificationToCentered();
-    title->SetPosition(
-      (static_cast<double>(i) + 0.5) * panelWidth, height - 0.5 * titleHeight);
+    title->SetPosition((static_cast<double>(i) + 0.5) * panelWidth, height - 0.5 * titleHeight);
     titles->AddActor2D(title);
   }
   window->Render();

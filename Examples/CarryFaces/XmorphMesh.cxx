@@ -16,7 +16,8 @@
 namespace
 {
 
-/// The most columns or rows of a mesh: far more than anybody lays by hand, and their product is an int.
+/// The most columns or rows of a mesh: far more than anybody lays by hand, and their product is an
+/// int.
 constexpr int MaximumSide = 10000;
 
 } // namespace
@@ -80,7 +81,8 @@ void FitToPicture(XmorphMesh& mesh, int width, int height)
   }
   if (!(right > 0.0 && bottom > 0.0))
   {
-    throw std::runtime_error("The mesh has no extent: all of its points are at the picture's top left.");
+    throw std::runtime_error(
+      "The mesh has no extent: all of its points are at the picture's top left.");
   }
   for (auto& point : mesh.Points)
   {

@@ -31,13 +31,14 @@ XmorphMesh ReadXmorphMesh(const std::string& fileName);
 /// The same from an open file; the name is for messages.
 XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName);
 
-/// Moves the points from the mesh's own units, which end at its last column and row, to the pixels of
-/// a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh has no
-/// extent.
+/// Moves the points from the mesh's own units, which end at its last column and row, to the pixels
+/// of a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh
+/// has no extent.
 void FitToPicture(XmorphMesh& mesh, int width, int height);
 
-/// The two meshes cut into the same triangles. Each quadrilateral is cut along the diagonal that leaves
-/// the larger smallest angle, over both meshes. Throws std::runtime_error if their sizes differ.
+/// The two meshes cut into the same triangles. Each quadrilateral is cut along the diagonal that
+/// leaves the larger smallest angle, over both meshes. Throws std::runtime_error if their sizes
+/// differ.
 std::array<vtkSmartPointer<vtkPolyData>, 2> CutIntoTriangles(
   const XmorphMesh& first, const XmorphMesh& second);
 

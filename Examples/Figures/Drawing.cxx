@@ -55,8 +55,7 @@ struct Run
 std::vector<Run> SplitIntoRuns(const std::string& text)
 {
   std::vector<Run> runs;
-  const auto append = [&runs](const std::string& piece, bool variable, int level)
-  {
+  const auto append = [&runs](const std::string& piece, bool variable, int level) {
     if (runs.empty() || runs.back().Variable != variable || runs.back().Level != level)
     {
       runs.push_back({ "", variable, level });
@@ -124,8 +123,7 @@ vtkTextRenderer::Metrics Measure(vtkTextProperty* letters, const std::string& te
 /// The width of text with the space around it, which bounding boxes leave out.
 int Advance(vtkTextProperty* letters, const std::string& text)
 {
-  const auto width = [letters](const std::string& t)
-  {
+  const auto width = [letters](const std::string& t) {
     const auto box = Measure(letters, t).BoundingBox;
     return box[1] - box[0];
   };
@@ -135,8 +133,7 @@ int Advance(vtkTextProperty* letters, const std::string& text)
 void AddText(vtkRenderer* renderer, vtkTextProperty* letters, const std::string& text, double x,
   double y, const Color& color, bool halo)
 {
-  const auto add = [&](double dx, double dy, const Color& ink)
-  {
+  const auto add = [&](double dx, double dy, const Color& ink) {
     vtkNew<vtkTextActor> actor;
     actor->SetInput(text.c_str());
     actor->GetTextProperty()->ShallowCopy(letters);
@@ -580,8 +577,7 @@ void Panel::RightAngle(
   const Point& corner, const Point& first, const Point& second, double size, const Pen& pen)
 {
   const Point origin = this->ToPage(corner);
-  const auto leg = [&](const Point& end)
-  {
+  const auto leg = [&](const Point& end) {
     const Point along = Subtract(this->ToPage(end), origin);
     return Between({ 0.0, 0.0 }, along, size / Length(along));
   };
@@ -600,8 +596,9 @@ void Panel::Image(vtkImageData* image)
   {
     for (int column = 0; column < size[0]; ++column)
     {
-      const auto component = [&](int k)
-      { return image->GetScalarComponentAsDouble(column, row, 0, k) / 255.0; };
+      const auto component = [&](int k) {
+        return image->GetScalarComponentAsDouble(column, row, 0, k) / 255.0;
+      };
       const Color color{ component(0), component(1), component(2) };
       const double left = origin[0] + (column - 0.5) * spacing[0];
       const double bottom = origin[1] + (row - 0.5) * spacing[1];

@@ -65,16 +65,14 @@ void Draw(const std::string& folder)
   constexpr int height = 610;
   Drawing drawing(1240, height);
   Panel page = drawing.GetPage();
-  const auto makePanel = [&](int number, const std::string& title)
-  {
+  const auto makePanel = [&](int number, const std::string& title) {
     const double left = 10.0 + 410.0 * number;
     page.Label({ left + 200.0, height - 26.0 }, title, { 22.0 });
     return Panel(drawing, { left, 275.0, 400.0, 285.0 }, { -0.06, -0.2, 3.32, 2.4 });
   };
   const Pen pen{ lineColor, 2.6 };
   const Pen outline{ lineColor, 1.8 };
-  const auto makeCloseUp = [&](int number, Panel& panel, const Point& center)
-  {
+  const auto makeCloseUp = [&](int number, Panel& panel, const Point& center) {
     constexpr double halfWidth = 0.46;
     constexpr double halfHeight = 0.27;
     const Rectangle window{ center[0] - halfWidth, center[1] - halfHeight, 2.0 * halfWidth,

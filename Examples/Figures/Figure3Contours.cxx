@@ -123,9 +123,8 @@ void DrawTriangle(Panel& panel)
   panel.Label(center, "$G$", { 20.0 }, { -15.0, 13.0 });
 
   // Names beside the triangle, with lines that lead to what they name.
-  const auto name =
-    [&panel](const Point& thing, const Point& place, const std::string& text, const Color& color)
-  {
+  const auto name = [&panel](const Point& thing, const Point& place, const std::string& text,
+                      const Color& color) {
     panel.Stroke({ thing, place }, { color, 1.0 });
     panel.Dot(thing, 2.4, color);
     Lettering letters{ 17.0, color };

@@ -58,8 +58,7 @@ std::vector<Sample> MakeSamples(std::size_t count)
 {
   std::mt19937_64 generator(2001);
   // The top bits of a number, scaled: the distributions of the standard differ between libraries.
-  const auto draw = [&generator](double from, double to)
-  {
+  const auto draw = [&generator](double from, double to) {
     const auto first = static_cast<std::int64_t>(from * unit);
     const auto range = static_cast<std::uint64_t>((to - from) * unit) + 1;
     return first + static_cast<std::int64_t>((generator() >> 32) * range >> 32);
@@ -135,8 +134,7 @@ void Draw(const std::string& folder)
     { leftmost, -highest, rightmost - leftmost, 2.0 * highest });
 
   // The region, and on top of it what is not part of it.
-  const auto fillColumns = [&](double from, double to, const Color& color)
-  {
+  const auto fillColumns = [&](double from, double to, const Color& color) {
     panel.Fill({ { from, -highest }, { to, -highest }, { to, highest }, { from, highest } }, color);
   };
   fillColumns(leftmost, rightmost, discordantFill);

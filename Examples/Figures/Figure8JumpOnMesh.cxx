@@ -118,8 +118,7 @@ std::vector<Landmark> MakeLandmarks()
     landmarks.push_back({ point, Turn(point, moved) });
   };
   // On both sides, @a moved being that of the right one.
-  const auto addBoth = [&add](const Point& point, const Point& moved)
-  {
+  const auto addBoth = [&add](const Point& point, const Point& moved) {
     add(point, moved);
     add({ -point[0], point[1] }, { -moved[0], moved[1] });
   };
@@ -169,8 +168,7 @@ Curve Interpolate(const Curve& points, bool closed)
 {
   constexpr int pieces = 24;
   const int count = static_cast<int>(points.size());
-  const auto at = [&](int i)
-  {
+  const auto at = [&](int i) {
     return points[static_cast<std::size_t>(
       closed ? (i + count) % count : std::clamp(i, 0, count - 1))];
   };
@@ -220,8 +218,7 @@ void DrawFace(Panel& panel, vtkPolyData* mesh, const std::function<Curve(const C
   const Color line{ 0.36, 0.20, 0.14 };
   for (const double side : { -1.0, 1.0 })
   {
-    const auto mirror = [side](Curve curve)
-    {
+    const auto mirror = [side](Curve curve) {
       for (Point& point : curve)
       {
         point[0] *= side;
@@ -428,17 +425,15 @@ void Draw(const std::string& fileName, const std::array<vtkSmartPointer<vtkPolyD
 void DrawDrawnFaces(const std::string& fileName)
 {
   const auto meshes = MakeFaces();
-  Draw(fileName, meshes,
-    [&meshes](int side, Panel& panel)
+  Draw(fileName, meshes, [&meshes](int side, Panel& panel) {
+    if (side == 0)
     {
-      if (side == 0)
-      {
-        DrawFace(panel, meshes[0], [](const Curve& curve) { return curve; });
-        return;
-      }
-      const auto map = MakeMap(meshes[0], meshes[1], vtkHomeomorphismTransform::SMOOTH);
-      DrawFace(panel, meshes[1], [&map](const Curve& curve) { return MapCurve(map, curve); });
-    });
+      DrawFace(panel, meshes[0], [](const Curve& curve) { return curve; });
+      return;
+    }
+    const auto map = MakeMap(meshes[0], meshes[1], vtkHomeomorphismTransform::SMOOTH);
+    DrawFace(panel, meshes[1], [&map](const Curve& curve) { return MapCurve(map, curve); });
+  });
 }
 
 void DrawPhotographs(const std::string& fileName)
@@ -464,8 +459,7 @@ void DrawPhotographs(const std::string& fileName)
 int main(int argc, char* argv[])
 {
   return RunFigure(argc, argv, { "--photographs" },
-    [](const std::string& folder, const std::vector<std::string>& given)
-    {
+    [](const std::string& folder, const std::vector<std::string>& given) {
       if (given.empty())
       {
         DrawDrawnFaces(folder + "/figure-8-jump-on-mesh.png");

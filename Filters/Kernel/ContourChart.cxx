@@ -80,8 +80,8 @@ HOMEOMORPHISM_ALWAYS_INLINE double Hypotenuse(double a, double b)
 /// What of a contour depends on its number s alone, in one half of an edge. The half is seen in the
 /// frame with the foot of the center segment at the origin, the centre at (0, h) and the corner at
 /// (b, 0); its contours are numbered by s from 0, the center segment, to 1, the segment from the
-/// centre to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is cheap
-/// and finds s.
+/// centre to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is
+/// cheap and finds s.
 struct ArcOfHalf
 {
   /// Twice the length of the straight piece: R = sqrt(h^2 (1 + s)^2 + 4 b^2 s^2).
@@ -162,7 +162,8 @@ struct EndingEquation : RootLanes<Width, true>
     const double overSecant = 1.0 / (1.0 + secant);
     const double share = (1.0 - s) * over * overSecant;
     const double secantDerivative = slope / secant * flatness * over * over;
-    const double shareDerivative = -2.0 * over * over * overSecant - share * overSecant * secantDerivative;
+    const double shareDerivative =
+      -2.0 * over * over * overSecant - share * overSecant * secantDerivative;
     this->Step(lane, s * (1.0 + share) - proportion, 1.0 + share + s * shareDerivative, 0x1p-32);
   }
 };
@@ -186,7 +187,11 @@ struct ThroughEquation : RootLanes<Width, true>
     const ArcOfHalfDerivative derivative(h, b, s, arc);
     double sine = y * arc.Curvature;
     sine = sine < 1.0 ? sine : 1.0;
-    const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+    const double root = std::sqrt((1.0 - sine) * (1.0 + sine));
+    // An arc turns by phi at most. Near a right angle the sine has forgotten the cosine, and a
+    // cosine of 0 would be an infinite slope, whose step of 0 looks like a root.
+    const double least = h * (1.0 + s) / arc.R;
+    const double cosine = root > least ? root : least;
     const double overOne = 1.0 / (1.0 + cosine);
     // On the edge, where the curvature at the corner is infinite, there is no inset.
     const double inset = y > 0.0 ? y * sine * overOne : 0.0;
@@ -340,8 +345,7 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
 
 } // namespace
 
-ContourChart::ContourChart(
-  const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
+ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
   : Unit(PowerOfTwoNear(shape.Base))
   , Shape{ shape.Base / Unit, shape.ApexX / Unit, shape.Height / Unit, shape.Apex }
 {
@@ -388,8 +392,8 @@ ContourChart::ContourChart(
     edge.CenterHeight = this->CenterWeights[k] * view.Height;
     // The foot of a weighted mean of the corners is the weighted mean of their feet: 0 and Length
     // for the edge's ends.
-    edge.FootDistance = view.Length *
-      (this->CenterWeights[PreviousCorner(k)] + this->CenterWeights[k] * view.Foot);
+    edge.FootDistance =
+      view.Length * (this->CenterWeights[PreviousCorner(k)] + this->CenterWeights[k] * view.Foot);
   }
 }
 
@@ -535,8 +539,8 @@ Vector2 ContourChart::ToPoint(const Reference& coordinates) const
     coordinates, ending.AtEdge, ContourEndingAt(ending.Flatness, ending.Proportion));
 }
 
-void ContourChart::MapPoints(const ContourChart* const* from, const ContourChart* const* to,
-  Vector2* points, int count)
+void ContourChart::MapPoints(
+  const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count)
 {
   constexpr int capacity = ThroughLanes::Capacity;
   Search searches[capacity];
@@ -611,12 +615,12 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
     const double cosine = std::cos(angle);
     byC = { contour.Length * sine, -contour.Length * cosine };
     // d(1/r)/ds (r psi)^2, from whichever of 1/r and r is finite.
-    const double bend = s < 0.5 ? derivative.Curvature * remaining * remaining
-                                : -derivative.Radius * angle * angle;
+    const double bend =
+      s < 0.5 ? derivative.Curvature * remaining * remaining : -derivative.Radius * angle * angle;
     const double halfSine = SineRatio(0.5 * angle);
     const double stretch = (1.0 - c) * derivative.Length;
-    const Vector2 byS = { derivative.EdgePoint + bend * (0.5 * halfSine * halfSine - SineRatio(angle)) -
-        stretch * sine,
+    const Vector2 byS = { derivative.EdgePoint +
+        bend * (0.5 * halfSine * halfSine - SineRatio(angle)) - stretch * sine,
       stretch * cosine - bend * SineMinusCosineRatio(angle) };
     bySOverC = { byS.x / c, byS.y / c };
   }
@@ -650,8 +654,8 @@ double ContourChart::ContourLength(int edgeLabel, double p) const
 {
   const Edge& edge = this->Edges[edgeLabel - 1];
   const Half half = this->HalfAt(edge, p);
-  const double s =
-    ContourEndingAt(Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
+  const double s = ContourEndingAt(
+    Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
   return this->Unit * ContourOfHalf(edge.CenterHeight, half.Length, s).Length;
 }
 
@@ -659,8 +663,8 @@ double ContourChart::ContourLengthDerivative(int edgeLabel, double p) const
 {
   const Edge& edge = this->Edges[edgeLabel - 1];
   const Half half = this->HalfAt(edge, p);
-  const double s =
-    ContourEndingAt(Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
+  const double s = ContourEndingAt(
+    Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
   const ContourOfHalf contour(edge.CenterHeight, half.Length, s);
   const ContourOfHalfDerivative derivative(edge.CenterHeight, half.Length, s, contour);
   return this->Unit * derivative.Length * half.Side * edge.Length / derivative.EdgePoint;
@@ -686,8 +690,8 @@ const TriangleShape& ContourChart::EquilateralShape()
 const ContourChart& ContourChart::Equilateral()
 {
   static const ContourChart chart(EquilateralShape(),
-    ViewsFromEdges(EquilateralShape().Corner(0), EquilateralShape().Corner(1),
-      EquilateralShape().Corner(2)));
+    ViewsFromEdges(
+      EquilateralShape().Corner(0), EquilateralShape().Corner(1), EquilateralShape().Corner(2)));
   return chart;
 }
 

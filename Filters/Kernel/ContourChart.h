@@ -40,28 +40,30 @@ class ContourChart
 {
 public:
   using Reference = TriangularCoordinates;
-  /// A tangent vector of the reference: x = change of c, y = c times change of p, which stays finite
-  /// at the centre, where c = 0 and p has no meaning.
+  /// A tangent vector of the reference: x = change of c, y = c times change of p, which stays
+  /// finite at the centre, where c = 0 and p has no meaning.
   using Direction = Vector2;
 
-  explicit ContourChart(const TriangleShape& shape, const EdgeViews& views,
-    CenterPoint center = CenterPoint::Centroid);
+  explicit ContourChart(
+    const TriangleShape& shape, const EdgeViews& views, CenterPoint center = CenterPoint::Centroid);
 
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& coordinates) const;
 
-  /// At the centre, where the map is not differentiable, the limits are those along the contour that
-  /// the reference names.
+  /// At the centre, where the map is not differentiable, the limits are those along the contour
+  /// that the reference names.
   Direction Pull(const Reference& coordinates, const Vector2& vector) const;
   Vector2 Push(const Reference& coordinates, const Direction& direction) const;
 
   TriangularCoordinates ToCoordinates(const Reference& coordinates) const { return coordinates; }
   Reference FromCoordinates(const TriangularCoordinates& coordinates) const { return coordinates; }
 
-  /// The images of points under the homeomorphism from triangles with charts @a from to those with charts
-  /// @a to, at most 256 at once, in a fraction of the time of ToReference and ToPoint, to the same bits.
-  static void MapPoints(const ContourChart* const* from, const ContourChart* const* to, Vector2* points,
-    int count);
+  /// The images of points under the homeomorphism from triangles with charts @a from to those with
+  /// charts
+  /// @a to, at most 256 at once, in a fraction of the time of ToReference and ToPoint, to the same
+  /// bits.
+  static void MapPoints(
+    const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count);
 
   /// Length of the contour that ends on an edge (1 to 3) at p, and its derivative with respect to p
   /// (not the edge's length). The jump of the homeomorphism's Jacobian across an edge follows from
@@ -98,8 +100,8 @@ private:
     double EdgePoint; ///< distance of the contour's end from the foot
   };
 
-  /// A point in the frame of its half edge, and the number s of its contour, which takes an equation to find
-  /// unless the point is on the contour's straight piece.
+  /// A point in the frame of its half edge, and the number s of its contour, which takes an
+  /// equation to find unless the point is on the contour's straight piece.
   struct Search
   {
     int EdgeLabel; ///< 0 for the centre
@@ -127,8 +129,8 @@ private:
   Half HalfAt(const Edge& edge, double p) const;
   Matrix2 Columns(const Reference& coordinates) const;
 
-  /// A power of two near the triangle's size, in which all lengths below are measured, so that their
-  /// products neither underflow nor overflow.
+  /// A power of two near the triangle's size, in which all lengths below are measured, so that
+  /// their products neither underflow nor overflow.
   double Unit;
   TriangleShape Shape;
   Barycentric CenterWeights;

@@ -4,9 +4,9 @@
 /// @file CoordinateSystem.h
 /// The interface of a coordinate system, and the homeomorphism that two of its charts make.
 ///
-/// A coordinate system gives every triangle a *chart*: a bijection between the triangle's points and
-/// a reference that is the same for all triangles. A chart is built from the triangle's shape and
-/// offers
+/// A coordinate system gives every triangle a *chart*: a bijection between the triangle's points
+/// and a reference that is the same for all triangles. A chart is built from the triangle's shape
+/// and offers
 ///
 ///     using Reference = ...;   // a point of the reference
 ///     using Direction = ...;   // a tangent vector of the reference

@@ -49,11 +49,11 @@ inline int Orientation(const Vector2& a, const Vector2& b, const Vector2& c)
   return ExactOrientation(a, b, c);
 }
 
-/// Whether the triangle a, b, c (each of @a dimension coordinates, 2 or 3) is concordant: whether the
-/// foot of the perpendicular from its centroid G lies strictly inside each edge,
-/// 0 < (G - A).(B - A) < |B - A|^2 for all three edges AB. Multiplied by 3 this is
-/// (B - A).((B - A) + (C - A)) > 0 for each of the six ordered pairs of corners, which is what is
-/// evaluated, exactly. Equivalently, a^2 < b^2 + 3 c^2 for the edge lengths in any order.
+/// Whether the triangle a, b, c (each of @a dimension coordinates, 2 or 3) is concordant: whether
+/// the foot of the perpendicular from its centroid G lies strictly inside each edge, 0 < (G - A).(B
+/// - A) < |B - A|^2 for all three edges AB. Multiplied by 3 this is (B - A).((B - A) + (C - A)) > 0
+/// for each of the six ordered pairs of corners, which is what is evaluated, exactly. Equivalently,
+/// a^2 < b^2 + 3 c^2 for the edge lengths in any order.
 bool IsConcordant(const double* a, const double* b, const double* c, int dimension);
 
 } // namespace homeomorphism

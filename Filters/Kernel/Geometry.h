@@ -73,7 +73,8 @@ HOMEOMORPHISM_ALWAYS_INLINE double DifferenceOfProducts(double a, double d, doub
   return std::fma(a, d, -bc) + error;
 }
 
-/// The power of two next to a positive number, 1 for others; it and its reciprocal are normal numbers.
+/// The power of two next to a positive number, 1 for others; it and its reciprocal are normal
+/// numbers.
 inline double PowerOfTwoNear(double x)
 {
   constexpr double least = 0x1p-1021;
@@ -110,8 +111,8 @@ using Barycentric = std::array<double, 3>;
 
 /// A non-degenerate triangle in its own frame: the longest edge lies on the x axis, from the corner
 /// after the apex, at the origin, to the corner before the apex, at (Base, 0); the apex is at
-/// (ApexX, Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 therefore follow each
-/// other anticlockwise.
+/// (ApexX, Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 therefore follow
+/// each other anticlockwise.
 ///
 /// In this frame a needle is as harmless as an equilateral triangle: converting a point to
 /// barycentric coordinates and back moves it by a few ulp of Base, never by ulp times aspect ratio.
@@ -176,8 +177,8 @@ struct TriangleShape
     return nearest;
   }
 
-  /// The point with these barycentric coordinates. Linear, so it also takes a vector's components to
-  /// the vector.
+  /// The point with these barycentric coordinates. Linear, so it also takes a vector's components
+  /// to the vector.
   Vector2 FromBarycentric(const Barycentric& l) const
   {
     const double apex = l[this->Apex];
@@ -211,9 +212,9 @@ struct EdgeView
   double Height = 0.0;
 };
 
-/// The view from an edge of the plane, from @a start to @a end, of the opposite corner. Differences of
-/// nearby coordinates being exact, this is accurate to a few ulp of each number, even for the short
-/// edge of a needle, where the triangle's own frame knows only the corners' places.
+/// The view from an edge of the plane, from @a start to @a end, of the opposite corner. Differences
+/// of nearby coordinates being exact, this is accurate to a few ulp of each number, even for the
+/// short edge of a needle, where the triangle's own frame knows only the corners' places.
 HOMEOMORPHISM_ALWAYS_INLINE EdgeView ViewFromEdge(
   const Vector2& start, const Vector2& end, const Vector2& opposite)
 {

@@ -23,19 +23,20 @@ struct DerivativeEstimate
   double Error = std::numeric_limits<double>::infinity();
 };
 
-/// Difference quotients of a function of one variable, f(t) for t >= 0, over shrinking steps h, and their
-/// Richardson extrapolation to h = 0.
+/// Difference quotients of a function of one variable, f(t) for t >= 0, over shrinking steps h, and
+/// their Richardson extrapolation to h = 0.
 ///
-/// Steps are halved at first, while the extrapolation gains most. Then they shrink faster, down to where
-/// nothing but a large change can be told from rounding: the small ones are there to see a border between
-/// two pieces of the function close to 0. Their ratios are no powers of 2, lest a function that repeats
-/// itself from scale to scale deceives them all.
+/// Steps are halved at first, while the extrapolation gains most. Then they shrink faster, down to
+/// where nothing but a large change can be told from rounding: the small ones are there to see a
+/// border between two pieces of the function close to 0. Their ratios are no powers of 2, lest a
+/// function that repeats itself from scale to scale deceives them all.
 ///
-/// The error of the quotients is a power series in h if the function is smooth on its side. Where it is
-/// so only near 0, as for a map made of pieces, the rows of small steps agree with each other; where the
-/// steps are so small that rounding rules, rows disagree again. So the extrapolation is taken whose
-/// neighbours in Neville's tableau agree with it best (Ridders 1982) and that no smaller step
-/// contradicts; the disagreement, with what rounding can do to it, bounds its error.
+/// The error of the quotients is a power series in h if the function is smooth on its side. Where
+/// it is so only near 0, as for a map made of pieces, the rows of small steps agree with each
+/// other; where the steps are so small that rounding rules, rows disagree again. So the
+/// extrapolation is taken whose neighbours in Neville's tableau agree with it best (Ridders 1982)
+/// and that no smaller step contradicts; the disagreement, with what rounding can do to it, bounds
+/// its error.
 class OneSidedDerivative
 {
 public:
@@ -49,15 +50,15 @@ public:
   /// @a function takes a step to a Vector (NaN where it cannot be evaluated), @a largestStep is the
   /// largest argument used, @a rounding bounds the absolute error of each component.
   template <typename Function>
-  OneSidedDerivative(Function&& function, int order, double largestStep, double rounding,
-    int steps = MaximumSteps)
+  OneSidedDerivative(
+    Function&& function, int order, double largestStep, double rounding, int steps = MaximumSteps)
     : NumberOfSteps(steps)
   {
     const Vector start = function(0.0);
     const Vector end = function(largestStep);
     const double slope = Distance(start, end) / largestStep;
-    // A function that does not change where it should is known to no better than that: its values were
-    // stored, or found, with fewer digits than they have.
+    // A function that does not change where it should is known to no better than that: its values
+    // were stored, or found, with fewer digits than they have.
     double quantum = 0.0;
     Vector last = start;
     for (int i = 0; i < this->NumberOfSteps; ++i)
@@ -77,8 +78,7 @@ public:
       // Twice the step is the step before, as long as steps are halved.
       const Vector far =
         i == 0 ? end : (2.0 * step == this->Steps[i - 1] ? last : function(2.0 * step));
-      this->Quotients[i] =
-        Quotient(Quotient(start, near, step), Quotient(near, far, step), step);
+      this->Quotients[i] = Quotient(Quotient(start, near, step), Quotient(near, far, step), step);
       last = near;
     }
     const double error = std::max(rounding, 2.0 * quantum);
@@ -105,12 +105,11 @@ public:
     {
       const auto best = std::min_element(begin + first, end,
         [](const DerivativeEstimate& a, const DerivativeEstimate& b) { return a.Error < b.Error; });
-      // Large steps may agree on the wrong limit, that of another piece of the map. Smaller ones, which
-      // do not reach that piece, then contradict them: their quotients are farther from the limit than
-      // rounding and a straight approach to it explain.
+      // Large steps may agree on the wrong limit, that of another piece of the map. Smaller ones,
+      // which do not reach that piece, then contradict them: their quotients are farther from the
+      // limit than rounding and a straight approach to it explain.
       const int row = static_cast<int>(best - begin);
-      const double approach =
-        4.0 * Distance(this->Quotients[row], best->Value) / this->Steps[row];
+      const double approach = 4.0 * Distance(this->Quotients[row], best->Value) / this->Steps[row];
       bool contradicted = false;
       for (int i = row + 1; i < this->NumberOfSteps && !contradicted; ++i)
       {
@@ -191,8 +190,8 @@ private:
     return best;
   }
 
-  /// The sum of the components' differences: not less than the distance, nor twice as large, and far
-  /// cheaper, there being hundreds.
+  /// The sum of the components' differences: not less than the distance, nor twice as large, and
+  /// far cheaper, there being hundreds.
   static double Distance(const Vector& a, const Vector& b)
   {
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);

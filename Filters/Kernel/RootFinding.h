@@ -15,13 +15,14 @@
 namespace homeomorphism
 {
 
-/// @a Width equations, each for the root of an increasing function in an interval. Every evaluation narrows
-/// the interval. Newton's step is taken where it stays inside; where it leads out, the interval is halved.
-/// It ends with a step so small that what is left is below rounding, or when nothing is left of the interval.
-/// A root that is found stays as it is while others are looked for, so that none depends on the others.
+/// @a Width equations, each for the root of an increasing function in an interval. Every evaluation
+/// narrows the interval. Newton's step is taken where it stays inside; where it leads out, the
+/// interval is halved. It ends with a step so small that what is left is below rounding, or when
+/// nothing is left of the interval. A root that is found stays as it is while others are looked
+/// for, so that none depends on the others.
 ///
-/// With @a AtEnds, a step that leads out leads to the end first, if that was not tried yet: for functions
-/// whose root is often there.
+/// With @a AtEnds, a step that leads out leads to the end first, if that was not tried yet: for
+/// functions whose root is often there.
 ///
 /// Nothing branches, so that the loop over the lanes can become vector instructions.
 template <int Width, bool AtEnds>
@@ -42,9 +43,10 @@ public:
     this->Done[lane] = 0.0;
   }
 
-  /// The function's value and slope at Root. The last step is at most @a enough times the root, or, with
-  /// @a AtEnds, one that is so much smaller than the step before it that what is left, about the square of
-  /// their ratio, is below rounding.
+  /// The function's value and slope at Root. The last step is at most @a enough times the root, or,
+  /// with
+  /// @a AtEnds, one that is so much smaller than the step before it that what is left, about the
+  /// square of their ratio, is below rounding.
   HOMEOMORPHISM_ALWAYS_INLINE void Step(int lane, double value, double slope, double enough)
   {
     const double x = this->Root[lane];
@@ -93,10 +95,15 @@ public:
     this->Upper[lane] = upper;
   }
 
-  /// Whether every root was found, or @a steps are more than halving alone would need, from 1 to the smallest
-  /// root that matters, an ulp of 1 cubed.
+  /// Whether every root was found, or @a steps are more than halving alone would need, from 1 to
+  /// the smallest root that matters, an ulp of 1 cubed.
   HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
   {
+    // Some of many nearly always need three steps, and to ask takes as long as one.
+    if (Width > 1 && steps < 3)
+    {
+      return false;
+    }
     double done = 1.0;
     for (int lane = 0; lane < Width; ++lane)
     {

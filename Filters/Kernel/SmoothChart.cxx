@@ -15,9 +15,9 @@ namespace homeomorphism
 namespace
 {
 
-/// B_k, its derivatives, and the chart's determinant, at a point of the strip of edge k, by the point's
-/// coordinates with respect to k, the next corner and the previous one. Beyond the strip's ends all is
-/// continued: by l_k past the edge, by 0 elsewhere.
+/// B_k, its derivatives, and the chart's determinant, at a point of the strip of edge k, by the
+/// point's coordinates with respect to k, the next corner and the previous one. Beyond the strip's
+/// ends all is continued: by l_k past the edge, by 0 elsewhere.
 struct StripFunction
 {
   double K;
@@ -79,8 +79,8 @@ struct StripFunction
     return kappa * (1.0 - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
   }
 
-  /// beta - B for a point whose affine coordinate is affineK = l_k + d_k beta, without cancellation:
-  /// beta (1 + d_k W) - affineK W.
+  /// beta - B for a point whose affine coordinate is affineK = l_k + d_k beta, without
+  /// cancellation: beta (1 + d_k W) - affineK W.
   HOMEOMORPHISM_ALWAYS_INLINE double Residual(double beta, double affineK, double kappa) const
   {
     const double w = this->W();
@@ -90,8 +90,8 @@ struct StripFunction
 };
 
 /// The strip's equation for some points at once: affine = l + d B(l), so with beta = B(l),
-/// beta = B(affine - d beta). The difference of the sides increases with beta, because its slope is the
-/// determinant ratio. B(affine) is a first guess.
+/// beta = B(affine - d beta). The difference of the sides increases with beta, because its slope is
+/// the determinant ratio. B(affine) is a first guess.
 template <int Width>
 struct StripEquation : RootLanes<Width, false>
 {
@@ -106,11 +106,12 @@ struct StripEquation : RootLanes<Width, false>
     double kappa, double offsetNext, double offsetPrevious, double tau)
   {
     const double beta = this->Root[lane];
-    const StripFunction function(k - (kappa - 1.0) * beta, next - offsetNext * beta,
-      previous - offsetPrevious * beta, tau);
-    // The relative second derivative times beta is below 2^12 even where tau is as small as in needles.
+    const StripFunction function(
+      k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau);
+    // What a step leaves, about its square times half the relative second derivative, which tau
+    // bounds, is a fraction of what a barycentric coordinate's rounding makes of it.
     this->Step(lane, function.Residual(beta, k, kappa),
-      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-30);
+      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-24 * tau * tau);
   }
 };
 
@@ -149,8 +150,8 @@ SmoothStrip::SmoothStrip(const EdgeView& own, const EdgeView& neighbor)
   const double otherShare = neighbor.Height / sum;
   this->OffsetNext = ownShare * neighbor.Foot - otherShare * (1.0 - own.Foot);
   this->OffsetPrevious = ownShare * (1.0 - neighbor.Foot) - otherShare * own.Foot;
-  // The three components sum to 0, which far feet let cancellation spoil: then barycentric coordinates would
-  // not sum to 1, and what they lack would be lost on the way back.
+  // The three components sum to 0, which far feet let cancellation spoil: then barycentric
+  // coordinates would not sum to 1, and what they lack would be lost on the way back.
   const double excess = this->OffsetNext + this->OffsetPrevious + (otherShare - ownShare);
   this->OffsetNext -= 0.5 * excess;
   this->OffsetPrevious -= 0.5 * excess;
@@ -239,8 +240,7 @@ void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const 
     {
       const bool is0 = lanes.Corner[i] == 0;
       const bool is1 = lanes.Corner[i] == 1;
-      lanes.OffsetNext[side][i] =
-        is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
+      lanes.OffsetNext[side][i] = is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
       lanes.OffsetPrevious[side][i] =
         is0 ? s0.OffsetPrevious : (is1 ? s1.OffsetPrevious : s2.OffsetPrevious);
       lanes.Kappa[side][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
@@ -269,8 +269,7 @@ void FillSmoothLanes(SmoothLanes& lanes, int begin, int end)
 }
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void GetSmoothLanes(
-  const SmoothLanes& lanes, int begin, int end, double* const coordinates[3])
+void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const coordinates[3])
 {
   const int stop = begin + InWholeVectors(end - begin);
   double* first = coordinates[0];
@@ -290,7 +289,7 @@ void GetSmoothLanes(
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 void MapSmoothLanes(SmoothLanes& lanes, int count)
 {
-  constexpr int width = 16;
+  constexpr int width = 32;
   static_assert(SmoothLanes::Capacity % width == 0, "whole groups of lanes");
   const int end = (count + width - 1) / width * width;
   FillSmoothLanes(lanes, count, end);
@@ -370,8 +369,8 @@ SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
   equation.Set(0, affine[k], next, previous, strip.Tau);
   for (int step = 0; !equation.IsDone(step); ++step)
   {
-    equation.Evaluate(0, affine[k], next, previous, strip.Kappa, strip.OffsetNext, strip.OffsetPrevious,
-      strip.Tau);
+    equation.Evaluate(
+      0, affine[k], next, previous, strip.Kappa, strip.OffsetNext, strip.OffsetPrevious, strip.Tau);
   }
   return Moved(affine, k, strip, -equation.Root[0]);
 }

@@ -38,18 +38,20 @@ struct Neighbor
 {
   /// False on the boundary.
   bool Exists = false;
-  /// The neighbour's apex as the shared edge sees it, the edge being run through as in this triangle
-  /// (see Reversed).
+  /// The neighbour's apex as the shared edge sees it, the edge being run through as in this
+  /// triangle (see Reversed).
   EdgeView View;
 };
 
 /// What the chart needs to know of an edge's strip. All zero but kappa on the boundary.
 struct SmoothStrip
 {
-  /// The components of D_k along the corners after and before k in cyclic order. The three sum to 0.
+  /// The components of D_k along the corners after and before k in cyclic order. The three sum to
+  /// 0.
   double OffsetNext = 0.0;
   double OffsetPrevious = 0.0;
-  /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller neighbour.
+  /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller
+  /// neighbour.
   double Kappa = 1.0;
   /// In (0, 1]; 0 on the boundary, where there is no strip.
   double Tau = 0.0;
@@ -69,11 +71,10 @@ struct SmoothStrip
 /// The strips of a triangle's edges; element k belongs to the edge opposite corner k.
 using SmoothStrips = std::array<SmoothStrip, 3>;
 
-/// A triangle's strips. views[k] is what the edge opposite corner k sees of this triangle, neighbors[k]
-/// what lies on its other side. Both triangles at an edge must be given the same two views of it (one
-/// reversed).
-SmoothStrips MakeSmoothStrips(
-  const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
+/// A triangle's strips. views[k] is what the edge opposite corner k sees of this triangle,
+/// neighbors[k] what lies on its other side. Both triangles at an edge must be given the same two
+/// views of it (one reversed).
+SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
 
 /// Points in arrays, so that the processor can deal with several at once.
 struct SmoothLanes
@@ -82,22 +83,22 @@ struct SmoothLanes
   /// With the room that whole vectors take.
   static constexpr int Size = Capacity + WidestVector;
 
-  /// k, the corner with the least coordinate: only of the edge opposite to it can a strip contain the point.
+  /// k, the corner with the least coordinate: only of the edge opposite to it can a strip contain
+  /// the point.
   std::int64_t Corner[Size];
-  /// The barycentric coordinates with respect to k, the next corner and the previous one: of the affine
-  /// chart of the source, then of the reference, then of the affine chart of the target.
+  /// The barycentric coordinates with respect to k, the next corner and the previous one: of the
+  /// affine chart of the source, then of the reference, then of the affine chart of the target.
   double L[3][Size];
   /// SmoothStrip's numbers in source and target.
   double OffsetNext[2][Size];
   double OffsetPrevious[2][Size];
   double Kappa[2][Size];
   double Tau[2][Size];
-
 };
 
-/// Puts points of one triangle into the lanes from @a begin to before @a end. @a coordinates[corner] points
-/// to arrays of the barycentric coordinates of the source's affine chart, one for each lane. Up to
-/// WidestVector - 1 lanes after the last are spoilt.
+/// Puts points of one triangle into the lanes from @a begin to before @a end. @a
+/// coordinates[corner] points to arrays of the barycentric coordinates of the source's affine
+/// chart, one for each lane. Up to WidestVector - 1 lanes after the last are spoilt.
 void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
   const SmoothStrips& source, const SmoothStrips& target);
 
@@ -108,10 +109,9 @@ void FillSmoothLanes(SmoothLanes& lanes, int begin, int end);
 /// SmoothChart's ToReference and ToPoint. Lanes up to the next multiple of 32 are filled.
 void MapSmoothLanes(SmoothLanes& lanes, int count);
 
-/// Takes the coordinates out of the lanes, into arrays as in SetSmoothLanes, where they spoil what comes
-/// after.
-void GetSmoothLanes(
-  const SmoothLanes& lanes, int begin, int end, double* const coordinates[3]);
+/// Takes the coordinates out of the lanes, into arrays as in SetSmoothLanes, where they spoil what
+/// comes after.
+void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const coordinates[3]);
 
 /// The chart of the Smooth system.
 class SmoothChart
@@ -126,8 +126,8 @@ public:
   {
   }
 
-  SmoothChart(const TriangleShape& shape, const EdgeViews& views,
-    const std::array<Neighbor, 3>& neighbors)
+  SmoothChart(
+    const TriangleShape& shape, const EdgeViews& views, const std::array<Neighbor, 3>& neighbors)
     : SmoothChart(shape, MakeSmoothStrips(views, neighbors))
   {
   }

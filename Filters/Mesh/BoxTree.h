@@ -74,8 +74,9 @@ struct Box
   }
 };
 
-/// A binary tree of boxes over the triangles in the order of a space-filling curve (Morton's), so that
-/// building takes time linear in their number. Immutable once built; any number of threads may search it.
+/// A binary tree of boxes over the triangles in the order of a space-filling curve (Morton's), so
+/// that building takes time linear in their number. Immutable once built; any number of threads may
+/// search it.
 template <int Dimension>
 class BoxTree
 {
@@ -122,8 +123,8 @@ public:
     }
   }
 
-  /// Calls visit(triangle) for every triangle in the leaves whose box meets @a box, until it returns
-  /// false. The box is read anew at each step, so that a visit may shrink it.
+  /// Calls visit(triangle) for every triangle in the leaves whose box meets @a box, until it
+  /// returns false. The box is read anew at each step, so that a visit may shrink it.
   template <typename Visit>
   void Search(const BoxType& box, Visit&& visit) const
   {
@@ -156,8 +157,7 @@ public:
         stack[depth++] = { place.Level - 1, child };
         continue;
       }
-      const std::size_t last =
-        std::min(this->Triangles.size(), (place.Index + 1) * LeafSize);
+      const std::size_t last = std::min(this->Triangles.size(), (place.Index + 1) * LeafSize);
       for (std::size_t i = place.Index * LeafSize; i < last; ++i)
       {
         if (!visit(this->Triangles[i]))
@@ -185,9 +185,8 @@ private:
         constexpr float infinity = std::numeric_limits<float>::infinity();
         const auto least = static_cast<float>(box.Least[axis]);
         const auto greatest = static_cast<float>(box.Greatest[axis]);
-        this->Least[axis] = static_cast<double>(least) > box.Least[axis]
-          ? std::nextafter(least, -infinity)
-          : least;
+        this->Least[axis] =
+          static_cast<double>(least) > box.Least[axis] ? std::nextafter(least, -infinity) : least;
         this->Greatest[axis] = static_cast<double>(greatest) < box.Greatest[axis]
           ? std::nextafter(greatest, infinity)
           : greatest;
@@ -242,8 +241,9 @@ private:
       std::uint64_t Code;
       TriangleIndex Triangle;
     };
-    const auto centerOf = [](const BoxType& box, int axis)
-    { return 0.5 * box.Least[axis] + 0.5 * box.Greatest[axis]; };
+    const auto centerOf = [](const BoxType& box, int axis) {
+      return 0.5 * box.Least[axis] + 0.5 * box.Greatest[axis];
+    };
     BoxType bounds;
     for (const TriangleIndex t : this->Triangles)
     {
@@ -296,7 +296,8 @@ private:
     }
   }
 
-  // All leaves, then what is above each pair of them, and so on; Levels has where each level begins.
+  // All leaves, then what is above each pair of them, and so on; Levels has where each level
+  // begins.
   std::vector<Node> Nodes;
   std::vector<std::size_t> Levels;
   std::vector<TriangleIndex> Triangles;

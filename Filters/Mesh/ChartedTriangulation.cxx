@@ -32,8 +32,7 @@ std::vector<Chart> MakeCharts(
 }
 
 /// The strips of all triangles. Each edge is looked at once, for both of its triangles.
-std::vector<SmoothStrips> MakeStrips(
-  const Triangulation& triangulation, const Embedding& embedding)
+std::vector<SmoothStrips> MakeStrips(const Triangulation& triangulation, const Embedding& embedding)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
   std::vector<SmoothStrips> strips(count);
@@ -74,8 +73,7 @@ std::array<Neighbor, 3> UnfoldNeighbors(
       continue;
     }
     // What an edge sees of a triangle does not change when the triangle turns about the edge.
-    const EdgeView view =
-      embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
+    const EdgeView view = embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
     neighbors[k] = { true, across.SameDirection ? view : Reversed(view) };
   }
   return neighbors;

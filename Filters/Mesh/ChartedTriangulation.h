@@ -33,8 +33,8 @@ std::vector<TriangleIndex> FindDiscordant(
 class ChartedTriangulation
 {
 public:
-  /// Refers to the embedding, which must outlive it. @a carriedByLinear says for which triangles the
-  /// Linear system stands in (empty: for none); it must be the same in both meshes of a pair.
+  /// Refers to the embedding, which must outlive it. @a carriedByLinear says for which triangles
+  /// the Linear system stands in (empty: for none); it must be the same in both meshes of a pair.
   ChartedTriangulation(const Triangulation& triangulation, const Embedding& embedding,
     CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> carriedByLinear);
 
@@ -84,8 +84,7 @@ public:
 
   /// Triangular coordinates of a point of a triangle's frame, and back.
   TriangularCoordinates ToCoordinates(TriangleIndex triangle, const Vector2& point) const;
-  Vector2 FromCoordinates(
-    TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
+  Vector2 FromCoordinates(TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
 private:
   const Embedding& Geometry;

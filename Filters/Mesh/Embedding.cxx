@@ -82,12 +82,11 @@ Embedding::Embedding(
     }
   }
   this->CoordinatePrecision = 0.5 *
-    (points->GetDataType() == VTK_FLOAT
-        ? static_cast<double>(std::numeric_limits<float>::epsilon())
-        : std::numeric_limits<double>::epsilon());
+    (points->GetDataType() == VTK_FLOAT ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                                        : std::numeric_limits<double>::epsilon());
 
-  // A point with a coordinate that is not finite counts neither for the scale nor for the plane; the
-  // triangles that use it are found by IsFinite.
+  // A point with a coordinate that is not finite counts neither for the scale nor for the plane;
+  // the triangles that use it are found by IsFinite.
   std::vector<Vector3> positions(count, Vector3{});
   double largest = 0.0;
   for (vtkIdType i = 0; i < count; ++i)
@@ -148,8 +147,8 @@ Embedding::Embedding(
   }
 }
 
-void Embedding::FindPlane(const std::vector<Vector3>& points,
-  const std::vector<std::uint8_t>& used, const Embedding* companion)
+void Embedding::FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
+  const Embedding* companion)
 {
   const auto isTurnedAway = [companion](const Vector3& normal) {
     // Not for planes that are at right angles to rounding, where either side is as good.
@@ -239,8 +238,8 @@ void Embedding::FindPlane(const std::vector<Vector3>& points,
     // Rounding does not decide which of two equally close axes counts.
     main = std::abs(normal[axis]) >= (1.0 - 1e-6) * std::abs(normal[main]) ? axis : main;
   }
-  const bool byCompanion = companion && companion->Planar &&
-    std::abs(Dot3(companion->PlaneAxes[2], normal)) > 1e-6;
+  const bool byCompanion =
+    companion && companion->Planar && std::abs(Dot3(companion->PlaneAxes[2], normal)) > 1e-6;
   if (byCompanion ? isTurnedAway(normal) : normal[main] < 0.0)
   {
     normal = Scaled(normal, -1.0);
@@ -289,15 +288,15 @@ void Embedding::FromMeshPoint(std::int32_t meshPoint, double offset, double poin
   }
   for (int axis = 0; axis < 3; ++axis)
   {
-    point[axis] = (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) *
-      this->InverseScale;
+    point[axis] =
+      (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) * this->InverseScale;
   }
 }
 
 int Embedding::GetOrientation(const Triangulation::Corners& corners) const
 {
-  return Orientation(this->PlanePoints[corners[0]], this->PlanePoints[corners[1]],
-    this->PlanePoints[corners[2]]);
+  return Orientation(
+    this->PlanePoints[corners[0]], this->PlanePoints[corners[1]], this->PlanePoints[corners[2]]);
 }
 
 bool Embedding::HasNoArea(const Triangulation::Corners& corners) const
@@ -306,8 +305,7 @@ bool Embedding::HasNoArea(const Triangulation::Corners& corners) const
   {
     return this->GetOrientation(corners) == 0;
   }
-  const double least =
-    8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
+  const double least = 8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
   // Written so that a view spoilt by an edge of no length counts as no area.
   return !(this->GetView(corners, this->FindApex(corners)).Height > least);
 }
@@ -343,8 +341,7 @@ EdgeView Embedding::GetView(const Triangulation::Corners& corners, int edge) con
   const std::int32_t start = corners[NextCorner(edge)];
   const std::int32_t end = corners[PreviousCorner(edge)];
   return this->Planar
-    ? PlaneView(
-        this->PlanePoints[start], this->PlanePoints[end], this->PlanePoints[corners[edge]])
+    ? PlaneView(this->PlanePoints[start], this->PlanePoints[end], this->PlanePoints[corners[edge]])
     : ViewFromSpaceEdge(
         this->SpacePoints[start], this->SpacePoints[end], this->SpacePoints[corners[edge]]);
 }
@@ -422,12 +419,11 @@ void Embedding::ComputeSpaceFrame(
   SpaceFrame& frame = this->SpaceFrames[triangle];
   frame.Shape = shape;
   frame.Origin = this->SpacePoints[corners[NextCorner(shape.Apex)]];
-  frame.Tangent = Scaled(
-    Difference(this->SpacePoints[corners[PreviousCorner(shape.Apex)]], frame.Origin),
-    1.0 / shape.Base);
+  frame.Tangent =
+    Scaled(Difference(this->SpacePoints[corners[PreviousCorner(shape.Apex)]], frame.Origin),
+      1.0 / shape.Base);
   const Vector3 toApex = Difference(this->SpacePoints[corners[shape.Apex]], frame.Origin);
-  const Vector3 normal =
-    Cross3(frame.Tangent, Scaled(toApex, 1.0 / PowerOfTwoNear(shape.Height)));
+  const Vector3 normal = Cross3(frame.Tangent, Scaled(toApex, 1.0 / PowerOfTwoNear(shape.Height)));
   frame.Normal = Scaled(normal, 1.0 / Length(normal));
   frame.Inward = Cross3(frame.Normal, frame.Tangent);
 }

@@ -28,7 +28,8 @@ struct FramePoint
   double Offset = 0.0;
 };
 
-/// Frame and shape of a triangle in the plane: all that locating and mapping a point need to know of it.
+/// Frame and shape of a triangle in the plane: all that locating and mapping a point need to know
+/// of it.
 struct alignas(64) PlaneFrame
 {
   Vector2 Origin;
@@ -60,19 +61,19 @@ static_assert(sizeof(PlaneFrame) == 64, "One line of a processor's cache");
 /// Positions of a triangulation's points, in a plane or as a surface in 3-space.
 ///
 /// Everything is computed in *working coordinates*: those of the input times a power of two, Scale,
-/// which brings the largest of them near 1 without rounding, so that meshes the size of an atom or of
-/// a galaxy are the same to the arithmetic. In a plane, any plane, working coordinates are two
+/// which brings the largest of them near 1 without rounding, so that meshes the size of an atom or
+/// of a galaxy are the same to the arithmetic. In a plane, any plane, working coordinates are two
 /// coordinates within it and the distance from it; if the plane is parallel to two of the axes they
 /// are the input's own coordinates, unrounded.
 class Embedding
 {
 public:
-  /// Reads the points that @a triangulation's triangles use. The triangles' corners must exist. If the
-  /// points are planar, the plane's normal is the one that points along the axis it is closest to (the
-  /// last of equally close ones), or, if @a companion is given and planar, the one that is less than a
-  /// right angle from the companion's.
-  Embedding(vtkPoints* points, const Triangulation& triangulation,
-    const Embedding* companion = nullptr);
+  /// Reads the points that @a triangulation's triangles use. The triangles' corners must exist. If
+  /// the points are planar, the plane's normal is the one that points along the axis it is closest
+  /// to (the last of equally close ones), or, if @a companion is given and planar, the one that is
+  /// less than a right angle from the companion's.
+  Embedding(
+    vtkPoints* points, const Triangulation& triangulation, const Embedding* companion = nullptr);
 
   /// Computes the triangles' frames. All triangles that are not masked must have an area.
   void ComputeFrames(const Triangulation& triangulation);
@@ -80,17 +81,20 @@ public:
   /// Whether all points lie in one plane (to the rounding of their coordinates).
   bool IsPlanar() const { return this->Planar; }
   /// Whether distances from the plane are unlimited and measured along the plane's normal, as in
-  /// both meshes of a planar pair. Otherwise each triangle has its own normal, given by its winding.
+  /// both meshes of a planar pair. Otherwise each triangle has its own normal, given by its
+  /// winding.
   bool IsColumnar() const { return this->Columnar; }
   void SetColumnar(bool columnar) { this->Columnar = columnar; }
 
   /// Working coordinates over input coordinates, a power of two.
   double GetScale() const { return this->Scale; }
+  double GetInverseScale() const { return this->InverseScale; }
   /// Largest absolute working coordinate of a point, about 1.
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
   /// Length of the diagonal of the box around the points, in working coordinates.
   double GetDiagonal() const { return this->Diagonal; }
-  /// Relative rounding error of the coordinates as they were stored: half an ulp of float or double.
+  /// Relative rounding error of the coordinates as they were stored: half an ulp of float or
+  /// double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
 
   Vector3 ToWorking(const double point[3]) const
@@ -105,7 +109,8 @@ public:
   }
 
   /// The same for many points, whose working coordinates are in arrays of their own.
-  void FromWorking(const double* x, const double* y, const double* z, int count, double (*points)[3]) const
+  void FromWorking(
+    const double* x, const double* y, const double* z, int count, double (*points)[3]) const
   {
     if (!this->AxisParallel || this->AxisOrder[0] != 0 || this->AxisOrder[1] != 1)
     {
@@ -146,8 +151,8 @@ public:
   /// Whether a place is a point of the mesh, bit for bit.
   bool IsMeshPoint(std::int32_t meshPoint, const double point[3]) const;
 
-  /// The place at a distance from a point of the mesh, along the plane's normal; the mesh's own point,
-  /// unrounded, if the distance is 0.
+  /// The place at a distance from a point of the mesh, along the plane's normal; the mesh's own
+  /// point, unrounded, if the distance is 0.
   void FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const;
 
   /// Working coordinates of a point of the mesh; in the plane the third is the distance from it.
@@ -163,8 +168,8 @@ public:
   /// The same for a planar mesh.
   const Vector2& GetPlanePoint(std::int32_t point) const { return this->PlanePoints[point]; }
 
-  /// Orientation of a triangle of a planar mesh with respect to the plane's normal, exactly: 1 if its
-  /// corners run anticlockwise, -1 if clockwise, 0 if it has no area.
+  /// Orientation of a triangle of a planar mesh with respect to the plane's normal, exactly: 1 if
+  /// its corners run anticlockwise, -1 if clockwise, 0 if it has no area.
   int GetOrientation(const Triangulation::Corners& corners) const;
   /// Whether the triangle has no area: exactly none in a plane parallel to two axes, none to the
   /// rounding of coordinates as doubles otherwise.
@@ -253,14 +258,16 @@ private:
   double Diagonal = 0.0;
   double CoordinatePrecision = 0.0;
 
-  // The plane: axes U, V within it and the normal N, right-handed, and its distance from the origin.
+  // The plane: axes U, V within it and the normal N, right-handed, and its distance from the
+  // origin.
   std::array<Vector3, 3> PlaneAxes{};
   std::array<int, 3> AxisOrder{ 0, 1, 2 };
   double NormalSign = 1.0;
   double PlaneDistance = 0.0;
 
   std::vector<Vector2> PlanePoints;
-  // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times Scale.
+  // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times
+  // Scale.
   std::vector<Vector3> SpacePoints;
   std::vector<PlaneFrame> PlaneFrames;
   std::vector<SpaceFrame> SpaceFrames;

@@ -17,8 +17,34 @@ namespace homeomorphism
 namespace
 {
 
-/// Places points from @a begin on in a triangle's frame, up to the first that is not for certain in its
-/// interior or higher over the plane than @a highest. Returns the number of that one, @a end if there is none.
+/// Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of
+/// it, and useOther(i) for each of the others.
+template <typename Use, typename UseOther>
+void ForEachRun(const PointBlock& block, Use&& use, UseOther&& useOther)
+{
+  for (int begin = 0; begin < block.Count;)
+  {
+    const TriangleIndex t = block.Triangles[begin];
+    int end = begin + 1;
+    if (t < 0 || block.Corners[begin] >= 0)
+    {
+      useOther(begin);
+    }
+    else
+    {
+      while (end < block.Count && block.Triangles[end] == t && block.Corners[end] < 0)
+      {
+        ++end;
+      }
+      use(begin, end, t);
+    }
+    begin = end;
+  }
+}
+
+/// Places points from @a begin on in a triangle's frame, up to the first that is not for certain in
+/// its interior or higher over the plane than @a highest. Returns the number of that one, @a end if
+/// there is none.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 int FindRun(const PlaneFrame& frame, const double working[3][PointBlock::Size], int begin, int end,
   double highest, PointBlock& block)
@@ -75,8 +101,9 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
 /// Half an ulp of 1.
 constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
 
-/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a triangle
-/// or its neighbour is so thin that the columns are almost parallel; the charts know better.
+/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a
+/// triangle or its neighbour is so thin that the columns are almost parallel; the charts know
+/// better.
 double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
 {
   return (other.Base / shape.Base) * (other.Height / shape.Height);
@@ -103,12 +130,11 @@ double Determinant(const ContourChart&, const ContourChart&, const TriangleShape
 
 } // namespace
 
-std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
-  vtkPolyData* target, const HomeomorphismOptions& options, MeshProblems& problems)
+std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vtkPolyData* target,
+  const HomeomorphismOptions& options, MeshProblems& problems)
 {
   std::unique_ptr<Homeomorphism> result(new Homeomorphism);
-  result->Pair =
-    TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
+  result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
   if (!result->Pair)
   {
     return nullptr;
@@ -144,8 +170,7 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
         carriedByLinear[t] = 1;
         if (problem.FirstCells.size() < MeshProblem::MaximumIds)
         {
-          problem.FirstCells.push_back(
-            FirstPolygon(side == Side::Source ? source : target) + t);
+          problem.FirstCells.push_back(FirstPolygon(side == Side::Source ? source : target) + t);
         }
       }
       problems.push_back(problem);
@@ -157,8 +182,8 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
   }
   for (const Side side : sides)
   {
-    result->Charts[int(side)] = std::make_unique<ChartedTriangulation>(topology,
-      result->Pair->GetEmbedding(side), options.System, options.Center, carriedByLinear);
+    result->Charts[int(side)] = std::make_unique<ChartedTriangulation>(
+      topology, result->Pair->GetEmbedding(side), options.System, options.Center, carriedByLinear);
   }
   return std::shared_ptr<const Homeomorphism>(std::move(result));
 }
@@ -166,8 +191,9 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source,
 double Homeomorphism::GetReach(Side side, double tolerance, double precision) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
-  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself is
-  // measured in a triangle's frame, as doubles, with edges up to three times as long as the coordinates.
+  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself
+  // is measured in a triangle's frame, as doubles, with edges up to three times as long as the
+  // coordinates.
   const double rounding =
     (8.0 * std::max(precision, embedding.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
     embedding.GetLargestCoordinate();
@@ -180,8 +206,8 @@ Location Homeomorphism::Locate(
   return this->Locate(side, point, this->Pair->GetEmbedding(side).ToWorking(point), reach, hint);
 }
 
-Location Homeomorphism::Locate(Side side, const double point[3], const Vector3& working, double reach,
-  TriangleIndex hint) const
+Location Homeomorphism::Locate(
+  Side side, const double point[3], const Vector3& working, double reach, TriangleIndex hint) const
 {
   Location place = this->Pair->GetLocation(side).Find(working, reach, hint);
   if (place.Corner >= 0 &&
@@ -194,8 +220,7 @@ Location Homeomorphism::Locate(Side side, const double point[3], const Vector3& 
   return place;
 }
 
-int Homeomorphism::LocateBlock(
-  Side side, PointBlock& block, double reach, LocationHint& hint) const
+int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const
 {
   const Embedding& embedding = this->Pair->GetEmbedding(side);
   const Triangulation& topology = this->Pair->GetTriangulation();
@@ -225,7 +250,7 @@ int Homeomorphism::LocateBlock(
       }
     }
   }
-  int jumps = 0;
+  int moves = 0;
   int outside = 0;
   int steps = 0;
   TriangleIndex start = hint.Triangle;
@@ -234,7 +259,8 @@ int Homeomorphism::LocateBlock(
     start = scattered && steps == 0 ? seeds[i] : start;
     if (planar && start >= 0 && steps < MaximumSteps)
     {
-      // Points in a row are often in one triangle: as many are tried as there were last time, and more.
+      // Points in a row are often in one triangle: as many are tried as there were last time, and
+      // more.
       const int end =
         scattered ? i + 1 : std::min(block.Count, i + std::max(WidestVector, 2 * hint.RunLength));
       const PlaneFrame& frame = embedding.GetPlaneFrame(start);
@@ -263,7 +289,7 @@ int Homeomorphism::LocateBlock(
       const int edge = least == block.Apex[i]
         ? frame.Apex
         : (least == block.First[i] ? NextCorner(frame.Apex) : PreviousCorner(frame.Apex));
-      jumps += steps == 0 && least < -4.0;
+      moves += steps == 0 ? 1 : 0;
       ++steps;
       const TriangleIndex next = isNear ? topology.GetAcross(start, edge).Triangle : -1;
       if (next >= 0)
@@ -273,8 +299,8 @@ int Homeomorphism::LocateBlock(
       }
     }
     steps = 0;
-    const Location place = this->Locate(side, block.Points[i],
-      { working[0][i], working[1][i], working[2][i] }, reach, start);
+    const Location place = this->Locate(
+      side, block.Points[i], { working[0][i], working[1][i], working[2][i] }, reach, start);
     block.Triangles[i] = place.Triangle;
     block.Corners[i] = place.Corner;
     block.InPlane[0][i] = place.Point.InPlane.x;
@@ -300,7 +326,7 @@ int Homeomorphism::LocateBlock(
   {
     --hint.ScatteredBlocks;
   }
-  else if (2 * jumps > block.Count)
+  else if (2 * moves > block.Count)
   {
     hint.ScatteredBlocks = 16;
   }
@@ -309,136 +335,126 @@ int Homeomorphism::LocateBlock(
 
 void Homeomorphism::MapBlock(Side from, PointBlock& block) const
 {
-  const Embedding& source = this->Pair->GetEmbedding(from);
-  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
   const ChartedTriangulation& charts = this->GetCharts(from);
-  const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
-  // Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of it.
-  const auto forEachRun = [&block](auto&& use, auto&& useOther) {
-    for (int begin = 0; begin < block.Count;)
-    {
-      const TriangleIndex t = block.Triangles[begin];
-      int end = begin + 1;
-      if (t < 0 || block.Corners[begin] >= 0)
-      {
-        useOther(begin);
-      }
-      else
-      {
-        while (end < block.Count && block.Triangles[end] == t && block.Corners[end] < 0)
-        {
-          ++end;
-        }
-        use(begin, end, t);
-      }
-      begin = end;
-    }
-  };
-  const auto byCorner = [&](TriangleIndex t) {
-    std::array<double*, 3> coordinates;
-    const int apex = source.GetApex(t);
-    coordinates[apex] = block.Apex;
-    coordinates[NextCorner(apex)] = block.First;
-    coordinates[PreviousCorner(apex)] = block.Second;
-    return coordinates;
-  };
-  // Of points in contours, their images in the frame of the target's triangle.
-  double images[2][PointBlock::Capacity];
   if (charts.GetSystem() == CoordinateSystem::Smooth)
   {
-    // Memory is slow to answer but takes many questions at a time.
-    forEachRun(
-      [&](int begin, int, TriangleIndex t) {
-        const std::array<double*, 3> l = byCorner(t);
-        const int lesser = l[1][begin] < l[0][begin] ? 1 : 0;
-        const int corner = l[2][begin] < l[lesser][begin] ? 2 : lesser;
-        Prefetch(&charts.GetSmoothStrips(t)[corner]);
-        Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
-        target.PrefetchFrame(t);
-      },
-      [](int) {});
-    SmoothLanes lanes;
-    forEachRun(
-      [&](int begin, int end, TriangleIndex t) {
-        SetSmoothLanes(lanes, begin, end, byCorner(t).data(), charts.GetSmoothStrips(t),
-          otherCharts.GetSmoothStrips(t));
-      },
-      [&](int other) { FillSmoothLanes(lanes, other, other + 1); });
-    MapSmoothLanes(lanes, block.Count);
-    forEachRun(
-      [&](int begin, int end, TriangleIndex t) {
-        GetSmoothLanes(lanes, begin, end, byCorner(t).data());
-      },
-      [](int) {});
+    this->MapByStrips(from, block);
   }
   else if (charts.GetSystem() == CoordinateSystem::Contour)
   {
-    std::array<const ContourChart*, PointBlock::Capacity> froms{};
-    std::array<const ContourChart*, PointBlock::Capacity> tos{};
-    Vector2 points[PointBlock::Capacity];
-    int numbers[PointBlock::Capacity];
-    int count = 0;
-    for (int i = 0; i < block.Count; ++i)
-    {
-      const TriangleIndex t = block.Triangles[i];
-      if (t >= 0 && block.Corners[i] < 0 && charts.GetSystemOf(t) == CoordinateSystem::Contour)
-      {
-        froms[count] = &charts.GetContourChart(t);
-        tos[count] = &otherCharts.GetContourChart(t);
-        points[count] = { block.InPlane[0][i], block.InPlane[1][i] };
-        numbers[count++] = i;
-      }
-    }
-    ContourChart::MapPoints(froms.data(), tos.data(), points, count);
-    for (int n = 0; n < count; ++n)
-    {
-      images[0][numbers[n]] = points[n].x;
-      images[1][numbers[n]] = points[n].y;
-    }
+    this->MapByContours(from, block);
   }
-  forEachRun(
+  ForEachRun(
+    block,
     [&](int begin, int end, TriangleIndex t) {
-      if (charts.GetSystemOf(t) == CoordinateSystem::Contour)
+      if (charts.GetSystemOf(t) != CoordinateSystem::Contour)
       {
-        for (int i = begin; i < end; ++i)
-        {
-          const Vector2 image{ images[0][i], images[1][i] };
-          target.FromWorking(
-            target.FromFrame(t, { image, this->OffsetOfImage(from, block.Offsets[i]) }),
-            block.Points[i]);
-        }
-        return;
-      }
-      const std::array<double*, 3> coordinates = byCorner(t);
-      if (target.IsPlanar())
-      {
-        const PlaneFrame& frame = target.GetPlaneFrame(t);
-        const double side = target.IsColumnar() ? 1.0 : frame.Side;
-        double mapped[3][PointBlock::Size];
-        LeaveFrame(frame, begin, end, coordinates.data(), mapped);
-        for (int i = begin; i < end; ++i)
-        {
-          mapped[2][i] = side * this->OffsetOfImage(from, block.Offsets[i]);
-        }
-        target.FromWorking(mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin,
-          block.Points + begin);
-        return;
-      }
-      for (int i = begin; i < end; ++i)
-      {
-        const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
-        target.FromWorking(
-          target.FromFrame(t, { target.GetShape(t).FromBarycentric(l),
-                                this->OffsetOfImage(from, block.Offsets[i]) }),
-          block.Points[i]);
+        this->LeaveTriangle(from, t, begin, end, block);
       }
     },
-    [&](int other) {
-      if (block.Triangles[other] >= 0)
+    [&](int i) {
+      if (block.Triangles[i] >= 0)
       {
-        this->MapPoint(from, block.GetPlace(other), block.Points[other]);
+        this->MapPoint(from, block.GetPlace(i), block.Points[i]);
       }
     });
+}
+
+/// Takes barycentric coordinates from the source's affine charts to the target's.
+void Homeomorphism::MapByStrips(Side from, PointBlock& block) const
+{
+  const ChartedTriangulation& charts = this->GetCharts(from);
+  const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
+  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const auto ignore = [](int) {};
+  // Memory is slow to answer but takes many questions at a time.
+  ForEachRun(
+    block,
+    [&](int begin, int, TriangleIndex t) {
+      const std::array<double*, 3> l = this->ByCorner(from, t, block);
+      const int lesser = l[1][begin] < l[0][begin] ? 1 : 0;
+      const int corner = l[2][begin] < l[lesser][begin] ? 2 : lesser;
+      Prefetch(&charts.GetSmoothStrips(t)[corner]);
+      Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
+      target.PrefetchFrame(t);
+    },
+    ignore);
+  SmoothLanes lanes;
+  ForEachRun(
+    block,
+    [&](int begin, int end, TriangleIndex t) {
+      SetSmoothLanes(lanes, begin, end, this->ByCorner(from, t, block).data(),
+        charts.GetSmoothStrips(t), otherCharts.GetSmoothStrips(t));
+    },
+    [&](int other) { FillSmoothLanes(lanes, other, other + 1); });
+  MapSmoothLanes(lanes, block.Count);
+  ForEachRun(
+    block,
+    [&](int begin, int end, TriangleIndex t) {
+      GetSmoothLanes(lanes, begin, end, this->ByCorner(from, t, block).data());
+    },
+    ignore);
+}
+
+/// Maps the points whose triangles have contours.
+void Homeomorphism::MapByContours(Side from, PointBlock& block) const
+{
+  const ChartedTriangulation& charts = this->GetCharts(from);
+  const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
+  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  std::array<const ContourChart*, PointBlock::Capacity> froms{};
+  std::array<const ContourChart*, PointBlock::Capacity> tos{};
+  Vector2 points[PointBlock::Capacity];
+  int numbers[PointBlock::Capacity];
+  int count = 0;
+  for (int i = 0; i < block.Count; ++i)
+  {
+    const TriangleIndex t = block.Triangles[i];
+    if (t >= 0 && block.Corners[i] < 0 && charts.GetSystemOf(t) == CoordinateSystem::Contour)
+    {
+      froms[count] = &charts.GetContourChart(t);
+      tos[count] = &otherCharts.GetContourChart(t);
+      points[count] = { block.InPlane[0][i], block.InPlane[1][i] };
+      numbers[count++] = i;
+    }
+  }
+  ContourChart::MapPoints(froms.data(), tos.data(), points, count);
+  for (int n = 0; n < count; ++n)
+  {
+    const int i = numbers[n];
+    const double offset = this->OffsetOfImage(from, block.Offsets[i]);
+    target.FromWorking(
+      target.FromFrame(block.Triangles[i], { points[n], offset }), block.Points[i]);
+  }
+}
+
+/// From barycentric coordinates in the target's affine chart of a triangle to its points.
+void Homeomorphism::LeaveTriangle(
+  Side from, TriangleIndex triangle, int begin, int end, PointBlock& block) const
+{
+  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const std::array<double*, 3> coordinates = this->ByCorner(from, triangle, block);
+  if (!target.IsPlanar())
+  {
+    for (int i = begin; i < end; ++i)
+    {
+      const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
+      const FramePoint point{ target.GetShape(triangle).FromBarycentric(l),
+        this->OffsetOfImage(from, block.Offsets[i]) };
+      target.FromWorking(target.FromFrame(triangle, point), block.Points[i]);
+    }
+    return;
+  }
+  const PlaneFrame& frame = target.GetPlaneFrame(triangle);
+  const double side = target.IsColumnar() ? 1.0 : frame.Side;
+  double mapped[3][PointBlock::Size];
+  LeaveFrame(frame, begin, end, coordinates.data(), mapped);
+  for (int i = begin; i < end; ++i)
+  {
+    mapped[2][i] = side * this->OffsetOfImage(from, block.Offsets[i]);
+  }
+  target.FromWorking(
+    mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin, block.Points + begin);
 }
 
 template <typename Use>
@@ -469,8 +485,8 @@ void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) 
   }
   FramePoint point;
   point.Offset = offset;
-  point.InPlane = this->VisitCharts(from, place.Triangle,
-    [&place](const auto& chart, const auto& other) {
+  point.InPlane =
+    this->VisitCharts(from, place.Triangle, [&place](const auto& chart, const auto& other) {
       return homeomorphism::MapPoint(chart, other, place.Point.InPlane);
     });
   target.FromWorking(target.FromFrame(place.Triangle, point), image);
@@ -489,8 +505,8 @@ Jacobian Homeomorphism::Derive(Side from, TriangleIndex triangle, const Chart& c
 
 Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 {
-  return this->VisitCharts(from, place.Triangle,
-    [this, from, &place](const auto& chart, const auto& other) {
+  return this->VisitCharts(
+    from, place.Triangle, [this, from, &place](const auto& chart, const auto& other) {
       return this->Derive(
         from, place.Triangle, chart, other, chart.ToReference(place.Point.InPlane));
     });
@@ -499,8 +515,8 @@ Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
 Jacobian Homeomorphism::GetJacobian(
   Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
 {
-  return this->VisitCharts(from, triangle,
-    [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
+  return this->VisitCharts(
+    from, triangle, [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
       return this->Derive(from, triangle, chart, other, chart.FromCoordinates(coordinates));
     });
 }
@@ -527,8 +543,8 @@ Jacobian Homeomorphism::FromFrames(
         alongInward * from3[1][column] + to3[2][row] * from3[2][column];
     }
   }
-  jacobian.Determinant = determinant * rescale * rescale *
-    source.GetHandedness(triangle) * target.GetHandedness(triangle);
+  jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
+    target.GetHandedness(triangle);
   return jacobian;
 }
 

@@ -51,8 +51,8 @@ struct LocationHint
   TriangleIndex Triangle = -1;
   /// How many points in a row were in one triangle lately.
   int RunLength = 1;
-  /// For how many more blocks points are taken to be so far from each other that the last one's triangle
-  /// is no help.
+  /// For how many more blocks points are taken to be so far from each other that the last one's
+  /// triangle is no help.
   int ScatteredBlocks = 0;
 };
 
@@ -71,8 +71,8 @@ struct PointBlock
   int Corners[Capacity];
   double InPlane[2][Size];
   double Offsets[Capacity];
-  /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one before it.
-  /// MapBlock uses them up.
+  /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one
+  /// before it. MapBlock uses them up.
   double Apex[Size];
   double First[Size];
   double Second[Size];
@@ -112,15 +112,15 @@ public:
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
   int LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const;
 
-  /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose place has
-  /// no triangle stay.
+  /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose
+  /// place has no triangle stay.
   void MapBlock(Side from, PointBlock& block) const;
 
   /// The derivative at a place; on an edge, the limit from the place's triangle.
   Jacobian GetJacobian(Side from, const Location& place) const;
 
-  /// The derivative at the point of a triangle that has these coordinates; where the coordinate system is
-  /// not differentiable, the limit along the contour that they name.
+  /// The derivative at the point of a triangle that has these coordinates; where the coordinate
+  /// system is not differentiable, the limit along the contour that they name.
   Jacobian GetJacobian(
     Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
@@ -137,15 +137,29 @@ private:
   Location Locate(Side side, const double point[3], const Vector3& working, double reach,
     TriangleIndex hint) const;
 
-  /// The distance of a place's image from the plane of its triangle. Distances from a plane are lengths of
-  /// the input's space, not of either working space.
+  /// The distance of a place's image from the plane of its triangle. Distances from a plane are
+  /// lengths of the input's space, not of either working space.
   double OffsetOfImage(Side from, double offset) const
   {
-    return offset == 0.0
-      ? 0.0
-      : offset / this->Pair->GetEmbedding(from).GetScale() *
-        this->Pair->GetEmbedding(Opposite(from)).GetScale();
+    // Powers of two: nothing is rounded.
+    return offset * this->Pair->GetEmbedding(from).GetInverseScale() *
+      this->Pair->GetEmbedding(Opposite(from)).GetScale();
   }
+
+  /// The block's barycentric coordinates, ordered as a triangle's corners.
+  std::array<double*, 3> ByCorner(Side side, TriangleIndex triangle, PointBlock& block) const
+  {
+    std::array<double*, 3> coordinates;
+    const int apex = this->Pair->GetEmbedding(side).GetApex(triangle);
+    coordinates[apex] = block.Apex;
+    coordinates[NextCorner(apex)] = block.First;
+    coordinates[PreviousCorner(apex)] = block.Second;
+    return coordinates;
+  }
+  void MapByStrips(Side from, PointBlock& block) const;
+  void MapByContours(Side from, PointBlock& block) const;
+  void LeaveTriangle(
+    Side from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
 
   template <typename Use>
   auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;

@@ -25,8 +25,8 @@ Vector3 InAxes(const Vector3& v, const std::array<Vector3, 3>& axes)
   return result;
 }
 
-/// The noise of a function's values: what is left of them in fourth differences over a step so small
-/// that nothing else can be.
+/// The noise of a function's values: what is left of them in fourth differences over a step so
+/// small that nothing else can be.
 template <typename Function>
 double Noise(Function&& function, double reach)
 {
@@ -52,9 +52,9 @@ double Noise(Function&& function, double reach)
   return noise;
 }
 
-/// What must be zero if the derivatives of this order in the directions Inward, given in the sides' own
-/// axes, are those of one smooth map. The two directions are opposite, so the first derivatives are as
-/// well, and second derivatives equal; a side's second axis is opposite to the other's.
+/// What must be zero if the derivatives of this order in the directions Inward, given in the sides'
+/// own axes, are those of one smooth map. The two directions are opposite, so the first derivatives
+/// are as well, and second derivatives equal; a side's second axis is opposite to the other's.
 Vector3 Mismatch(const std::array<Vector3, 2>& derivatives, int order)
 {
   const double sign = order == 1 ? 1.0 : -1.0;
@@ -75,21 +75,20 @@ JacobianJump Describe(const std::array<Vector3, 2>& derivatives, int order, doub
   const Vector3 other{ sign * derivatives[1][0], -sign * derivatives[1][1],
     sign * derivatives[1][2] };
   const Vector3& one = derivatives[0];
-  const Vector3 cross{ one[1] * other[2] - one[2] * other[1],
-    one[2] * other[0] - one[0] * other[2], one[0] * other[1] - one[1] * other[0] };
-  jump.Angle = std::atan2(
-    Length(cross), one[0] * other[0] + one[1] * other[1] + one[2] * other[2]);
+  const Vector3 cross{ one[1] * other[2] - one[2] * other[1], one[2] * other[0] - one[0] * other[2],
+    one[0] * other[1] - one[1] * other[0] };
+  jump.Angle = std::atan2(Length(cross), one[0] * other[0] + one[1] * other[1] + one[2] * other[2]);
   const double longer = std::max(Length(one), Length(other));
-  jump.Stretch = (longer - std::min(Length(one), Length(other))) /
-    std::min(Length(one), Length(other));
+  jump.Stretch =
+    (longer - std::min(Length(one), Length(other))) / std::min(Length(one), Length(other));
   return jump;
 }
 
-/// Slope of log(difference) against log(step), where the difference stands out from rounding: the median
-/// over neighbouring steps. @a any has the steps, the others take the number of one.
+/// Slope of log(difference) against log(step), where the difference stands out from rounding: the
+/// median over neighbouring steps. @a any has the steps, the others take the number of one.
 template <typename DifferenceAt, typename RoundingAt>
-double ObservedOrder(const OneSidedDerivative& any, DifferenceAt&& differenceAt,
-  RoundingAt&& roundingAt)
+double ObservedOrder(
+  const OneSidedDerivative& any, DifferenceAt&& differenceAt, RoundingAt&& roundingAt)
 {
   std::vector<double> slopes;
   double last = 0.0;
@@ -111,20 +110,21 @@ double ObservedOrder(const OneSidedDerivative& any, DifferenceAt&& differenceAt,
     return JacobianJump::None;
   }
   // The last few: closest to the limit.
-  const auto begin = slopes.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, slopes.size()));
+  const auto begin =
+    slopes.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, slopes.size()));
   const auto middle = begin + (slopes.end() - begin) / 2;
   std::nth_element(begin, middle, slopes.end());
   return *middle;
 }
 
-/// @a magnification is how much larger the jump is relative to the derivative that jumps than to the
-/// whole Jacobian: much, where the map stretches along the line far more than across it.
+/// @a magnification is how much larger the jump is relative to the derivative that jumps than to
+/// the whole Jacobian: much, where the map stretches along the line far more than across it.
 JumpVerdict Conclude(const JacobianJump& jump, double magnification, double resolution)
 {
   const double size = magnification * jump.Jump;
   const double error = magnification * jump.Error;
-  // A jump that shrinks with the step may be that of another border of the map, closer than the steps
-  // can tell, unless the extrapolation leaves no doubt.
+  // A jump that shrinks with the step may be that of another border of the map, closer than the
+  // steps can tell, unless the extrapolation leaves no doubt.
   if (size > 2.0 * error && size > resolution &&
     (std::abs(jump.Order) < 0.1 || size > 1000.0 * error))
   {
@@ -164,8 +164,8 @@ public:
     const Vector3 start = (*this)(0.0);
     const Vector3 far = (*this)(reach);
     const double slope = Length(Difference(far, start)) / reach;
-    const double least = 0.5 * ulp *
-      (std::max(Length(far), Length(start)) + slope * (Length(this->Start) + reach));
+    const double least =
+      0.5 * ulp * (std::max(Length(far), Length(start)) + slope * (Length(this->Start) + reach));
     return std::max(least, Noise(*this, reach));
   }
 
@@ -183,8 +183,8 @@ public:
   explicit DeviationFromLinear(const Star& star)
     : Rays(star.Rays.size())
   {
-    // The linear maps' derivatives span a plane in the space of all derivatives; these are orthonormal
-    // axes of it.
+    // The linear maps' derivatives span a plane in the space of all derivatives; these are
+    // orthonormal axes of it.
     for (const Star::Ray& ray : star.Rays)
     {
       this->Axes[0].push_back(ray.InPlane.x);
@@ -222,8 +222,8 @@ public:
     double largest = 0.0;
     for (std::size_t i = 0; i < this->Rays; ++i)
     {
-      const double deviation = Length(Sum(Sum(derivativeOf(i), -this->Axes[0][i], parts[0]),
-        -this->Axes[1][i], parts[1]));
+      const double deviation =
+        Length(Sum(Sum(derivativeOf(i), -this->Axes[0][i], parts[0]), -this->Axes[1][i], parts[1]));
       largest = deviation <= largest ? largest : deviation;
     }
     return largest;
@@ -287,8 +287,7 @@ void FindImageAxes(const MapUnderTest& map, LineCrossing& crossing)
   const FunctionOnRay across(map, crossing.Point, crossing.Inward[0]);
   const Vector3 start = along(0.0);
   const Vector3 tangent = Unit(Difference(along(small * crossing.TangentReach), start));
-  const Vector3 inward =
-    UnitAcross(start, tangent, across(small * crossing.Reach[0]));
+  const Vector3 inward = UnitAcross(start, tangent, across(small * crossing.Reach[0]));
   const Vector3 normal = Cross3(tangent, inward);
   crossing.ImageAxes[0] = { tangent, inward, normal };
   crossing.ImageAxes[1] = { tangent, Scaled(inward, -1.0), normal };
@@ -315,8 +314,8 @@ JacobianJump EstimateJump(
   const std::array<Estimated, 2> first{ estimateSide(0), estimateSide(1) };
   const auto estimateTangent = [&](double sign) {
     const FunctionOnRay onRay(map, crossing.Point, Scaled(crossing.Tangent, sign));
-    return estimate(onRay, crossing.TangentReach,
-      std::max(first[0].Rounding, first[1].Rounding), OneSidedDerivative::HalvedSteps);
+    return estimate(onRay, crossing.TangentReach, std::max(first[0].Rounding, first[1].Rounding),
+      OneSidedDerivative::HalvedSteps);
   };
   const std::array<Estimated, 2> tangents{ estimateTangent(1.0), estimateTangent(-1.0) };
   double norm =
@@ -342,27 +341,26 @@ JacobianJump EstimateJump(
                                  InAxes(sides[1].Limit.Value, crossing.ImageAxes[1]) },
     order, norm);
   jump.Error = (sides[0].Limit.Error + sides[1].Limit.Error) / norm + jump.Jump * normError;
-  jump.Order = ObservedOrder(sides[0].Quotients,
+  jump.Order = ObservedOrder(
+    sides[0].Quotients,
     [&](int i) {
       return Length(Mismatch({ InAxes(sides[0].Quotients.GetQuotient(i), crossing.ImageAxes[0]),
                                InAxes(sides[1].Quotients.GetQuotient(i), crossing.ImageAxes[1]) },
         order));
     },
-    [&](int i) {
-      return sides[0].Quotients.GetRounding(i) + sides[1].Quotients.GetRounding(i);
-    });
+    [&](int i) { return sides[0].Quotients.GetRounding(i) + sides[1].Quotients.GetRounding(i); });
   const double across = 0.5 * (Length(first[0].Limit.Value) + Length(first[1].Limit.Value));
   jump.Verdict = Conclude(jump, order == 1 ? norm / across : 1.0, resolution);
   return jump;
 }
 
-JacobianJump CompareDerivatives(const LineCrossing& crossing, const std::array<Vector3, 2>& inward,
-  const Vector3& along)
+JacobianJump CompareDerivatives(
+  const LineCrossing& crossing, const std::array<Vector3, 2>& inward, const Vector3& along)
 {
   const double norm = std::hypot(Length(along), 0.5 * (Length(inward[0]) + Length(inward[1])));
-  return Describe({ InAxes(inward[0], crossing.ImageAxes[0]),
-                    InAxes(inward[1], crossing.ImageAxes[1]) },
-    1, norm);
+  return Describe(
+    { InAxes(inward[0], crossing.ImageAxes[0]), InAxes(inward[1], crossing.ImageAxes[1]) }, 1,
+    norm);
 }
 
 JacobianJump EstimateJump(const MapUnderTest& map, const Star& star, double resolution)
@@ -382,13 +380,13 @@ JacobianJump EstimateJump(const MapUnderTest& map, const Star& star, double reso
   jump.Jump = deviation.Largest(limitOf) / norm;
   jump.Error =
     deviation.LargestError([&limits](std::size_t ray) { return limits[ray].Error; }) / norm;
-  jump.Order = ObservedOrder(quotients.front(),
+  jump.Order = ObservedOrder(
+    quotients.front(),
     [&](int i) {
       return deviation.Largest([&](std::size_t ray) { return quotients[ray].GetQuotient(i); });
     },
     [&](int i) {
-      return deviation.LargestError(
-        [&](std::size_t ray) { return quotients[ray].GetRounding(i); });
+      return deviation.LargestError([&](std::size_t ray) { return quotients[ray].GetRounding(i); });
     });
   jump.Verdict = Conclude(jump, 1.0, resolution);
   return jump;

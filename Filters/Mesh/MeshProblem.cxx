@@ -32,9 +32,10 @@ const char* Fault(MeshProblem::Kind kind, bool one)
       return one ? "lies at an edge that has more than two triangles"
                  : "lie at edges that have more than two triangles";
     case Kind::NotOrientable:
-      return one ? "cannot be wound consistently with its neighbours (the surface has one side only)"
-                 : "cannot be wound consistently with their neighbours (the surface has one side "
-                   "only)";
+      return one
+        ? "cannot be wound consistently with its neighbours (the surface has one side only)"
+        : "cannot be wound consistently with their neighbours (the surface has one side "
+          "only)";
     case Kind::Flipped:
       return one ? "is flipped between source and target relative to the rest"
                  : "are flipped between source and target relative to the rest";
@@ -61,12 +62,14 @@ const char* Advice(MeshProblem::Kind kind)
     case Kind::TooManyTriangles:
       return "Split the meshes.";
     case Kind::NotTriangles:
-      return "Triangulate the source (vtkTriangleFilter) and give the target the source's cells, so "
+      return "Triangulate the source (vtkTriangleFilter) and give the target the source's cells, "
+             "so "
              "that both are cut along the same diagonals.";
     case Kind::BadConnectivity:
       return "The mesh is corrupt: read or build it again.";
     case Kind::ConnectivityDiffers:
-      return "Give the target the source's cells, with its own point coordinates in the same order.";
+      return "Give the target the source's cells, with its own point coordinates in the same "
+             "order.";
     case Kind::RepeatedCorner:
     case Kind::NotFinite:
     case Kind::NoArea:
@@ -77,7 +80,8 @@ const char* Advice(MeshProblem::Kind kind)
     case Kind::NotOrientable:
       return "Cut the surface open along a line of edges in both meshes.";
     case Kind::Flipped:
-      return "Move their points so that all triangles keep their orientation (or all are mirrored), "
+      return "Move their points so that all triangles keep their orientation (or all are "
+             "mirrored), "
              "or turn MaskInvalidTriangles on to leave them out.";
     case Kind::Discordant:
       return "Use the Smooth system, which takes any triangle, or let the Linear system carry them "
@@ -133,9 +137,8 @@ std::string MeshProblem::Message() const
 
 bool IsRefused(const MeshProblems& problems)
 {
-  return std::any_of(problems.begin(), problems.end(), [](const MeshProblem& problem) {
-    return problem.Result == MeshProblem::Outcome::Refused;
-  });
+  return std::any_of(problems.begin(), problems.end(),
+    [](const MeshProblem& problem) { return problem.Result == MeshProblem::Outcome::Refused; });
 }
 
 } // namespace homeomorphism

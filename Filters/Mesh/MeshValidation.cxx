@@ -124,8 +124,8 @@ void ReadPolygons(OffsetArray* offsets, OffsetArray* connectivity, vtkIdType num
 bool InteriorsMeet(const Embedding& geometry, const Triangulation::Corners& first,
   const Triangulation::Corners& second)
 {
-  const auto separates = [&geometry](const Triangulation::Corners& a,
-                           const Triangulation::Corners& b) {
+  const auto separates = [&geometry](
+                           const Triangulation::Corners& a, const Triangulation::Corners& b) {
     const int side = geometry.GetOrientation(a);
     for (int k = 0; k < 3; ++k)
     {
@@ -340,10 +340,10 @@ TriangleList FindFlipped(
 TriangleList FindOverlapping(
   const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location)
 {
-  // Without folds, how often a point of the plane is covered changes only across boundary edges. Beside
-  // a region that is covered twice there then is a boundary edge whose triangle is on the side that is
-  // covered twice: there it overlaps a triangle that touches the edge. So only what is near boundary
-  // edges has to be compared.
+  // Without folds, how often a point of the plane is covered changes only across boundary edges.
+  // Beside a region that is covered twice there then is a boundary edge whose triangle is on the
+  // side that is covered twice: there it overlaps a triangle that touches the edge. So only what is
+  // near boundary edges has to be compared.
   const bool folded = !FindTriangles(triangulation, [&](TriangleIndex t) {
     return HasFold(triangulation, embedding, t);
   }).empty();

@@ -3,8 +3,8 @@
 
 /// @file MeshValidation.h
 /// Everything for which a mesh or a pair of meshes is refused (or its triangles are masked). Each
-/// function finds one kind of defect and says which triangles have it; TriangulationPair decides what
-/// becomes of them.
+/// function finds one kind of defect and says which triangles have it; TriangulationPair decides
+/// what becomes of them.
 
 #ifndef homeomorphism_MeshValidation_h
 #define homeomorphism_MeshValidation_h
@@ -57,9 +57,9 @@ TriangleList FindNoArea(const Triangulation& triangulation, const Embedding& emb
 TriangleList FindFlipped(
   const Triangulation& triangulation, const Embedding& source, const Embedding& target);
 
-/// Triangles of a planar mesh whose interior meets another's, by exact predicates. @a triangulation's
-/// adjacency and @a location must know which triangles are masked. Nearly linear in the number of
-/// triangles as long as there are none.
+/// Triangles of a planar mesh whose interior meets another's, by exact predicates. @a
+/// triangulation's adjacency and @a location must know which triangles are masked. Nearly linear in
+/// the number of triangles as long as there are none.
 TriangleList FindOverlapping(
   const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location);
 

@@ -25,8 +25,8 @@ Vector2 NearestInTriangle(const TriangleShape& shape, const Vector2& point)
 }
 
 /// Whether a point is in a triangle of the plane: 1 inside, 0 on its boundary, -1 outside.
-int Containment(const Embedding& geometry, const Triangulation::Corners& corners,
-  const Vector2& point)
+int Containment(
+  const Embedding& geometry, const Triangulation::Corners& corners, const Vector2& point)
 {
   const Vector2& a = geometry.GetPlanePoint(corners[0]);
   const Vector2& b = geometry.GetPlanePoint(corners[1]);
@@ -51,9 +51,8 @@ struct Nearest
 
   void Offer(TriangleIndex triangle, const FramePoint& place, double distance)
   {
-    const bool better = this->Found.Triangle < 0
-      ? distance <= this->Distance
-      : distance < this->Distance ||
+    const bool better = this->Found.Triangle < 0 ? distance <= this->Distance
+                                                 : distance < this->Distance ||
         (distance == this->Distance && triangle < this->Found.Triangle);
     if (better)
     {
@@ -147,15 +146,13 @@ void PointLocation::PlantSeeds(const std::vector<TriangleIndex>& triangles)
   }
 }
 
-Location PointLocation::Find(
-  const Vector3& working, double tolerance, TriangleIndex hint) const
+Location PointLocation::Find(const Vector3& working, double tolerance, TriangleIndex hint) const
 {
   if (!(std::isfinite(working[0]) && std::isfinite(working[1]) && std::isfinite(working[2])))
   {
     return {};
   }
-  if (!this->Geometry.IsColumnar() && this->Geometry.IsPlanar() &&
-    std::abs(working[2]) > tolerance)
+  if (!this->Geometry.IsColumnar() && this->Geometry.IsPlanar() && std::abs(working[2]) > tolerance)
   {
     return {};
   }
@@ -191,8 +188,8 @@ Location PointLocation::Place(TriangleIndex triangle, const Vector3& working) co
     this->FindCorner(triangle, working) };
 }
 
-/// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for certain in
-/// the triangle's interior, @a location has its place.
+/// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for
+/// certain in the triangle's interior, @a location has its place.
 TriangleIndex PointLocation::Walk(
   const Vector2& point, TriangleIndex start, Location& location) const
 {
@@ -251,10 +248,9 @@ TriangleIndex PointLocation::Walk(
         {
           return t;
         }
-        // Within an edge of two triangles there is no third. At a vertex or on the boundary there may be
-        // more, also such that share no point of the mesh with this one.
-        const TriangleIndex other =
-          edges == 1 ? this->Topology.GetAcross(t, onEdge).Triangle : -1;
+        // Within an edge of two triangles there is no third. At a vertex or on the boundary there
+        // may be more, also such that share no point of the mesh with this one.
+        const TriangleIndex other = edges == 1 ? this->Topology.GetAcross(t, onEdge).Triangle : -1;
         return other >= 0 ? std::min(t, other) : -1;
       }
     }

@@ -55,12 +55,12 @@ struct PlaneRelation
     double least = this->Apex < this->First ? this->Apex : this->First;
     least = least < this->Second ? least : this->Second;
     this->Least = least * frame.Height;
-    // With u half an ulp of 1, the error of y is at most 5 u |d| (a rounded difference, a tangent rounded
-    // twice, a product, a sum), hence that of the apex' coordinate, with the height's 8 u, 13 u |d| / height;
-    // that of the second at most 30 u |d| / height (x, the apex' coordinate, and 8 u base of the apex'
-    // place), since base > height; that of the first the sum, |d| being at least the distance of the
-    // opposite edge, which is more than the height, where it is zero. Products near the least normal
-    // number are not rounded relatively.
+    // With u half an ulp of 1, the error of y is at most 5 u |d| (a rounded difference, a tangent
+    // rounded twice, a product, a sum), hence that of the apex' coordinate, with the height's 8 u,
+    // 13 u |d| / height; that of the second at most 30 u |d| / height (x, the apex' coordinate, and
+    // 8 u base of the apex' place), since base > height; that of the first the sum, |d| being at
+    // least the distance of the opposite edge, which is more than the height, where it is zero.
+    // Products near the least normal number are not rounded relatively.
     constexpr double u = 0.5 * std::numeric_limits<double>::epsilon();
     this->Margin = 64.0 * u * (std::abs(d.x) + std::abs(d.y)) + 1e-290;
   }
@@ -69,17 +69,17 @@ struct PlaneRelation
   bool IsOutside() const { return this->Least < -this->Margin; }
 };
 
-/// Finds the triangle of a point. The answer is a function of the point alone: it depends neither on
-/// the hint nor on earlier points or other threads.
+/// Finds the triangle of a point. The answer is a function of the point alone: it depends neither
+/// on the hint nor on earlier points or other threads.
 ///
 /// In a plane every point of the closed domain is found, edges and vertices included, by exact
 /// predicates; of several triangles that share the point the one with the lowest number counts. In
-/// 3-space the nearest triangle counts, the lowest number of equally near ones. A point outside by no
-/// more than the tolerance is taken to the nearest point of the domain.
+/// 3-space the nearest triangle counts, the lowest number of equally near ones. A point outside by
+/// no more than the tolerance is taken to the nearest point of the domain.
 ///
-/// In a plane the search walks from triangle to adjacent triangle, from the hint if that is near, else
-/// from a triangle that a grid has near the point. A walk that comes to the boundary or takes too long
-/// gives way to a search of all boxes, which also answers whether a point is outside.
+/// In a plane the search walks from triangle to adjacent triangle, from the hint if that is near,
+/// else from a triangle that a grid has near the point. A walk that comes to the boundary or takes
+/// too long gives way to a search of all boxes, which also answers whether a point is outside.
 class PointLocation
 {
 public:
@@ -87,7 +87,8 @@ public:
   PointLocation(const Triangulation& triangulation, const Embedding& embedding);
 
   /// @a working is the point in the embedding's working coordinates, @a tolerance a distance in
-  /// them, @a hint the triangle where the point probably is, or -1. The embedding must have its frames.
+  /// them, @a hint the triangle where the point probably is, or -1. The embedding must have its
+  /// frames.
   Location Find(const Vector3& working, double tolerance, TriangleIndex hint) const;
 
   /// A triangle of a planar mesh that is probably near a point, or -1.
@@ -102,8 +103,8 @@ public:
       : -1;
   }
 
-  /// Calls visit(triangle) for the triangles of a planar domain whose boxes may meet a box, until it
-  /// returns false.
+  /// Calls visit(triangle) for the triangles of a planar domain whose boxes may meet a box, until
+  /// it returns false.
   template <typename Visit>
   void VisitNear(const Box<2>& box, Visit&& visit) const
   {

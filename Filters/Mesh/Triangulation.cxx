@@ -62,8 +62,8 @@ std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints
   for (vtkIdType i = 0; i < numberOfPoints; ++i)
   {
     const std::int64_t end = bucketEnd[i];
-    std::sort(halfEdges.begin() + begin, halfEdges.begin() + end,
-      [](const HalfEdge& a, const HalfEdge& b) {
+    std::sort(
+      halfEdges.begin() + begin, halfEdges.begin() + end, [](const HalfEdge& a, const HalfEdge& b) {
         return a.GreaterPoint != b.GreaterPoint ? a.GreaterPoint < b.GreaterPoint
                                                 : a.TriangleAndEdge < b.TriangleAndEdge;
       });
@@ -142,8 +142,7 @@ std::vector<TriangleIndex> Triangulation::FindNotOrientable() const
     }
   }
   std::sort(contradictory.begin(), contradictory.end());
-  contradictory.erase(
-    std::unique(contradictory.begin(), contradictory.end()), contradictory.end());
+  contradictory.erase(std::unique(contradictory.begin(), contradictory.end()), contradictory.end());
   return contradictory;
 }
 

@@ -5,8 +5,8 @@
 
 #include "MeshValidation.h"
 
-#include "vtkPoints.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace homeomorphism
 class TriangulationPair::Builder
 {
 public:
-  Builder(vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles,
-    MeshProblems& problems)
+  Builder(
+    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshProblems& problems)
     : Meshes{ source, target }
     , Names{ target ? "source" : "triangulation", "target" }
     , MaskInvalidTriangles(maskInvalidTriangles)
@@ -69,8 +69,8 @@ public:
 private:
   /// Masks or refuses triangles. Returns whether there were any.
   /// Of a pair's defects, the ids are those of the source's cells.
-  bool Exclude(MeshProblem::Kind kind, int side, const std::string& where,
-    const TriangleList& triangles)
+  bool Exclude(
+    MeshProblem::Kind kind, int side, const std::string& where, const TriangleList& triangles)
   {
     if (triangles.empty())
     {
@@ -109,8 +109,7 @@ private:
         ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
       if (!IsRefused(this->Problems))
       {
-        CompareConnectivity(
-          this->Meshes[0], this->Meshes[1], triangles, others, this->Problems);
+        CompareConnectivity(this->Meshes[0], this->Meshes[1], triangles, others, this->Problems);
       }
     }
     if (IsRefused(this->Problems))

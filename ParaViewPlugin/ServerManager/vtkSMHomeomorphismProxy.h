@@ -5,9 +5,10 @@
  * @brief   a filter whose counts are those of all processes
  *
  * The proxy of a filter of this project that has a method ReduceStatistics. Before its information
- * properties are fetched, from the server's first process, all processes of the server are told to call
- * that method. They wait for each other there and nowhere else: whether one has no data, has not executed
- * or had an error makes no difference. The information properties are fetched after every update.
+ * properties are fetched, from the server's first process, all processes of the server are told to
+ * call that method. They wait for each other there and nowhere else: whether one has no data, has
+ * not executed or had an error makes no difference. The information properties are fetched after
+ * every update.
  */
 
 #ifndef vtkSMHomeomorphismProxy_h

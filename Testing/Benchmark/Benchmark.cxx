@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Benchmark.cxx
-/// Times one row at a time, as benchmark.py asks for them, so that rows of this program and of Python
-/// take turns.
+/// Times one row at a time, as benchmark.py asks for them, so that rows of this program and of
+/// Python take turns.
 ///
 ///   HomeomorphismBenchmark FOLDER
 ///
-/// reads the workload in a folder (see Workload.h) and then commands from standard input, each answered
-/// with one line:
+/// reads the workload in a folder (see Workload.h) and then commands from standard input, each
+/// answered with one line:
 ///
 /// - `rows`: the names of all rows;
-/// - `run ROW POINTS THREADS`: seconds, of the clock and of processors, that the row took for the points
+/// - `run ROW POINTS THREADS`: seconds, of the clock and of processors, that the row took for the
+/// points
 ///   in points-POINTS.f64;
-/// - `save FILE`: writes the result of the last run as it is in memory, answers with its size in bytes;
+/// - `save FILE`: writes the result of the last run as it is in memory, answers with its size in
+/// bytes;
 /// - `roundtrip ROW BACK POINTS`: the largest difference of a coordinate after the two rows;
 /// - `memory ROW`: bytes that a row "construct/..." allocates and keeps, and the peak meanwhile.
 
@@ -205,7 +207,8 @@ private:
     images->SetDataTypeToDouble();
     images->SetNumberOfPoints(task.In->GetNumberOfPoints());
     vtkNew<vtkPoints> preimages;
-    preimages->DeepCopy(images);
+    preimages->SetDataTypeToDouble();
+    preimages->SetNumberOfPoints(task.In->GetNumberOfPoints());
     images->GetData()->DeepCopy(this->Result);
     Task returning{ images, preimages, 1, nullptr };
     this->Run(back, returning);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file HomeomorphismRows.cxx
-/// This module's ways of mapping points: the transform's batch call, the filter, and point by point in
-/// plain arrays.
+/// This module's ways of mapping points: the transform's batch call, the filter, and point by point
+/// in plain arrays.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -67,8 +67,7 @@ void MapPointByPoint(const Homeomorphism& map, Side from, Task& task)
   const double* in = Coordinates(task.In);
   double* out = Coordinates(task.Out);
   const vtkIdType count = task.In->GetNumberOfPoints();
-  const double reach =
-    map.GetReach(from, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
+  const double reach = map.GetReach(from, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
   TriangleIndex hint = -1;
   for (vtkIdType i = 0; i < count; ++i)
   {
@@ -128,7 +127,8 @@ void AddFilter(const Workload& workload, int system, Rows& rows)
     };
     row.Run = [filter](Task&) { filter->Update(); };
     row.After = [filter](Task& task) {
-      task.Result = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPoints()->GetData();
+      task.Result =
+        vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPoints()->GetData();
     };
   }
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ImageRows.cxx
-/// Warping an image: each pixel of the output, over the source mesh, shows the place of the input that it
-/// is mapped to, over the target mesh.
+/// Warping an image: each pixel of the output, over the source mesh, shows the place of the input
+/// that it is mapped to, over the target mesh.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -44,9 +44,8 @@ void AddReslice(
     reslice->Modified();
   };
   row.Run = [reslice](Task&) { reslice->Update(); };
-  row.After = [reslice](Task& task) {
-    task.Result = reslice->GetOutput()->GetPointData()->GetScalars();
-  };
+  row.After = [reslice](
+                Task& task) { task.Result = reslice->GetOutput()->GetPointData()->GetScalars(); };
 }
 
 vtkSmartPointer<vtkThinPlateSplineTransform> MakeSpline(const Workload& workload)
@@ -55,8 +54,8 @@ vtkSmartPointer<vtkThinPlateSplineTransform> MakeSpline(const Workload& workload
   std::iota(ids.begin(), ids.end(), 0);
   std::shuffle(ids.begin(), ids.end(), std::mt19937_64(1));
   vtkNew<vtkPoints> landmarks[2];
-  for (vtkIdType i = 0; i < std::min<vtkIdType>(numberOfLandmarks, static_cast<vtkIdType>(ids.size()));
-       ++i)
+  for (vtkIdType i = 0;
+       i < std::min<vtkIdType>(numberOfLandmarks, static_cast<vtkIdType>(ids.size())); ++i)
   {
     landmarks[0]->InsertNextPoint(workload.Source->GetPoint(ids[static_cast<std::size_t>(i)]));
     landmarks[1]->InsertNextPoint(workload.Target->GetPoint(ids[static_cast<std::size_t>(i)]));

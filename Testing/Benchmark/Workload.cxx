@@ -26,7 +26,8 @@ template <typename Array>
 vtkSmartPointer<Array> ReadArray(const std::filesystem::path& path)
 {
   using Value = typename Array::ValueType;
-  const auto tuples = static_cast<vtkIdType>(std::filesystem::file_size(path) / (3 * sizeof(Value)));
+  const auto tuples =
+    static_cast<vtkIdType>(std::filesystem::file_size(path) / (3 * sizeof(Value)));
   auto array = vtkSmartPointer<Array>::New();
   array->SetNumberOfComponents(3);
   array->SetNumberOfTuples(tuples);

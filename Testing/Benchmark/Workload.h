@@ -19,8 +19,9 @@
 
 struct Workload
 {
-  /// Reads the files of a folder: source.f64 and target.f64 (three doubles a point), triangles.i64 (three
-  /// point ids a triangle), any number of points-NAME.f64, and image.u8 (square, RGB) if there is one.
+  /// Reads the files of a folder: source.f64 and target.f64 (three doubles a point), triangles.i64
+  /// (three point ids a triangle), any number of points-NAME.f64, and image.u8 (square, RGB) if
+  /// there is one.
   explicit Workload(const std::string& folder);
 
   /// The mesh that is mapped from and the one that is mapped to.

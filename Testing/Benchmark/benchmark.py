@@ -217,6 +217,8 @@ def main():
             getattr(benchmark, part)()
     (arguments.folder / "benchmark.json").write_text(json.dumps(benchmark.results))
     report.write(benchmark.results, arguments.folder)
+    if not all(check["good"] for check in benchmark.results["checks"]):
+        raise SystemExit("Some rows do not compute the same: see the end of the report.")
 
 
 if __name__ == "__main__":

@@ -105,7 +105,8 @@ def tables(results):
     lines = ["# Benchmark", ""]
     if results["quick"]:
         lines += ["**A quick run: smaller, repeated less often, no numbers to rely on.**", ""]
-    lines += ["Medians of runs that took turns. Ratios are what counts; nanoseconds are those of one machine.", ""]
+    lines += ["Medians of runs that took turns. Ratios are what counts; nanoseconds are those of one machine. "
+              "Processors is how many a row kept busy: less than its threads means that others took them.", ""]
     lines += ["| what was to be reached | measured | limit | reached |", "|---|---:|---:|---|"]
     for words, value, relation, limit, good in goals(r):
         lines.append(f"| {words} | {number(value)} | {relation} {number(limit)} | {'yes' if good else '**no**'} |")
@@ -116,12 +117,14 @@ def tables(results):
             continue
         triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
         lines += [f"## {title.format(triangles=f'{triangles:,}').capitalize()}", ""]
-        lines += ["| | threads | points | ns a point | fastest and slowest run | runs |", "|---|---:|---:|---:|---:|---:|"]
+        lines += ["| | threads | points | ns a point | fastest and slowest run | runs | processors |",
+                  "|---|---:|---:|---:|---:|---:|---:|"]
         rows = [(statistics.median(r.times[part, m["name"], m["threads"]]), m) for m in measurements]
         for median, m in sorted(rows, key=lambda row: row[0]):
             times = r.times[part, m["name"], m["threads"]]
             lines.append(f"| {m['name']} | {m['threads']} | {m['points']:,} | {number(median)} | "
-                         f"{number(min(times))} to {number(max(times))} | {len(times)} |")
+                         f"{number(min(times))} to {number(max(times))} | {len(times)} | "
+                         f"{sum(m['processors']) / sum(m['seconds']):.2f} |")
         lines.append("")
     if r.construction:
         lines += ["## Getting ready", "", "Nanoseconds a triangle pair, one thread; bytes a triangle pair that are kept, "
@@ -141,7 +144,7 @@ def tables(results):
 
 
 PEERS = (("LinearNDInterpolator", "SciPy LinearND (C⁰)"), ("tinshift", "PROJ tinshift (C⁰)"),
-         ("FindCell", "VTK FindCell + affine (C⁰)"), ("vtkProbeFilter", "VTK probe filter (C⁰)"),
+         ("FindCell", "VTK FindCell alone"), ("vtkProbeFilter", "VTK probe filter (C⁰)"),
          ("CloughTocher2DInterpolator", "SciPy CloughTocher (C¹, no inverse)"),
          ("PiecewiseAffineTransform", "scikit-image piecewise affine (C⁰)"),
          ("vtkThinPlateSplineTransform", "VTK thin plate spline (C¹)"))
@@ -181,7 +184,7 @@ def plot(results, path):
         axis.set_xlim(1.0, 20.0 * max(b[0] for b in bars))
         triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
         axis.set_title(PARTS[part].format(triangles=f"{triangles:,}").replace(", fewer than triangles", ""), fontsize=10)
-        axis.set_xlabel("nanoseconds a point, forward, one thread (logarithmic)", fontsize=9)
+        axis.set_xlabel("nanoseconds a point, forward, one thread (log scale)", fontsize=9)
         for side in ("top", "right"):
             axis.spines[side].set_visible(False)
         axis.grid(axis="x", color="#eeeeee")

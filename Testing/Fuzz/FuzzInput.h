@@ -30,7 +30,8 @@ public:
   /// One in @a count, and never where the bytes have ended.
   bool Chance(int count) { return this->Byte() % count == count - 1; }
 
-  /// A coordinate: mostly of a coarse grid, where triangles meet and coincide, sometimes any double.
+  /// A coordinate: mostly of a coarse grid, where triangles meet and coincide, sometimes any
+  /// double.
   double Number()
   {
     const std::uint8_t code = this->Byte();

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Makes meshes and data of any bytes and sends points through all classes. Whatever the bytes, nothing may
-// crash, hang or say that it mapped what it did not: a point inside has an image, and that of the inverse.
-// With FUZZ_SHOW in the environment, prints the meshes that the bytes stand for.
+// Makes meshes and data of any bytes and sends points through all classes. Whatever the bytes,
+// nothing may crash, hang or say that it mapped what it did not: a point inside has an image, and
+// that of the inverse. With FUZZ_SHOW in the environment, prints the meshes that the bytes stand
+// for.
 
 #include "FuzzInput.h"
 
@@ -157,7 +158,8 @@ void Show(vtkPolyData* mesh)
     mesh->GetPoint(i, p);
     std::cout << "point " << i << ": " << p[0] << ", " << p[1] << ", " << p[2] << "\n";
   }
-  for (vtkIdType i = 0; mesh->GetPolys()->IsValid() && i < mesh->GetPolys()->GetNumberOfCells(); ++i)
+  for (vtkIdType i = 0; mesh->GetPolys()->IsValid() && i < mesh->GetPolys()->GetNumberOfCells();
+       ++i)
   {
     vtkNew<vtkIdList> ids;
     mesh->GetPolys()->GetCellAtId(i, ids);
@@ -179,7 +181,8 @@ struct Setting
   bool Inverse;
 };
 
-/// Whether the derivative is promised to be a number: not that of the contours from the incenter of needles.
+/// Whether the derivative is promised to be a number: not that of the contours from the incenter of
+/// needles.
 bool HasDerivative(const Setting& setting)
 {
   return setting.System != vtkDifferentiableHomeomorphism::CONTOUR ||
@@ -241,8 +244,8 @@ void MapDirectly(
     {
       Fail("a determinant that is not a number");
     }
-    if (map->Locate(Opposite(from), image, map->GetReach(Opposite(from), 0.0, halfUlp), -1).Triangle <
-      0)
+    if (map->Locate(Opposite(from), image, map->GetReach(Opposite(from), 0.0, halfUlp), -1)
+          .Triangle < 0)
     {
       Fail("an image outside the other domain");
     }
@@ -415,8 +418,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     cloud->GetCellData()->SetVectors(flux);
   }
 
-  const bool tame = IsTame(meshes[0]->GetPoints()) && IsTame(meshes[1]->GetPoints()) &&
-    IsTame(cloud->GetPoints());
+  const bool tame =
+    IsTame(meshes[0]->GetPoints()) && IsTame(meshes[1]->GetPoints()) && IsTame(cloud->GetPoints());
   vtkPolyData* pair[2] = { meshes[0], meshes[1] };
   if (std::getenv("FUZZ_SHOW"))
   {
@@ -433,8 +436,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   {
     case 0:
     case 1:
-      MapByFilter(
-        pair, mapsTheMesh ? pair[setting.Inverse ? 1 : 0] : cloud.Get(), setting, tame);
+      MapByFilter(pair, mapsTheMesh ? pair[setting.Inverse ? 1 : 0] : cloud.Get(), setting, tame);
       break;
     case 2:
       MapByTransform(pair, cloud->GetPoints(), setting);

@@ -29,8 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const std::uint8_t* end = bytes + size;
   const std::uint8_t* middle = std::find(bytes, end, std::uint8_t(0));
   std::istringstream first(std::string(bytes, middle));
-  std::istringstream second(
-    middle == end ? std::string(bytes, end) : std::string(middle + 1, end));
+  std::istringstream second(middle == end ? std::string(bytes, end) : std::string(middle + 1, end));
   try
   {
     XmorphMesh meshes[2] = { ReadXmorphMesh(first, "first"), ReadXmorphMesh(second, "second") };

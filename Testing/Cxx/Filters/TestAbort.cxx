@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A long run that its user stops ends within a second, and what it leaves is valid and cannot be taken for
-// the whole.
+// A long run that its user stops ends within a second, and what it leaves is valid and cannot be
+// taken for the whole.
 
 #include "FilterRuns.h"
 
@@ -145,8 +145,7 @@ TEST(Abort, Coordinates)
   auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   ASSERT_EQ(output->GetNumberOfPoints(), image->GetNumberOfPoints());
   EXPECT_LT(CountValid(output), image->GetNumberOfPoints());
-  EXPECT_EQ(
-    filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - CountValid(output));
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - CountValid(output));
 }
 
 TEST(Abort, CoordinateLines)
@@ -195,8 +194,7 @@ TEST(Abort, Resample)
 {
   const MeshPair pair = MakePlanarPair(8, 46);
   const auto image = LargeImage(300);
-  image->GetPointData()->SetScalars(
-    RandomArray("Brightness", 1, image->GetNumberOfPoints(), 3));
+  image->GetPointData()->SetScalars(RandomArray("Brightness", 1, image->GetNumberOfPoints(), 3));
   vtkNew<vtkResampleThroughHomeomorphism> filter;
   filter->SetInputDataObject(0, pair.Source);
   filter->SetInputDataObject(1, pair.Target);

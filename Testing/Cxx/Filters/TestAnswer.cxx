@@ -49,8 +49,8 @@ std::array<double, 2> Image(vtkHomeomorphismTransform* map, double x, double y)
   return { image[0], image[1] };
 }
 
-/// The contour of a half edge that ends at a distance from the foot, by the formulas of the text: its
-/// length. Bisection, so as to share nothing with the library.
+/// The contour of a half edge that ends at a distance from the foot, by the formulas of the text:
+/// its length. Bisection, so as to share nothing with the library.
 double ContourLength(double h, double b, double edgePoint)
 {
   double lower = 0.0;
@@ -64,8 +64,7 @@ double ContourLength(double h, double b, double edgePoint)
   }
   const double s = 0.5 * (lower + upper);
   const double turn = std::atan2(2.0 * b * s, h * (1.0 + s));
-  const double arc =
-    s > 1e-12 ? h * (1.0 - s) * radius(s) / (4.0 * b * s) * turn : 0.5 * h;
+  const double arc = s > 1e-12 ? h * (1.0 - s) * radius(s) / (4.0 * b * s) * turn : 0.5 * h;
   return 0.5 * radius(s) + arc;
 }
 
@@ -98,14 +97,14 @@ TEST(Answer, TheDerivativeFromTheTwoSides)
   for (const PlaceOnEdge& place : places)
   {
     const double x = -2.0 + 4.0 * place.Proportion;
-    EXPECT_NEAR(ContourLength(2.0, 2.0, x) / ContourLength(1.0, 2.0, x),
-      place.DerivativeFromAbove, 5e-6);
+    EXPECT_NEAR(
+      ContourLength(2.0, 2.0, x) / ContourLength(1.0, 2.0, x), place.DerivativeFromAbove, 5e-6);
     constexpr double step = 1e-7;
     EXPECT_NEAR(Image(map, x, step)[1] / step, place.DerivativeFromAbove, 6e-6);
     EXPECT_NEAR(Image(map, x, -step)[1] / -step, 1.0, 1e-6);
   }
-  EXPECT_NEAR(ContourLength(2.0, 2.0, 2.0 - 1e-9) / ContourLength(1.0, 2.0, 2.0 - 1e-9), 1.26491,
-    5e-6);
+  EXPECT_NEAR(
+    ContourLength(2.0, 2.0, 2.0 - 1e-9) / ContourLength(1.0, 2.0, 2.0 - 1e-9), 1.26491, 5e-6);
 }
 
 TEST(Answer, TheInstrumentAgrees)
@@ -139,8 +138,7 @@ TEST(Answer, SmoothHasNoSuchJump)
   filter->SecondDerivativesOn();
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 1);
-  EXPECT_EQ(
-    filter->GetOutput()->GetCellData()->GetArray("SecondDerivativeVerdict")->GetTuple1(0),
+  EXPECT_EQ(filter->GetOutput()->GetCellData()->GetArray("SecondDerivativeVerdict")->GetTuple1(0),
     vtkJacobianContinuity::DIFFERENTIABLE);
 }
 
@@ -158,14 +156,14 @@ TEST(Answer, DirectionsTurnAtDifferentRatesBesideASpoke)
   EXPECT_NEAR(besideAB, 1.33292, 5e-6);
   EXPECT_NEAR(besideCA, 1.23330, 5e-6);
 
-  // The same from the map's values: a small turn to either side of the way from the centroid (0, 1) to
-  // A = (-2, 0).
+  // The same from the map's values: a small turn to either side of the way from the centroid (0, 1)
+  // to A = (-2, 0).
   const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
   const double direction = std::atan2(-1.0, -2.0);
   const auto directionOfImage = [&](double turn) {
     constexpr double distance = 0.25;
-    const auto image = Image(map, distance * std::cos(direction + turn),
-      1.0 + distance * std::sin(direction + turn));
+    const auto image = Image(
+      map, distance * std::cos(direction + turn), 1.0 + distance * std::sin(direction + turn));
     return std::atan2(image[1] - 2.0, image[0]);
   };
   constexpr double turn = 1e-6;
@@ -191,25 +189,23 @@ TEST(Answer, KinksOfContourAreWhereTheTextPutsThem)
     filter->CenterSegmentsOn();
     filter->CentroidsOn();
     filter->Update();
-    EXPECT_EQ(filter->GetNumberOfPlaces(
-                vtkJacobianContinuity::EDGE, vtkJacobianContinuity::KINK),
-      1);
-    // The upper triangle is stretched, the lower one is not. To either side of the spoke to the upper
-    // corner, directions turn alike, but distances grow to both sides.
-    EXPECT_EQ(filter->GetNumberOfPlaces(
-                vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::KINK),
-      3);
+    EXPECT_EQ(
+      filter->GetNumberOfPlaces(vtkJacobianContinuity::EDGE, vtkJacobianContinuity::KINK), 1);
+    // The upper triangle is stretched, the lower one is not. To either side of the spoke to the
+    // upper corner, directions turn alike, but distances grow to both sides.
+    EXPECT_EQ(
+      filter->GetNumberOfPlaces(vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::KINK), 3);
     EXPECT_EQ(filter->GetNumberOfPlaces(
                 vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::DIFFERENTIABLE),
       3);
     EXPECT_EQ(filter->GetNumberOfPlaces(
                 vtkJacobianContinuity::TRIANGLE_CENTER, vtkJacobianContinuity::KINK),
       1);
-    EXPECT_EQ(filter->GetNumberOfPlaces(
-                vtkJacobianContinuity::WING_SEGMENT, vtkJacobianContinuity::KINK),
+    EXPECT_EQ(
+      filter->GetNumberOfPlaces(vtkJacobianContinuity::WING_SEGMENT, vtkJacobianContinuity::KINK),
       0);
-    EXPECT_EQ(filter->GetNumberOfPlaces(
-                vtkJacobianContinuity::CENTER_SEGMENT, vtkJacobianContinuity::KINK),
+    EXPECT_EQ(
+      filter->GetNumberOfPlaces(vtkJacobianContinuity::CENTER_SEGMENT, vtkJacobianContinuity::KINK),
       0);
   }
 }

@@ -139,12 +139,13 @@ TEST_P(Transport, FollowsTheJacobian)
       const Matrix j = MatrixOf(PointArray(output, "Jacobian"), i);
       const Matrix inverseTransposed = Transposed(Inverted(j));
       const double bound = 1e-11 * Norm(j) * Norm(inverseTransposed);
-      const auto vector = [i](vtkDataSet* data, const char* name)
-      { return VectorOf(PointArray(data, name), i); };
-      const auto takeVector = [&](const char* name, const Point& expected)
-      { worst.Take(Distance(vector(output, name), expected), bound * (1.0 + Norm(expected))); };
-      const auto takeTensor = [&](const Matrix& actual, const Matrix& before, const Matrix& a)
-      {
+      const auto vector = [i](vtkDataSet* data, const char* name) {
+        return VectorOf(PointArray(data, name), i);
+      };
+      const auto takeVector = [&](const char* name, const Point& expected) {
+        worst.Take(Distance(vector(output, name), expected), bound * (1.0 + Norm(expected)));
+      };
+      const auto takeTensor = [&](const Matrix& actual, const Matrix& before, const Matrix& a) {
         worst.Take(
           Distance(actual, a * before * Transposed(a)), bound * Norm(before) * Norm(a) * Norm(a));
       };
@@ -287,10 +288,10 @@ TEST_P(Transport, ZeroVectorsStayZero)
 TEST_P(Transport, AGradientStaysTheGradient)
 {
   // A scalar s on P, and its gradient carried; on Q, s o f^-1 has that gradient.
-  const auto scalar = [](const Point& p)
-  { return std::sin(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[0] * p[1] + 0.5 * p[2]; };
-  const auto gradient = [](const Point& p) -> Point
-  {
+  const auto scalar = [](const Point& p) {
+    return std::sin(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[0] * p[1] + 0.5 * p[2];
+  };
+  const auto gradient = [](const Point& p) -> Point {
     return { 0.7 * std::cos(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[1],
       -0.4 * std::sin(0.7 * p[0]) * std::sin(0.4 * p[1]) + 0.3 * p[0], 0.5 };
   };
@@ -360,8 +361,7 @@ TEST_P(Transport, CellDataIsCarriedAtTheCellsMeans)
     vtkNew<vtkUnstructuredGrid> data;
     std::vector<Point> positions;
     std::vector<Point> means;
-    const auto addCell = [&](int type, vtkIdType size)
-    {
+    const auto addCell = [&](int type, vtkIdType size) {
       const vtkIdType triangle = random.Below(pair.Source->GetNumberOfCells());
       std::vector<vtkIdType> ids;
       Point mean{};
@@ -410,8 +410,9 @@ TEST_P(Transport, CellDataIsCarriedAtTheCellsMeans)
       }
       const Matrix j = MatrixOf(jacobian, i);
       const double bound = 1e-9 * Norm(j) * Norm(Inverted(j));
-      const auto before = [&](const char* name)
-      { return VectorOf(data->GetCellData()->GetArray(name), i); };
+      const auto before = [&](const char* name) {
+        return VectorOf(data->GetCellData()->GetArray(name), i);
+      };
       const Matrix tensor = MatrixOf(data->GetCellData()->GetArray("Tensor"), i);
       worst.Take(Distance(flux, j * before("Flux")), bound * Norm(before("Flux")) * Norm(j));
       worst.Take(Distance(VectorOf(output->GetCellData()->GetArray("Gradient"), i),

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A table of everything that can be wrong with an input, or look as if it were: what is said then, and what
-// comes out. Documentation/Errors.md is this table, written by
+// A table of everything that can be wrong with an input, or look as if it were: what is said then,
+// and what comes out. Documentation/Errors.md is this table, written by
 //
-//   FilterTests --gtest_filter='BadInput.*' with the environment variable WRITE_ERRORS set to its path.
+//   FilterTests --gtest_filter='BadInput.*' with the environment variable WRITE_ERRORS set to its
+//   path.
 
 #include "FilterRuns.h"
 
@@ -48,8 +49,8 @@ using namespace filter_runs;
 constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-/// What happened: the messages, without file names, line numbers and addresses, and whether what came out
-/// is as it should be.
+/// What happened: the messages, without file names, line numbers and addresses, and whether what
+/// came out is as it should be.
 struct Outcome
 {
   std::string Message;
@@ -236,7 +237,8 @@ std::string GoodFile()
   writer->SetInputData(GoodPair().Source);
   writer->Write();
   std::ifstream file(name, std::ios::binary);
-  const std::string content{ std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+  const std::string content{ std::istreambuf_iterator<char>(file),
+    std::istreambuf_iterator<char>() };
   std::remove(name.c_str());
   return content;
 }
@@ -301,8 +303,8 @@ Outcome AskFilterWithoutInput(int missingPort)
   return { listener.GetText(), !output || output->GetNumberOfPoints() == 0 };
 }
 
-Outcome RunWithData(vtkDataObject* data, const std::function<bool(vtkPointSet*)>& isRight,
-  vtkIdType outside)
+Outcome RunWithData(
+  vtkDataObject* data, const std::function<bool(vtkPointSet*)>& isRight, vtkIdType outside)
 {
   const MeshPair pair = GoodPair();
   vtkNew<vtkDifferentiableHomeomorphism> filter;
@@ -313,8 +315,7 @@ Outcome RunWithData(vtkDataObject* data, const std::function<bool(vtkPointSet*)>
   filter->SetDataObject(data);
   filter->Update();
   auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-  return { listener.GetText(),
-    isRight(output) && filter->GetNumberOfOutsidePoints() == outside };
+  return { listener.GetText(), isRight(output) && filter->GetNumberOfOutsidePoints() == outside };
 }
 
 /// A strip of @a count quadrilaterals, closed into a ring, with half a turn or without.
@@ -352,8 +353,10 @@ std::vector<BadInput> Table()
   const char* const harmless = "Looks wrong and is taken";
   const char* const dataToMap = "Data to be mapped";
   const char* const use = "Use of the classes";
-  const std::string repair = "Repair or remove them in both meshes, or turn MaskInvalidTriangles on";
-  const std::string sameMesh = "Source and target must be the same mesh with different point coordinates.";
+  const std::string repair =
+    "Repair or remove them in both meshes, or turn MaskInvalidTriangles on";
+  const std::string sameMesh =
+    "Source and target must be the same mesh with different point coordinates.";
 
   const auto quads = [](vtkPolyData* mesh) {
     vtkNew<vtkCellArray> polygons;
@@ -406,7 +409,8 @@ std::vector<BadInput> Table()
       WriteFile(name, content.substr(0, content.size() / 2));
       return RunWithFile(name);
     });
-  add(files, "A mesh's file is of another type (an image)", { "Cannot find PolyData element in file." },
+  add(files, "A mesh's file is of another type (an image)",
+    { "Cannot find PolyData element in file." },
     "The reader tells; nothing comes out. Use the file's own reader.", []() {
       const std::string name = TemporaryFile("image.vti");
       vtkNew<vtkImageData> image;
@@ -447,7 +451,9 @@ std::vector<BadInput> Table()
   add(pairs, "Numbers of points differ", { "25", "26", sameMesh }, "Refused.",
     Spoilt(Which::Target, [](vtkPolyData* mesh) { mesh->GetPoints()->InsertNextPoint(9, 9, 0); }));
   add(pairs, "Numbers of triangles differ", { "32", "33", sameMesh }, "Refused.",
-    Spoilt(Which::Target, [](vtkPolyData* mesh) { AddTriangle(mesh, { 0, 1, 6 }); }));
+    Spoilt(Which::Target, [](vtkPolyData* mesh) {
+      AddTriangle(mesh, { 0, 1, 6 });
+    }));
   add(pairs, "Triangles have other points",
     { "2 triangles of the pair (cells 0, 1)",
       "have different points in the source and in the target",
@@ -470,10 +476,12 @@ std::vector<BadInput> Table()
     }));
 
   // --- Cells
-  add(cells, "Quadrilaterals", { "is not a triangle", "Triangulate the source (vtkTriangleFilter)" },
-    "Refused.", Spoilt(Which::Both, quads));
-  add(cells, "Triangle strips", { "of the source (cell 32) is not a triangle", "vtkTriangleFilter" },
-    "Refused.", Spoilt(Which::Both, strips));
+  add(cells, "Quadrilaterals",
+    { "is not a triangle", "Triangulate the source (vtkTriangleFilter)" }, "Refused.",
+    Spoilt(Which::Both, quads));
+  add(cells, "Triangle strips",
+    { "of the source (cell 32) is not a triangle", "vtkTriangleFilter" }, "Refused.",
+    Spoilt(Which::Both, strips));
   add(cells, "A polygon with two corners", { "is not a triangle" }, "Refused.",
     Spoilt(Which::Both, [](vtkPolyData* mesh) {
       vtkNew<vtkCellArray> polygons;
@@ -509,7 +517,9 @@ std::vector<BadInput> Table()
   // --- Points and triangles
   add(points, "A triangle uses a point twice",
     { "1 triangle of the source (cell 32) uses the same point twice", repair }, "Refused.",
-    Spoilt(Which::Both, [](vtkPolyData* mesh) { AddTriangle(mesh, { 3, 3, 4 }); }));
+    Spoilt(Which::Both, [](vtkPolyData* mesh) {
+      AddTriangle(mesh, { 3, 3, 4 });
+    }));
   add(points, "A coordinate is NaN",
     { "6 triangles of the source (cells ", "have coordinates that are not finite", repair },
     "Refused.", Spoilt(Which::Source, coordinate(NotANumber)));
@@ -526,8 +536,8 @@ std::vector<BadInput> Table()
   add(points, "Triangles without area: two points coincide",
     { "2 triangles of the source (cells ", "have no area", repair }, "Refused.",
     Spoilt(Which::Source, collapse));
-  add(points, "All points are on a line", { "32 triangles of the target", "have no area" }, "Refused.",
-    Spoilt(Which::Target, [](vtkPolyData* mesh) {
+  add(points, "All points are on a line", { "32 triangles of the target", "have no area" },
+    "Refused.", Spoilt(Which::Target, [](vtkPolyData* mesh) {
       for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
       {
         MovePoint(mesh, i, { static_cast<double>(i), 0.0, 0.0 });
@@ -537,9 +547,8 @@ std::vector<BadInput> Table()
     { "flipped between source and target relative to the rest",
       "Move their points so that all triangles keep their orientation (or all are mirrored)" },
     "Refused.", Spoilt(Which::Target, foldOver));
-  add(points, "The same, with MaskInvalidTriangles",
-    { "left out, as MaskInvalidTriangles asks" }, "A warning; the rest is mapped.",
-    Spoilt(Which::Target, foldOver, true, Smooth, true));
+  add(points, "The same, with MaskInvalidTriangles", { "left out, as MaskInvalidTriangles asks" },
+    "A warning; the rest is mapped.", Spoilt(Which::Target, foldOver, true, Smooth, true));
   add(points, "Discordant triangles in the Contour system",
     { "discordant", "Use the Smooth system, which takes any triangle", "DiscordantTriangles" },
     "Refused, unless the Linear system may carry them.",
@@ -555,8 +564,8 @@ std::vector<BadInput> Table()
       false, Contour));
 
   // --- Triangles among each other
-  add(surfaces, "Triangles overlap in both meshes", { "overlap other triangles", repair }, "Refused.",
-    Spoilt(Which::Both, [](vtkPolyData* mesh) {
+  add(surfaces, "Triangles overlap in both meshes", { "overlap other triangles", repair },
+    "Refused.", Spoilt(Which::Both, [](vtkPolyData* mesh) {
       for (const Point& p : { Point{ 0.2, 0.2, 0.0 }, { 1.2, 0.2, 0.0 }, { 0.2, 1.2, 0.0 } })
       {
         mesh->GetPoints()->InsertNextPoint(p.data());
@@ -565,25 +574,31 @@ std::vector<BadInput> Table()
     }));
   add(surfaces, "The same triangle twice",
     { "of the source (cells ", "lie at edges that have more than two triangles" }, "Refused.",
-    Spoilt(Which::Both, [](vtkPolyData* mesh) { AddTriangle(mesh, { 6, 7, 12 }); }));
+    Spoilt(Which::Both, [](vtkPolyData* mesh) {
+      AddTriangle(mesh, { 6, 7, 12 });
+    }));
   add(surfaces, "An edge with three triangles",
     { "lie at edges that have more than two triangles", repair }, "Refused.", []() {
       const auto fins = [](double height) {
-        return MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1, 0 }, { 0.5, -1, 0 }, { 0.5, 0, height } },
+        return MakeMesh(
+          { { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1, 0 }, { 0.5, -1, 0 }, { 0.5, 0, height } },
           { { 0, 1, 2 }, { 1, 0, 3 }, { 0, 1, 4 } });
       };
       return Run({ fins(1.0), fins(2.0) }, false);
     });
   add(surfaces, "A Moebius strip",
     { "cannot be wound consistently", "the surface has one side only", "Cut the surface open" },
-    "Refused.", []() { return Run({ Ring(12, true, 2.0), Ring(12, true, 3.0) }, false); });
+    "Refused.", []() {
+      return Run({ Ring(12, true, 2.0), Ring(12, true, 3.0) }, false);
+    });
 
   // --- Looks wrong and is taken
   add(harmless, "64-bit ids, and 32-bit ones in the other mesh", {}, "Taken.",
     Spoilt(
       Which::Target, [](vtkPolyData* mesh) { mesh->GetPolys()->ConvertTo32BitStorage(); }, true));
   add(harmless, "Two points at the same place", {},
-    "Taken: the ids count. Triangles that meet there without sharing points have a boundary between "
+    "Taken: the ids count. Triangles that meet there without sharing points have a boundary "
+    "between "
     "them; use vtkCleanPolyData on both meshes, before they are made different, to join them.",
     Spoilt(
       Which::Both,
@@ -598,10 +613,11 @@ std::vector<BadInput> Table()
         SetTriangles(mesh, triangles);
       },
       true));
-  add(harmless, "A point that no triangle uses, even NaN", {}, "Taken: it is no part of the domain.",
+  add(harmless, "A point that no triangle uses, even NaN", {},
+    "Taken: it is no part of the domain.",
     Spoilt(
-      Which::Both,
-      [](vtkPolyData* mesh) { mesh->GetPoints()->InsertNextPoint(NotANumber, 0, 0); }, true));
+      Which::Both, [](vtkPolyData* mesh) { mesh->GetPoints()->InsertNextPoint(NotANumber, 0, 0); },
+      true));
   add(harmless, "Triangles wound in different directions", {},
     "Taken: the map does not depend on it.",
     Spoilt(
@@ -662,8 +678,7 @@ std::vector<BadInput> Table()
   add(harmless, "A vtkGhostType array of another length", {}, "Taken: it hides nothing.",
     Spoilt(
       Which::Both, [ghosts](vtkPolyData* mesh) { ghosts(mesh, true, 7); }, true));
-  add(harmless, "All triangles mirrored in the target", {},
-    "Taken: the map reverses orientation.",
+  add(harmless, "All triangles mirrored in the target", {}, "Taken: the map reverses orientation.",
     Spoilt(
       Which::Target,
       [](vtkPolyData* mesh) {
@@ -689,8 +704,8 @@ std::vector<BadInput> Table()
     vtkPointSet* output = Output(filter);
     for (vtkIdType i = 0; i < 100; ++i)
     {
-      outcome.AsItShouldBe = outcome.AsItShouldBe &&
-        Distance(PointOf(output, i), PointOf(data, i)) < 1e-14;
+      outcome.AsItShouldBe =
+        outcome.AsItShouldBe && Distance(PointOf(output, i), PointOf(data, i)) < 1e-14;
     }
     return outcome;
   });
@@ -729,7 +744,8 @@ std::vector<BadInput> Table()
     vectors->InsertNextTuple3(NotANumber, 0.0, 0.0);
     vectors->InsertNextTuple3(1.0, 0.0, 0.0);
     cloud->GetPointData()->SetVectors(vectors);
-    return RunWithData(cloud,
+    return RunWithData(
+      cloud,
       [](vtkPointSet* output) {
         vtkDataArray* carried = PointArray(output, "Velocity");
         return carried && std::isnan(carried->GetComponent(0, 0)) &&
@@ -737,19 +753,22 @@ std::vector<BadInput> Table()
       },
       0);
   });
-  add(dataToMap, "An array with another number of tuples than points", {}, "It passes untouched.", []() {
-    const auto cloud = MakeCloud({ { 1.0, 1.0, 0.0 }, { 1.5, 1.2, 0.0 } });
-    const auto vectors = RandomArray("Velocity", 3, 7, 1);
-    cloud->GetPointData()->SetVectors(vectors);
-    return RunWithData(cloud,
-      [&](vtkPointSet* output) {
-        return CountDifferentValues(PointArray(output, "Velocity"), vectors) == 0;
-      },
-      0);
-  });
+  add(dataToMap, "An array with another number of tuples than points", {}, "It passes untouched.",
+    []() {
+      const auto cloud = MakeCloud({ { 1.0, 1.0, 0.0 }, { 1.5, 1.2, 0.0 } });
+      const auto vectors = RandomArray("Velocity", 3, 7, 1);
+      cloud->GetPointData()->SetVectors(vectors);
+      return RunWithData(
+        cloud,
+        [&](vtkPointSet* output) {
+          return CountDifferentValues(PointArray(output, "Velocity"), vectors) == 0;
+        },
+        0);
+    });
   add(dataToMap, "Cells with points that do not exist", {}, "The cells pass untouched.", []() {
     const auto mesh = MakeMesh({ { 1.0, 1.0, 0.0 }, { 1.5, 1.2, 0.0 } }, { { 0, 1, 77 } });
-    return RunWithData(mesh,
+    return RunWithData(
+      mesh,
       [](vtkPointSet* output) {
         return output->GetNumberOfPoints() == 2 && output->GetNumberOfCells() == 1;
       },
@@ -767,7 +786,8 @@ std::vector<BadInput> Table()
       lines->InsertNextCell({ 1 });
       mesh->SetLines(lines);
       mesh->GetCellData()->SetVectors(RandomArray("Flux", 3, 4, 2));
-      return RunWithData(mesh,
+      return RunWithData(
+        mesh,
         [](vtkPointSet* output) {
           vtkDataArray* hidden =
             output->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName());
@@ -856,14 +876,15 @@ std::vector<BadInput> Table()
       return resampled(mesh);
     });
   add(dataToMap, "No points", {}, "Nothing comes out.", []() {
-    return RunWithData(MakeCloud(std::vector<Point>{}),
+    return RunWithData(
+      MakeCloud(std::vector<Point>{}),
       [](vtkPointSet* output) { return output->GetNumberOfPoints() == 0; }, 0);
   });
   add(dataToMap, "A table", { "Input for connection index 0 on input port index 2", "vtkTable" },
     "Refused. Give a data set or a tree of them.", []() {
       vtkNew<vtkTable> table;
-      return RunWithData(table,
-        [](vtkPointSet* output) { return !output || output->GetNumberOfPoints() == 0; }, 0);
+      return RunWithData(
+        table, [](vtkPointSet* output) { return !output || output->GetNumberOfPoints() == 0; }, 0);
     });
 
   // --- Use
@@ -872,8 +893,8 @@ std::vector<BadInput> Table()
   add(use, "No target", { "Input port 1 of algorithm", "has 0 connections but is not optional" },
     "Refused.", []() { return AskFilterWithoutInput(1); });
   add(use, "An image where a mesh is wanted",
-    { "Input for connection index 0 on input port index 0", "vtkImageData", "vtkPolyData" }, "Refused.",
-    []() {
+    { "Input for connection index 0 on input port index 0", "vtkImageData", "vtkPolyData" },
+    "Refused.", []() {
       vtkNew<vtkImageData> image;
       image->SetDimensions(2, 2, 1);
       vtkNew<vtkDifferentiableHomeomorphism> filter;
@@ -909,7 +930,8 @@ std::vector<BadInput> Table()
     });
   add(use, "A tolerance that is NaN", {}, "As 0.", []() {
     const MeshPair pair = GoodPair();
-    const auto filter = MakeFilter(Smooth, pair, MakeCloud({ { 1.0, 1.0, 0.0 }, { -0.1, 1.0, 0.0 } }));
+    const auto filter =
+      MakeFilter(Smooth, pair, MakeCloud({ { 1.0, 1.0, 0.0 }, { -0.1, 1.0, 0.0 } }));
     Listener listener;
     listener.ListenTo(filter.Get());
     filter->SetTolerance(NotANumber);
@@ -989,7 +1011,8 @@ std::vector<BadInput> Table()
       return Outcome{ "", same };
     });
   add(use, "vtkJacobianContinuity without a transform and without a target",
-    { "There is no map to measure: set a transform (SetTransform) or a target mesh (input port 1)." },
+    { "There is no map to measure: set a transform (SetTransform) or a target mesh (input port "
+      "1)." },
     "Nothing comes out.", []() {
       vtkNew<vtkJacobianContinuity> continuity;
       Listener listener;
@@ -1044,13 +1067,14 @@ TEST(BadInput, SaysWhatIsWrongWhereAndWhatToDo)
   const std::vector<BadInput> table = Table();
   EXPECT_GE(table.size(), 40u);
   std::ostringstream document;
-  document << "# What is said when something is wrong\n\n"
-           << "Written by the test of this table, `Testing/Cxx/Filters/TestBadInput.cxx`, which provokes "
-              "each of these and\nreads the message:\n\n```sh\nWRITE_ERRORS=Documentation/Errors.md "
-              "build/release/bin/FilterTests --gtest_filter='BadInput.*'\n```\n\n"
-           << "A message about triangles says how many there are, of which mesh, and the ids of the "
-              "first ten. Filters set an\nerror code (`GetErrorCode`) and leave their output empty; the "
-              "transform takes every point for one outside.\n";
+  document
+    << "# What is said when something is wrong\n\n"
+    << "Written by the test of this table, `Testing/Cxx/Filters/TestBadInput.cxx`, which provokes "
+       "each of these and\nreads the message:\n\n```sh\nWRITE_ERRORS=Documentation/Errors.md "
+       "build/release/bin/FilterTests --gtest_filter='BadInput.*'\n```\n\n"
+    << "A message about triangles says how many there are, of which mesh, and the ids of the "
+       "first ten. Filters set an\nerror code (`GetErrorCode`) and leave their output empty; the "
+       "transform takes every point for one outside.\n";
   std::string group;
   for (const BadInput& row : table)
   {
@@ -1080,7 +1104,8 @@ TEST(BadInput, SaysWhatIsWrongWhereAndWhatToDo)
     std::ofstream(path) << document.str();
   }
   std::ifstream file(ERRORS_DOCUMENT);
-  const std::string written{ std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+  const std::string written{ std::istreambuf_iterator<char>(file),
+    std::istreambuf_iterator<char>() };
   EXPECT_TRUE(written == document.str())
     << "Documentation/Errors.md is not what the test found; see there how to write it anew.";
 }

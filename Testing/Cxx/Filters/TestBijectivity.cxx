@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The map of whole meshes is one to one and onto: the images of small triangles tile the other domain, and
-// every point of it is hit by exactly one of them and comes back there.
+// The map of whole meshes is one to one and onto: the images of small triangles tile the other
+// domain, and every point of it is hit by exactly one of them and comes back there.
 
 #include "FilterRuns.h"
 
@@ -49,8 +49,8 @@ Subdivision Subdivide(vtkPolyData* mesh)
       {
         const int k = Divisions - i - j;
         at[i][j] = result.Points.size();
-        result.Points.push_back(PositionOf(mesh,
-          { t, { double(i) / Divisions, double(j) / Divisions, double(k) / Divisions } }));
+        result.Points.push_back(PositionOf(
+          mesh, { t, { double(i) / Divisions, double(j) / Divisions, double(k) / Divisions } }));
       }
     }
     for (int i = 0; i < Divisions; ++i)
@@ -78,14 +78,14 @@ double SignedArea(const Vector2& a, const Vector2& b, const Vector2& c)
   return 0.5 * homeomorphism::Cross(b - a, c - a);
 }
 
-/// Of corners that run anticlockwise: 1 if the point is inside, 0 if it is on the boundary, -1 outside.
+/// Of corners that run anticlockwise: 1 if the point is inside, 0 if it is on the boundary, -1
+/// outside.
 int Containment(const std::array<Vector2, 3>& corners, const Vector2& point)
 {
   int least = 1;
   for (int k = 0; k < 3; ++k)
   {
-    least =
-      std::min(least, homeomorphism::Orientation(corners[k], corners[(k + 1) % 3], point));
+    least = std::min(least, homeomorphism::Orientation(corners[k], corners[(k + 1) % 3], point));
   }
   return least;
 }
@@ -94,9 +94,11 @@ int Containment(const std::array<Vector2, 3>& corners, const Vector2& point)
 MeshPair MakeConcordantPair(int n, std::uint64_t seed)
 {
   const auto slant = [](vtkPolyData* mesh) {
-    // The grid's diagonals run from the lower left to the upper right, so they must be the short ones.
-    return Moved(
-      mesh, [](const Point& p) -> Point { return { p[0] - 0.5 * p[1], 0.866 * p[1], 0.0 }; });
+    // The grid's diagonals run from the lower left to the upper right, so they must be the short
+    // ones.
+    return Moved(mesh, [](const Point& p) -> Point {
+      return { p[0] - 0.5 * p[1], 0.866 * p[1], 0.0 };
+    });
   };
   const MeshPair square = MakePlanarPair(n, seed, 0.1);
   return { slant(square.Source), slant(square.Target) };
@@ -108,8 +110,7 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
   const auto filter = MakeFilter(system, pair, MakeCloud(pieces.Points));
   filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::REFUSE);
   vtkPointSet* mapped = Output(filter);
-  ASSERT_EQ(
-    mapped->GetNumberOfPoints(), static_cast<vtkIdType>(pieces.Points.size()));
+  ASSERT_EQ(mapped->GetNumberOfPoints(), static_cast<vtkIdType>(pieces.Points.size()));
   ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0);
 
   // The images do not turn over, and their areas add up to the domain's.
@@ -187,8 +188,8 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
       for (vtkIdType t = 0; t < pair.Target->GetNumberOfCells(); ++t)
       {
         const std::array<Point, 3> corners = CornersOf(pair.Target, t);
-        triangles += Containment({ InPlane(corners[0]), InPlane(corners[1]), InPlane(corners[2]) },
-                       p) > 0;
+        triangles +=
+          Containment({ InPlane(corners[0]), InPlane(corners[1]), InPlane(corners[2]) }, p) > 0;
       }
       ASSERT_LE(triangles, 1);
       const int count = hits[i * gridSize + j];
@@ -203,7 +204,8 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
   EXPECT_EQ(notOnce, 0);
   EXPECT_GT(inside.size(), std::size_t(gridSize * gridSize / 3));
 
-  // Back: into the piece whose image has the point, up to what the straight sides of the image leave out.
+  // Back: into the piece whose image has the point, up to what the straight sides of the image
+  // leave out.
   const auto inverse = MakeFilter(system, pair, MakeCloud(inside));
   inverse->InverseOn();
   vtkPointSet* back = Output(inverse);
@@ -238,22 +240,22 @@ class Bijectivity : public testing::TestWithParam<System>
 {
 };
 
-INSTANTIATE_TEST_SUITE_P(
-  AllSystems, Bijectivity, testing::ValuesIn(AllSystems()), NameOfSystem);
+INSTANTIATE_TEST_SUITE_P(AllSystems, Bijectivity, testing::ValuesIn(AllSystems()), NameOfSystem);
 
 TEST_P(Bijectivity, EveryPointIsHitOnce)
 {
   for (const std::uint64_t seed : { 31u, 57u })
   {
     SCOPED_TRACE(seed);
-    const bool choosy = GetParam().IsContour() &&
-      GetParam().CenterPoint == vtkDifferentiableHomeomorphism::CENTROID;
+    const bool choosy =
+      GetParam().IsContour() && GetParam().CenterPoint == vtkDifferentiableHomeomorphism::CENTROID;
     ExpectBijective(
       GetParam(), choosy ? MakeConcordantPair(4, seed) : MakePlanarPair(4, seed), seed);
   }
 }
 
-/// Smooth takes triangles of any shape: here the target is sheared, and one vertex is close to an edge.
+/// Smooth takes triangles of any shape: here the target is sheared, and one vertex is close to an
+/// edge.
 TEST(BijectivityOfSmooth, WithNeedles)
 {
   const MeshPair pair = MakePlanarPair(4, 91);
@@ -268,25 +270,23 @@ TEST(BijectivityOfSmooth, WithNeedles)
 
 // --- What the torture found ----------------------------------------------------------------------
 
-/// Where a neighbour is far smaller, the columns of the Jacobian are almost parallel, and the determinant
-/// as a difference of their products was anything.
+/// Where a neighbour is far smaller, the columns of the Jacobian are almost parallel, and the
+/// determinant as a difference of their products was anything.
 TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 2, 1, 3 }, { 0, 2, 4 }, { 1, 0, 5 } };
-  const MeshPair pair{
-    MakeMesh({ { 0, 0, 0 }, { -0.002454802733636777, -0.0035144943034052731, 0 },
-               { 149.59907385978013, -104.49306798784818, 0 },
-               { 101.27614104114896, -70.741797421224831, 0 },
-               { 125.92354572417675, -87.934608160010455, 0 },
-               { -0.00072654985430002487, -0.0010401874989684474, 0 } },
-      triangles),
+  const MeshPair pair{ MakeMesh({ { 0, 0, 0 }, { -0.002454802733636777, -0.0035144943034052731, 0 },
+                                  { 149.59907385978013, -104.49306798784818, 0 },
+                                  { 101.27614104114896, -70.741797421224831, 0 },
+                                  { 125.92354572417675, -87.934608160010455, 0 },
+                                  { -0.00072654985430002487, -0.0010401874989684474, 0 } },
+                         triangles),
     MakeMesh({ { 0, 0, 0 }, { 15.891333793624549, 7.6149123705193915, 0 },
                { -1685.4936190774181, 3555.4096479727887, 0 },
                { -1149.9578624168741, 2438.6894519073048, 0 },
                { -499.35351658059602, 443.69401902183745, 0 },
                { 15.042583642223518, 7.2082027694053439, 0 } },
-      triangles)
-  };
+      triangles) };
   std::vector<Point> points{ { -0.0010156480399538691, -0.0014540839480793751, 0.0 } };
   for (const Place& place : RandomPlaces(pair.Source, 20000, 5))
   {
@@ -304,8 +304,8 @@ TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
   }
 }
 
-/// Two needles on a short edge, both 1e11 times as long as it: the components of the Smooth chart's offset
-/// cancel, and did not sum to 0.
+/// Two needles on a short edge, both 1e11 times as long as it: the components of the Smooth chart's
+/// offset cancel, and did not sum to 0.
 TEST(RoundTrip, OfNeedlesOnAShortEdge)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };
@@ -332,13 +332,12 @@ TEST(RoundTrip, OfNeedlesOnAShortEdge)
 /// Two ulp beside the corner of a triangle whose edges are longer than its coordinates.
 TEST(Reach, MeasuringTheDistanceRoundsToo)
 {
-  const MeshPair pair{
-    MakeMesh({ { 0, 0, 0 }, { 1.0335040411931204, 0.64456407854183768, 0 },
-               { -0.99287494773428980, 1.0514803639231405, 0 },
-               { 0.40642868698839383, -1.1440443921782702, 0 } },
-      { { 0, 1, 2 }, { 1, 0, 3 } }),
-    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 } }, { { 0, 1, 2 }, { 1, 0, 3 } })
-  };
+  const MeshPair pair{ MakeMesh({ { 0, 0, 0 }, { 1.0335040411931204, 0.64456407854183768, 0 },
+                                  { -0.99287494773428980, 1.0514803639231405, 0 },
+                                  { 0.40642868698839383, -1.1440443921782702, 0 } },
+                         { { 0, 1, 2 }, { 1, 0, 3 } }),
+    MakeMesh(
+      { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 } }, { { 0, 1, 2 }, { 1, 0, 3 } }) };
   // Everywhere around the corners, up to two ulp of the largest coordinate away.
   std::vector<Point> points;
   for (vtkIdType corner = 0; corner < 4; ++corner)

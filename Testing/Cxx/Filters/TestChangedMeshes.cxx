@@ -251,12 +251,10 @@ void ExpectNoticed(
 
 TEST(ChangedMeshes, CellsReplacedInPlace)
 {
-  ExpectNoticed(
-    [](const MeshPair& pair)
-    {
-      FlipDiagonal(pair.Source);
-      FlipDiagonal(pair.Target);
-    });
+  ExpectNoticed([](const MeshPair& pair) {
+    FlipDiagonal(pair.Source);
+    FlipDiagonal(pair.Target);
+  });
 }
 
 TEST(ChangedMeshes, CellsReplacedInOneMeshAreRefused)
@@ -278,38 +276,33 @@ TEST(ChangedMeshes, CellsReplacedInOneMeshAreRefused)
 
 TEST(ChangedMeshes, CellsMadeInvalidInPlaceAreRefused)
 {
-  ExpectNoticed(
-    [](const MeshPair& pair)
+  ExpectNoticed([](const MeshPair& pair) {
+    for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
     {
-      for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
-      {
-        // A point twice.
-        const Triangle triangle{ 0, 4, 4 };
-        mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
-        mesh->GetPolys()->Modified();
-      }
-    });
+      // A point twice.
+      const Triangle triangle{ 0, 4, 4 };
+      mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
+      mesh->GetPolys()->Modified();
+    }
+  });
 }
 
 TEST(ChangedMeshes, FewerCellsAfterReset)
 {
-  ExpectNoticed(
-    [](const MeshPair& pair)
+  ExpectNoticed([](const MeshPair& pair) {
+    for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
     {
-      for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
-      {
-        KeepSecondSquare(mesh);
-        mesh->GetPolys()->Modified();
-      }
-    });
+      KeepSecondSquare(mesh);
+      mesh->GetPolys()->Modified();
+    }
+  });
 }
 
 TEST(ChangedMeshes, FewerCellsAfterResetWithoutTimeOfTheirOwn)
 {
   // Nothing but the number of cells tells of the change, once the user is made to look.
   ExpectNoticed(
-    [](const MeshPair& pair)
-    {
+    [](const MeshPair& pair) {
       for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
       {
         KeepSecondSquare(mesh);
@@ -379,37 +372,30 @@ TEST(ChangedMeshes, ARefusedMeshMendedInPlaceIsTaken)
 
 TEST(ChangedMeshes, PointsMovedInPlace)
 {
+  ExpectNoticed([](const MeshPair& pair) {
+    pair.Source->GetPoints()->SetPoint(4, 1.1, 0.9, 0.0);
+    pair.Source->GetPoints()->Modified();
+  });
   ExpectNoticed(
-    [](const MeshPair& pair)
-    {
-      pair.Source->GetPoints()->SetPoint(4, 1.1, 0.9, 0.0);
-      pair.Source->GetPoints()->Modified();
-    });
-  ExpectNoticed(
-    [](const MeshPair& pair)
-    {
+    [](const MeshPair& pair) {
       pair.Target->GetPoints()->SetPoint(4, 1.1, 0.9, 0.0);
       pair.Target->GetPoints()->Modified();
     },
     false, false);
   // Through the array behind the points.
-  ExpectNoticed(
-    [](const MeshPair& pair)
-    {
-      vtkDataArray* coordinates = pair.Source->GetPoints()->GetData();
-      coordinates->SetComponent(4, 0, 1.1);
-      coordinates->Modified();
-    });
+  ExpectNoticed([](const MeshPair& pair) {
+    vtkDataArray* coordinates = pair.Source->GetPoints()->GetData();
+    coordinates->SetComponent(4, 0, 1.1);
+    coordinates->Modified();
+  });
 }
 
 TEST(ChangedMeshes, CellsHiddenInPlace)
 {
-  ExpectNoticed(
-    [](const MeshPair& pair)
-    {
-      pair.Source->AllocateCellGhostArray()->SetValue(0, vtkDataSetAttributes::HIDDENCELL);
-      pair.Source->GetCellGhostArray()->Modified();
-    });
+  ExpectNoticed([](const MeshPair& pair) {
+    pair.Source->AllocateCellGhostArray()->SetValue(0, vtkDataSetAttributes::HIDDENCELL);
+    pair.Source->GetCellGhostArray()->Modified();
+  });
 }
 
 /// Edits of one filter's meshes and settings, and whether the meshes are read again for them.

@@ -311,10 +311,9 @@ TEST_P(FilterInEverySystem, MirroredPairs)
 
   // On a surface the mirror image is another surface: areas have no sign there.
   MeshPair closed = MakeClosedPair(2, 172);
-  closed.Target = Moved(closed.Target,
-    [](const Point& p) -> Point {
-      return { -p[0], p[1], p[2] };
-    });
+  closed.Target = Moved(closed.Target, [](const Point& p) -> Point {
+    return { -p[0], p[1], p[2] };
+  });
   const auto onSurface =
     MakeFilter(GetParam(), closed, MakeCloud(closed.Source, RandomPlaces(closed.Source, 5000, 7)));
   onSurface->ComputeJacobianDeterminantOn();
@@ -410,8 +409,7 @@ TEST_P(FilterInEverySystem, PlanesParallelToTwoAxesGiveTheSameBits)
   // x and y become y and z (the plane x = const), or z and x.
   for (const int turns : { 1, 2 })
   {
-    const auto turned = [turns](const Point& p)
-    {
+    const auto turned = [turns](const Point& p) {
       Point q;
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -527,10 +525,9 @@ TEST_P(FilterInEverySystem, HeightsAreLengths)
   const MeshPair pair = MakePlanarPair(6, 210);
   for (const double factor : { 1000.0, 0.001 })
   {
-    const auto target = Moved(pair.Target,
-      [factor](const Point& p) -> Point {
-        return { factor * p[0], factor * p[1], 0.0 };
-      });
+    const auto target = Moved(pair.Target, [factor](const Point& p) -> Point {
+      return { factor * p[0], factor * p[1], 0.0 };
+    });
     Random random(13);
     std::vector<Point> positions;
     for (const Place& place : RandomPlaces(pair.Source, 2000, 14))
@@ -552,10 +549,9 @@ TEST_P(FilterInEverySystem, HeightsAreLengths)
     }
     EXPECT_EQ(wrong, 0);
 
-    const auto lifted = Moved(target,
-      [](const Point& p) -> Point {
-        return { p[0], p[1], p[2] - 7.0 };
-      });
+    const auto lifted = Moved(target, [](const Point& p) -> Point {
+      return { p[0], p[1], p[2] - 7.0 };
+    });
     const auto lift = MakeFilter(GetParam(), { pair.Source, lifted }, cloud);
     output = Output(lift);
     Worst worst;
@@ -585,8 +581,7 @@ protected:
     data->GetPointData()->AddArray(RandomArray<vtkFloatArray>("Unmarked", 3, points, 22));
     data->GetCellData()->SetScalars(RandomArray<vtkFloatArray>("Pressure", 1, cells, 23));
     data->GetCellData()->AddArray(RandomArray<vtkIdTypeArray>("Material", 1, cells, 24));
-    const auto names = [](const char* name, vtkIdType count)
-    {
+    const auto names = [](const char* name, vtkIdType count) {
       auto array = vtkSmartPointer<vtkStringArray>::New();
       array->SetName(name);
       for (vtkIdType i = 0; i < count; ++i)
@@ -699,8 +694,7 @@ protected:
   {
     auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
     grid->SetExtent(2, 14, -1, 9, 0, 1);
-    const auto coordinates = [](int count, double first, double last)
-    {
+    const auto coordinates = [](int count, double first, double last) {
       const auto array = vtkSmartPointer<vtkFloatArray>::New();
       for (int i = 0; i < count; ++i)
       {
@@ -1089,9 +1083,9 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
     {
       image->GetCellPoints(cell, ids);
-      const bool isOutside = std::any_of(ids->begin(), ids->end(),
-        [&](vtkIdType i)
-        { return PointArray(output, "ValidPointMask")->GetComponent(i, 0) == 0.0; });
+      const bool isOutside = std::any_of(ids->begin(), ids->end(), [&](vtkIdType i) {
+        return PointArray(output, "ValidPointMask")->GetComponent(i, 0) == 0.0;
+      });
       const int before = hasGhosts && cell % 7 == 0 ? vtkDataSetAttributes::DUPLICATECELL : 0;
       ASSERT_EQ(Ghosts(output->GetCellData())->GetValue(cell),
         before | (isOutside ? vtkDataSetAttributes::HIDDENCELL : 0));
@@ -1358,11 +1352,9 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
 TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
 {
   const MeshPair planar = MakePlanarPair(6, 340);
-  const MeshPair mirrored{ planar.Source,
-    Moved(planar.Target,
-      [](const Point& p) -> Point {
-        return { p[0], 8.0 - p[1], p[2] };
-      }) };
+  const MeshPair mirrored{ planar.Source, Moved(planar.Target, [](const Point& p) -> Point {
+                            return { p[0], 8.0 - p[1], p[2] };
+                          }) };
   for (const MeshPair& pair : { planar, mirrored, MakeClosedPair(1, 341) })
   {
     const bool isPlanar = pair.Source == planar.Source;
@@ -1393,8 +1385,7 @@ TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
         continue;
       }
       const auto id = static_cast<vtkIdType>(3 * i);
-      const auto area = [id](vtkDataSet* data)
-      {
+      const auto area = [id](vtkDataSet* data) {
         return Cross(
           PointOf(data, id + 1) - PointOf(data, id), PointOf(data, id + 2) - PointOf(data, id));
       };
@@ -1611,8 +1602,9 @@ TEST(HomeomorphismFilter, ChangingAPropertyExecutesAgain)
   const auto filter =
     MakeFilter(Smooth, pair, MakeCloud(pair.Source, RandomPlaces(pair.Source, 50, 44)));
   using Filter = vtkDifferentiableHomeomorphism;
-  const std::vector<std::function<void(Filter*)>> changes{ [](Filter* f)
-    { f->SetCoordinateSystemToLinear(); },
+  const std::vector<std::function<void(Filter*)>> changes{ [](Filter* f) {
+                                                            f->SetCoordinateSystemToLinear();
+                                                          },
     [](Filter* f) { f->SetCoordinateSystemToContour(); },
     [](Filter* f) { f->SetCenterPoint(Filter::INCENTER); },
     [](Filter* f) { f->SetDiscordantTriangles(Filter::CARRY_BY_LINEAR); },
@@ -1670,8 +1662,7 @@ TEST_P(FilterInEverySystem, EmptyInputsGiveEmptyOutputsQuietly)
   const vtkNew<vtkPolyData> noCells;
   noCells->SetPoints(vtkNew<vtkPoints>());
   const MeshPair pair = MakePlanarPair(3, 360);
-  const auto run = [&](vtkPolyData* source, vtkPolyData* target, vtkDataObject* data)
-  {
+  const auto run = [&](vtkPolyData* source, vtkPolyData* target, vtkDataObject* data) {
     vtkNew<vtkDifferentiableHomeomorphism> filter;
     Messages messages(filter);
     filter->SetCoordinateSystem(GetParam().CoordinateSystem);

@@ -38,10 +38,9 @@ std::vector<MeshPair> PlanarPairs(std::uint64_t seed)
   const MeshPair pair = MakePlanarPair(8, seed);
   return { pair,
     { Tilted(pair.Source, Tilt(), { 1.0, 0.5, -2.0 }),
-      Moved(pair.Target,
-        [](const Point& p) -> Point {
-          return { 3.0, p[0], p[1] };
-        }) } };
+      Moved(pair.Target, [](const Point& p) -> Point {
+        return { 3.0, p[0], p[1] };
+      }) } };
 }
 
 /// In the domain and around it, over and under its plane.
@@ -99,13 +98,11 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
         transform->Inverse();
       }
       const double outside = transform->GetOutsideCoordinate();
-      const auto expected = [&](vtkIdType i)
-      {
+      const auto expected = [&](vtkIdType i) {
         return mask->GetComponent(i, 0) != 0.0 ? PointOf(mapped, i)
                                                : Point{ outside, outside, outside };
       };
-      const auto countDifferent = [&](vtkPoints* points, vtkIdType first)
-      {
+      const auto countDifferent = [&](vtkPoints* points, vtkIdType first) {
         vtkIdType different = points->GetNumberOfPoints() != first + count;
         for (vtkIdType i = 0; i < count; ++i)
         {
@@ -595,34 +592,32 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
     vtkSMPTools::SetBackend(previous.c_str());
     for (const int threads : { 1, 2, 5 })
     {
-      vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, backend, false },
-        [&]()
+      vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, backend, false }, [&]() {
+        EXPECT_STREQ(vtkSMPTools::GetBackend(), backend);
+        // Meshes are read anew, too.
+        const auto transform = MakeTransform(GetParam(), pair);
+        const auto points = vtkSmartPointer<vtkPoints>::New();
+        points->SetDataTypeToDouble();
+        transform->TransformPoints(cloud->GetPoints(), points);
+        const auto filter = MakeFilter(GetParam(), pair, cloud);
+        filter->ComputeJacobianOn();
+        filter->ComputeTriangleIdOn();
+        vtkPointSet* mapped = Output(filter);
+        if (!first)
         {
-          EXPECT_STREQ(vtkSMPTools::GetBackend(), backend);
-          // Meshes are read anew, too.
-          const auto transform = MakeTransform(GetParam(), pair);
-          const auto points = vtkSmartPointer<vtkPoints>::New();
-          points->SetDataTypeToDouble();
-          transform->TransformPoints(cloud->GetPoints(), points);
-          const auto filter = MakeFilter(GetParam(), pair, cloud);
-          filter->ComputeJacobianOn();
-          filter->ComputeTriangleIdOn();
-          vtkPointSet* mapped = Output(filter);
-          if (!first)
-          {
-            first = points;
-            firstMapped = mapped;
-            return;
-          }
-          EXPECT_EQ(CountDifferentValues(points->GetData(), first->GetData()), 0) << backend;
-          EXPECT_EQ(CountDifferentPoints(mapped, firstMapped), 0) << backend << threads;
-          for (const char* name : { "Vectors", "Jacobian", "TriangleId", "ValidPointMask" })
-          {
-            EXPECT_EQ(
-              CountDifferentValues(PointArray(mapped, name), PointArray(firstMapped, name)), 0)
-              << backend << threads << name;
-          }
-        });
+          first = points;
+          firstMapped = mapped;
+          return;
+        }
+        EXPECT_EQ(CountDifferentValues(points->GetData(), first->GetData()), 0) << backend;
+        EXPECT_EQ(CountDifferentPoints(mapped, firstMapped), 0) << backend << threads;
+        for (const char* name : { "Vectors", "Jacobian", "TriangleId", "ValidPointMask" })
+        {
+          EXPECT_EQ(
+            CountDifferentValues(PointArray(mapped, name), PointArray(firstMapped, name)), 0)
+            << backend << threads << name;
+        }
+      });
     }
   }
 }
@@ -641,8 +636,7 @@ TEST_P(TransformInEverySystem, ManyThreadsMayAskAtOnce)
     Point Back;
     double Derivative[3][3];
   };
-  const auto ask = [&](std::vector<Answer>& answers)
-  {
+  const auto ask = [&](std::vector<Answer>& answers) {
     answers.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
     {
@@ -688,10 +682,9 @@ void TestResampling(const System& system, double size)
   // The target is no rectangle, so that the picture has outside pixels on all sides and inside its
   // bounding box.
   MeshPair pair = MakePlanarPair(8, 600);
-  pair.Target = Moved(pair.Target,
-    [](const Point& p) -> Point {
-      return { p[0] + 0.9 * std::sin(0.8 * p[1]), p[1] + 0.7 * std::cos(0.6 * p[0]), p[2] };
-    });
+  pair.Target = Moved(pair.Target, [](const Point& p) -> Point {
+    return { p[0] + 0.9 * std::sin(0.8 * p[1]), p[1] + 0.7 * std::cos(0.6 * p[0]), p[2] };
+  });
   for (auto* mesh : { &pair.Source, &pair.Target })
   {
     *mesh = Moved(*mesh, [size](const Point& p) { return size * p; });
@@ -727,8 +720,7 @@ void TestResampling(const System& system, double size)
     EXPECT_GT(filter->GetNumberOfOutsidePoints(), 1000);
     EXPECT_LT(filter->GetNumberOfOutsidePoints(), 5000);
 
-    const auto pixel = [&](int i, int j)
-    {
+    const auto pixel = [&](int i, int j) {
       int index[3] = { i, j, 0 };
       return gray->GetComponent(image->ComputePointId(index), 0);
     };

@@ -6,9 +6,9 @@
 #include "MeasuredMaps.h"
 #include "TestMeshes.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkCellArray.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkJacobianContinuity.h"
 #include "vtkObjectFactory.h"
@@ -61,8 +61,8 @@ vtkDataArray* SampleArray(vtkJacobianContinuity* filter, const char* name)
   return filter->GetOutput()->GetPointData()->GetArray(name);
 }
 
-/// Every estimate is within its own bound of the closed form. Returns the median of the bounds over the
-/// jumps, where there is one.
+/// Every estimate is within its own bound of the closed form. Returns the median of the bounds over
+/// the jumps, where there is one.
 double ExpectAgreementWithClosedForm(vtkJacobianContinuity* filter)
 {
   vtkDataArray* jump = SampleArray(filter, "JacobianJump");
@@ -158,10 +158,9 @@ TEST(JacobianContinuity, SimilarMeshesHaveNoJump)
   }
   for (int system = 0; system < 3; ++system)
   {
-    const auto filter = Measure(
-      MakeMesh(points, GridTriangles(10)), MakeMesh(turned, GridTriangles(10)), system);
-    EXPECT_EQ(
-      filter->GetNumberOfDifferentiableEdges(), filter->GetOutput()->GetNumberOfCells());
+    const auto filter =
+      Measure(MakeMesh(points, GridTriangles(10)), MakeMesh(turned, GridTriangles(10)), system);
+    EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), filter->GetOutput()->GetNumberOfCells());
   }
 }
 
@@ -249,11 +248,10 @@ TEST(JacobianContinuity, TheJumpIsTheOneOfAKnownMap)
   const double a = 0.5;
   const double b = 0.25;
   const std::vector<Triangle> triangles{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 } };
-  const auto source =
-    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 } },
-      triangles);
-  const auto target = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2 + a, b, 0 }, { 0, 1, 0 },
-                                 { 1, 1, 0 }, { 2 + a, 1 + b, 0 } },
+  const auto source = MakeMesh(
+    { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 } }, triangles);
+  const auto target = MakeMesh(
+    { { 0, 0, 0 }, { 1, 0, 0 }, { 2 + a, b, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2 + a, 1 + b, 0 } },
     triangles);
   const auto filter = Measure(source, target, vtkJacobianContinuity::LINEAR);
   EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 3);
@@ -271,8 +269,7 @@ TEST(JacobianContinuity, TheJumpIsTheOneOfAKnownMap)
     EXPECT_NEAR(EdgeArray(filter, "TangentialJump")->GetTuple1(i), b / norm, 1e-9);
     EXPECT_NEAR(EdgeArray(filter, "AngleJump")->GetTuple1(i),
       std::atan2(b, 1.0 + a) * 180.0 / std::acos(-1.0), 1e-7);
-    EXPECT_NEAR(
-      EdgeArray(filter, "StretchJump")->GetTuple1(i), std::hypot(1.0 + a, b) - 1.0, 1e-9);
+    EXPECT_NEAR(EdgeArray(filter, "StretchJump")->GetTuple1(i), std::hypot(1.0 + a, b) - 1.0, 1e-9);
     double cells[2];
     EdgeArray(filter, "EdgeTriangles")->GetTuple(i, cells);
     EXPECT_EQ((std::set<double>{ cells[0], cells[1] }), (std::set<double>{ 0.0, 3.0 }));
@@ -416,8 +413,8 @@ TEST(JacobianContinuity, ScaleDoesNotMatter)
     }
     for (int system = 0; system < 3; ++system)
     {
-      SCOPED_TRACE("scale " + std::to_string(std::log10(scale)) + ", system " +
-        std::to_string(system));
+      SCOPED_TRACE(
+        "scale " + std::to_string(std::log10(scale)) + ", system " + std::to_string(system));
       const auto expected = Measure(pair.Source, pair.Target, system);
       const auto found = Measure(scaled.Source, scaled.Target, system);
       EXPECT_EQ(found->GetNumberOfKinks(), expected->GetNumberOfKinks());

@@ -58,7 +58,6 @@ double CellValue(Continuity* filter, const char* name, vtkIdType cell)
   return filter->GetOutput()->GetCellData()->GetArray(name)->GetTuple1(cell);
 }
 
-
 /// The numbers of places of a type with each verdict.
 std::array<vtkIdType, 3> Count(Continuity* filter, int placeType)
 {
@@ -120,7 +119,7 @@ TEST(JacobianPlaces, EveryPlaceIsThere)
     const auto type = static_cast<int>(CellValue(filter, "PlaceType", i));
     const bool point = type == Continuity::TRIANGLE_CENTER || type == Continuity::VERTEX;
     EXPECT_EQ(output->GetCellType(i),
-      point                                ? VTK_VERTEX
+      point                                 ? VTK_VERTEX
         : type == Continuity::BOUNDARY_EDGE ? VTK_LINE
                                             : VTK_POLY_LINE);
   }
@@ -240,8 +239,8 @@ TEST(JacobianPlaces, AffinePairsAreDifferentiableInLinearAndSmoothOnly)
   ExpectAllDifferentiable(MeasureEverything(source, stretched, Continuity::LINEAR));
   ExpectAllDifferentiable(MeasureEverything(source, stretched, Continuity::SMOOTH));
   const auto contour = MeasureEverything(source, stretched, Continuity::CONTOUR);
-  for (const int type : { Continuity::EDGE, Continuity::SPOKE, Continuity::TRIANGLE_CENTER,
-         Continuity::VERTEX })
+  for (const int type :
+    { Continuity::EDGE, Continuity::SPOKE, Continuity::TRIANGLE_CENTER, Continuity::VERTEX })
   {
     EXPECT_EQ(Count(contour, type)[Continuity::DIFFERENTIABLE], 0) << "type " << type;
   }
@@ -266,8 +265,8 @@ TEST(JacobianPlaces, AnyTransformCanBeMeasuredEverywhere)
   EXPECT_EQ(Count(filter, Continuity::EDGE)[Continuity::KINK], 9);
   // The ends of the line as well: half of each direction around them is inside.
   EXPECT_EQ(Count(filter, Continuity::VERTEX)[Continuity::KINK], 10);
-  for (const int type : { Continuity::SPOKE, Continuity::WING_SEGMENT,
-         Continuity::CENTER_SEGMENT, Continuity::STRIP_BORDER, Continuity::TRIANGLE_CENTER })
+  for (const int type : { Continuity::SPOKE, Continuity::WING_SEGMENT, Continuity::CENTER_SEGMENT,
+         Continuity::STRIP_BORDER, Continuity::TRIANGLE_CENTER })
   {
     EXPECT_EQ(Count(filter, type)[Continuity::KINK], 0) << "type " << type;
   }
@@ -333,8 +332,8 @@ TEST(JacobianPlaces, VerticesOfSurfacesHaveNothingToCompare)
   }
   EXPECT_EQ(Count(filter, Continuity::TRIANGLE_CENTER)[Continuity::DIFFERENTIABLE],
     pair.Source->GetNumberOfCells());
-  EXPECT_EQ(
-    Count(filter, Continuity::SPOKE)[Continuity::DIFFERENTIABLE], 3 * pair.Source->GetNumberOfCells());
+  EXPECT_EQ(Count(filter, Continuity::SPOKE)[Continuity::DIFFERENTIABLE],
+    3 * pair.Source->GetNumberOfCells());
 }
 
 TEST(JacobianPlaces, ResultsDoNotDependOnThreads)
@@ -433,8 +432,7 @@ TEST(JacobianPlaces, AnAbortedMeasurementIsMadeAgain)
   map->SetAbortExecute(0);
   map->Modified();
   map->Update();
-  EXPECT_EQ(
-    map->GetOutputDataObject(1)->GetNumberOfElements(vtkDataObject::CELL), 3 * 1600 - 80);
+  EXPECT_EQ(map->GetOutputDataObject(1)->GetNumberOfElements(vtkDataObject::CELL), 3 * 1600 - 80);
 }
 
 TEST(JacobianPlaces, TheHomeomorphismDoesNotRunTwiceForNothing)

@@ -650,8 +650,7 @@ std::string Message(
 
 TEST(CellIdsInMessages, TrianglesWithoutArea)
 {
-  const auto flatten = [](vtkPolyData* mesh)
-  {
+  const auto flatten = [](vtkPolyData* mesh) {
     // Point 2, which triangle 2 (points 1, 2, 5) has for its own, into the opposite edge.
     double a[3];
     double b[3];
@@ -672,14 +671,17 @@ TEST(CellIdsInMessages, TrianglesWithoutArea)
 
 TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
 {
-  const auto spoil = [](vtkPolyData* mesh)
-  { mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0); };
+  const auto spoil = [](vtkPolyData* mesh) {
+    mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
+  };
   // Point 2 is a corner of triangle 2 alone.
-  EXPECT_NE(Message([&](const MeshPair& pair) { spoil(pair.Source); })
-              .find("1 triangle of the source (cell 3) has a coordinate that is not finite"),
+  EXPECT_NE(Message([&](const MeshPair& pair) {
+    spoil(pair.Source);
+  }).find("1 triangle of the source (cell 3) has a coordinate that is not finite"),
     std::string::npos);
-  EXPECT_NE(Message([&](const MeshPair& pair) { spoil(pair.Target); })
-              .find("1 triangle of the target (cell 7) has a coordinate that is not finite"),
+  EXPECT_NE(Message([&](const MeshPair& pair) {
+    spoil(pair.Target);
+  }).find("1 triangle of the target (cell 7) has a coordinate that is not finite"),
     std::string::npos);
 }
 
@@ -720,8 +722,7 @@ TEST(CellIdsInMessages, TrianglesThatOverlap)
 TEST(CellIdsInMessages, DiscordantTriangles)
 {
   // Corner 2, of triangle 2 alone, pulled far out: its foot on the opposite edge leaves that edge.
-  const auto pull = [](vtkPolyData* mesh)
-  {
+  const auto pull = [](vtkPolyData* mesh) {
     double p[3];
     mesh->GetPoint(2, p);
     mesh->GetPoints()->SetPoint(2, 4.0 * p[0], p[1], 0.0);
@@ -737,16 +738,17 @@ TEST(CellIdsInMessages, DiscordantTriangles)
 
 TEST(CellIdsInMessages, CellsThatAreNotTriangles)
 {
-  const auto add = [](vtkPolyData* mesh)
-  {
+  const auto add = [](vtkPolyData* mesh) {
     const vtkIdType square[] = { 0, 1, 4, 3 };
     mesh->GetPolys()->InsertNextCell(4, square);
   };
-  EXPECT_NE(Message([&](const MeshPair& pair) { add(pair.Target); })
-              .find("1 cell of the target (cell 13) is not a triangle"),
+  EXPECT_NE(Message([&](const MeshPair& pair) {
+    add(pair.Target);
+  }).find("1 cell of the target (cell 13) is not a triangle"),
     std::string::npos);
-  EXPECT_NE(Message([&](const MeshPair& pair) { add(pair.Source); })
-              .find("1 cell of the source (cell 9) is not a triangle"),
+  EXPECT_NE(Message([&](const MeshPair& pair) {
+    add(pair.Source);
+  }).find("1 cell of the source (cell 9) is not a triangle"),
     std::string::npos);
 }
 

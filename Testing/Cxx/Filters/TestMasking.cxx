@@ -35,8 +35,7 @@ bool HasInterior(const std::vector<Point>& points, const Triangle& triangle)
   Point normal;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const auto component = [&](int corner, int offset)
-    {
+    const auto component = [&](int corner, int offset) {
       return points[triangle[corner]][(axis + offset) % 3] -
         points[triangle[0]][(axis + offset) % 3];
     };

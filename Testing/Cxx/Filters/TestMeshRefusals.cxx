@@ -476,8 +476,7 @@ TEST(MeshRefusals, NotFinite)
       SCOPED_TRACE(testing::Message() << bad << " in coordinate " << axis);
       // Point 0 has two triangles, point 1 three.
       ExpectRefusedOnEachSide(MakePlanarPair(4, 20),
-        [&](vtkPolyData* mesh)
-        {
+        [&](vtkPolyData* mesh) {
           Point p = PointsOf(mesh)[0];
           p[axis] = bad;
           MovePoint(mesh, 0, p);
@@ -498,8 +497,7 @@ TEST(MeshRefusals, NotFiniteOnSurfaces)
     {
       const MeshPair pair{ MakeSheet(4, 21, 0.3), MakeSheet(4, 22, 0.4) };
       ExpectRefusedOnEachSide(pair,
-        [&](vtkPolyData* mesh)
-        {
+        [&](vtkPolyData* mesh) {
           Point p = PointsOf(mesh)[24];
           p[axis] = bad;
           MovePoint(mesh, 24, p);
@@ -538,8 +536,7 @@ TEST(MeshRefusals, APointThatNoTriangleUsesMayBeAnything)
 TEST(MeshRefusals, NoAreaInThePlane)
 {
   // Exactly on a line, the middle not being the midpoint.
-  const auto spoil = [](vtkPolyData* mesh)
-  {
+  const auto spoil = [](vtkPolyData* mesh) {
     MovePoint(mesh, 0, { 0.0, 0.0, 0.0 });
     MovePoint(mesh, 1, { 0.5, 0.125, 0.0 });
     MovePoint(mesh, 6, { 1.0, 0.25, 0.0 });
@@ -580,8 +577,7 @@ TEST(MeshRefusals, NoAreaInSpace)
   // Collinear but for the rounding of the coordinates.
   const MeshPair pair{ MakeSheet(4, 25, 0.3), MakeSheet(4, 26, 0.4) };
   ExpectRefusedOnEachSide(pair,
-    [](vtkPolyData* mesh)
-    {
+    [](vtkPolyData* mesh) {
       const std::vector<Point> points = PointsOf(mesh);
       Point between;
       for (int axis = 0; axis < 3; ++axis)
@@ -872,8 +868,7 @@ TEST(MeshRefusals, AStripThatRunsOverItself)
 {
   // Locally a perfect mesh; only its two ends lie on each other.
   const double pi = std::acos(-1.0);
-  const auto spiral = [pi](double turns)
-  {
+  const auto spiral = [pi](double turns) {
     std::vector<Point> points;
     std::vector<Triangle> triangles;
     constexpr vtkIdType steps = 40;

@@ -124,8 +124,8 @@ inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
 {
   std::vector<Point> points{ { 1, 0, 0 }, { 0, 1, 0 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 },
     { 0, 0, -1 } };
-  std::vector<Triangle> triangles{ { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 },
-    { 1, 0, 5 }, { 2, 1, 5 }, { 3, 2, 5 }, { 0, 3, 5 } };
+  std::vector<Triangle> triangles{ { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 }, { 1, 0, 5 },
+    { 2, 1, 5 }, { 3, 2, 5 }, { 0, 3, 5 } };
   for (int division = 0; division < divisions; ++division)
   {
     std::map<std::pair<vtkIdType, vtkIdType>, vtkIdType> middles;

@@ -137,8 +137,7 @@ public:
 bool CommonPartHasArea(const ExactTriangle& first, const ExactTriangle& second)
 {
   std::vector<RationalPoint> hull;
-  const auto add = [&](const RationalPoint& p)
-  {
+  const auto add = [&](const RationalPoint& p) {
     if (first.Contains(p) && second.Contains(p))
     {
       hull.push_back(p);
@@ -454,8 +453,7 @@ TEST(Overlap, GridsWithHolesAndSlits)
 {
   Compare(
     "grids", 3000, 1,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       Complex complex = random.Grid(random.Uniform(1, 5), 10, 2, 0, 0);
       random.Pierce(complex, random.Chance(0.7) ? 0.25 : 0.0);
       random.Slit(complex, random.Chance(0.5) ? 0.15 : 0.0);
@@ -472,8 +470,7 @@ TEST(Overlap, FoldedGrids)
 {
   Compare(
     "folded grids", 2000, 2,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       Complex complex = random.Grid(random.Uniform(2, 5), 10, 5, 0, 0);
       random.Disturb(complex, random.Uniform(0, 4), 20);
       random.Pierce(complex, random.Chance(0.5) ? 0.4 : 0.0);
@@ -487,8 +484,7 @@ TEST(Overlap, PiecesThatTouchWithoutSharingPoints)
   // Cut apart completely or partly, and perhaps one piece pushed by a single unit.
   Compare(
     "pieces", 2000, 3,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       Complex complex = random.Grid(random.Uniform(1, 4), 10, 2, 0, 0);
       random.Slit(complex, random.Chance(0.5) ? 1.0 : 0.5);
       const Complex beside = random.Grid(2, 10, 2,
@@ -505,8 +501,7 @@ TEST(Overlap, NestedPieces)
   // completely where there is no hole.
   Compare(
     "nested", 2000, 4,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       Complex complex = random.Grid(5, 10, 0, 0, 0);
       const bool pierced = random.Chance(0.8);
       std::vector<Triangulation::Corners> frame;
@@ -535,8 +530,7 @@ TEST(Overlap, FansThatGoRoundMoreThanOnce)
 {
   Compare(
     "fans", 3000, 5,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       const int turns = random.Uniform(1, 3);
       Complex complex = random.Fan(random.Uniform(5 * turns, 9 * turns), turns, random.Chance(0.5));
       if (random.Chance(0.3))
@@ -552,8 +546,7 @@ TEST(Overlap, StripsThatRunOverThemselves)
 {
   Compare(
     "strips", 3000, 6,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       const bool closed = random.Chance(0.3);
       const double turns = closed ? 1.0 : random.Uniform(60, 125) * 0.01;
       Complex complex = random.Strip(random.Uniform(8, 20), turns, closed);
@@ -571,8 +564,7 @@ TEST(Overlap, TwoFansAtOneVertex)
   // Corners that meet at a shared point, beside each other or not.
   Compare(
     "two fans", 2000, 7,
-    [](RandomComplexes& random)
-    {
+    [](RandomComplexes& random) {
       Complex complex = random.Fan(8, 1, false);
       Complex second = random.Fan(8, 1, false);
       random.Pierce(complex, 0.6);
@@ -594,8 +586,9 @@ TEST(Overlap, AnyTriangles)
   // corners touch edges and triangles coincide.
   Compare(
     "soups", 6000, 8,
-    [](RandomComplexes& random)
-    { return random.Soup(random.Uniform(3, 9), random.Uniform(2, 6), random.Uniform(2, 6)); },
+    [](RandomComplexes& random) {
+      return random.Soup(random.Uniform(3, 9), random.Uniform(2, 6), random.Uniform(2, 6));
+    },
     0.1, 0.3);
 }
 

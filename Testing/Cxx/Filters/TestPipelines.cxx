@@ -84,8 +84,7 @@ vtkDataArray* ResultOf(vtkAlgorithm* filter)
 TEST(Pipelines, PiecesOfASurface)
 {
   // A sphere over the planar domain, made in pieces by its source.
-  const auto makeSphere = []()
-  {
+  const auto makeSphere = []() {
     auto sphere = vtkSmartPointer<vtkSphereSource>::New();
     sphere->SetRadius(9.0);
     sphere->SetThetaResolution(32);
@@ -145,8 +144,7 @@ TEST(Pipelines, PiecesOfASurface)
 
 TEST(Pipelines, PiecesAndExtentsOfAnImage)
 {
-  const auto makeWavelet = []()
-  {
+  const auto makeWavelet = []() {
     auto wavelet = vtkSmartPointer<vtkRTAnalyticSource>::New();
     wavelet->SetWholeExtent(-10, 11, -9, 10, 2, 4);
     return wavelet;
@@ -156,8 +154,7 @@ TEST(Pipelines, PiecesAndExtentsOfAnImage)
   const auto alone = makeWavelet();
   const BothFilters filters(pair, wavelet->GetOutputPort());
   const BothFilters wholes(pair, alone->GetOutputPort());
-  const auto extentOf = [](vtkDataSet* data)
-  {
+  const auto extentOf = [](vtkDataSet* data) {
     auto* grid = vtkStructuredGrid::SafeDownCast(data);
     const int* extent = grid ? grid->GetExtent() : vtkImageData::SafeDownCast(data)->GetExtent();
     return std::array<int, 6>{ extent[0], extent[1], extent[2], extent[3], extent[4], extent[5] };
@@ -178,8 +175,7 @@ TEST(Pipelines, PiecesAndExtentsOfAnImage)
       std::equal(wholeExtent.begin(), wholeExtent.end(), info->Get(Pipeline::WHOLE_EXTENT())));
 
     // What is at i, j, k of a part must be what is there in the whole.
-    const auto countDifferent = [&](vtkDataSet* part)
-    {
+    const auto countDifferent = [&](vtkDataSet* part) {
       const std::array<int, 6> e = extentOf(part);
       vtkDataArray* results = ResultOf(filter);
       vtkDataArray* expected = ResultOf(whole);
@@ -233,8 +229,7 @@ TEST(Pipelines, PiecesAndExtentsOfAnImage)
 TEST(Pipelines, MeshesAreAskedForAsAWhole)
 {
   // Two spheres that are made in pieces if one asks for pieces.
-  const auto makeSphere = [](double radius)
-  {
+  const auto makeSphere = [](double radius) {
     auto sphere = vtkSmartPointer<vtkSphereSource>::New();
     sphere->SetRadius(radius);
     sphere->SetThetaResolution(24);
@@ -316,8 +311,8 @@ TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
 
 TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
 {
-  // One source of the mesh and the data cannot be asked for both whole and in pieces. The mesh is a sphere,
-  // mapped onto itself, whose source makes any piece.
+  // One source of the mesh and the data cannot be asked for both whole and in pieces. The mesh is a
+  // sphere, mapped onto itself, whose source makes any piece.
   const auto counts = [](vtkAlgorithm* filter) {
     std::vector<vtkIdType> cells;
     for (const int piece : { 0, 1, 2, 0 })
@@ -370,8 +365,8 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
     EXPECT_EQ(resample->GetNumberOfMeshBuilds(), 1);
   }
 
-  // What a map made of independent data with the same meshes comes in pieces nevertheless: the first map
-  // asks for its meshes whole as well.
+  // What a map made of independent data with the same meshes comes in pieces nevertheless: the
+  // first map asks for its meshes whole as well.
   vtkNew<vtkDifferentiableHomeomorphism> forth;
   forth->SetSourceConnection(mesh->GetOutputPort());
   forth->SetTargetConnection(same->GetOutputPort());
@@ -414,7 +409,8 @@ TEST(Pipelines, WhatIsMeasuredIsPartOfTheFirstPiece)
     continuity->Update(1);
     const vtkIdType share = piece == 0 ? 1 : 0;
     EXPECT_EQ(continuity->GetOutput(0)->GetNumberOfCells(), share * edges);
-    EXPECT_EQ(continuity->GetOutput(1)->GetNumberOfCells(), share * pair.Source->GetNumberOfCells());
+    EXPECT_EQ(
+      continuity->GetOutput(1)->GetNumberOfCells(), share * pair.Source->GetNumberOfCells());
     EXPECT_EQ(continuity->GetNumberOfKinks(), share * edges);
     EXPECT_EQ(continuity->GetLargestJump() > 0.0, piece == 0);
 
@@ -434,7 +430,8 @@ TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
 {
   // Every other point outside belongs to another piece.
   const MeshPair pair = MakeWidePair(917);
-  const auto cloud = MakeCloud({ { 0, 0, 0 }, { 99, 0, 0 }, { 98, 0, 0 }, { 97, 0, 0 }, { 1, 2, 0 } });
+  const auto cloud =
+    MakeCloud({ { 0, 0, 0 }, { 99, 0, 0 }, { 98, 0, 0 }, { 97, 0, 0 }, { 1, 2, 0 } });
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   for (const int type : { 0, int(vtkDataSetAttributes::DUPLICATEPOINT), 0,
@@ -456,8 +453,8 @@ TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
   resample->Update();
   // With one process there is nothing to reduce, with a controller or without.
   vtkNew<vtkDummyController> controller;
-  for (vtkMultiProcessController* reduced :
-    { static_cast<vtkMultiProcessController*>(controller), static_cast<vtkMultiProcessController*>(nullptr) })
+  for (vtkMultiProcessController* reduced : { static_cast<vtkMultiProcessController*>(controller),
+         static_cast<vtkMultiProcessController*>(nullptr) })
   {
     EXPECT_EQ(map->GetNumberOfOutsidePoints(), 2);
     EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 2);
@@ -492,8 +489,7 @@ TEST(Pipelines, MeshesMayComeFromFilters)
   map->SetSourceData(source);
   map->SetTargetConnection(target->GetOutputPort());
   map->SetDataObject(cloud);
-  const auto worst = [&]()
-  {
+  const auto worst = [&]() {
     map->Update();
     Worst result;
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
@@ -567,8 +563,8 @@ TEST(Pipelines, TimeStepsOfTheData)
   EXPECT_EQ(filters.Map->GetNumberOfMeshBuilds(), 1);
 }
 
-/// A mesh that is another one at each of its times: the points of @a base moved by the time, along x for
-/// points inside the square of MakeWidePair.
+/// A mesh that is another one at each of its times: the points of @a base moved by the time, along
+/// x for points inside the square of MakeWidePair.
 class MovingMesh : public vtkPolyDataAlgorithm
 {
 public:
@@ -648,7 +644,8 @@ TEST(Pipelines, TimeStepsOfTheMeshes)
       EXPECT_EQ(TimesOf(map, 0), mesh->Times);
       EXPECT_EQ(TimesOf(map, 1), mesh->Times);
       const auto moved = MovingMesh::At(mesh->Base, time);
-      const MeshPair pairThen = moving == 0 ? MeshPair{ moved, pair.Target } : MeshPair{ pair.Source, moved };
+      const MeshPair pairThen =
+        moving == 0 ? MeshPair{ moved, pair.Target } : MeshPair{ pair.Source, moved };
       const auto expected = MakeFilter(Smooth, pairThen, cloud);
       expected->MeasureContinuityOn();
       expected->Update();
@@ -667,8 +664,9 @@ TEST(Pipelines, TimeStepsOfTheMeshes)
       EXPECT_EQ(TimesOf(continuity, 1), mesh->Times);
       auto* measured = vtkPolyData::SafeDownCast(expected->GetOutputDataObject(1));
       EXPECT_EQ(CountDifferentPoints(continuity->GetOutput(), measured), 0);
-      EXPECT_EQ(CountDifferentValues(continuity->GetOutput()->GetCellData()->GetArray("JacobianJump"),
-                  measured->GetCellData()->GetArray("JacobianJump")),
+      EXPECT_EQ(
+        CountDifferentValues(continuity->GetOutput()->GetCellData()->GetArray("JacobianJump"),
+          measured->GetCellData()->GetArray("JacobianJump")),
         0);
     }
     // Each filter asked once for each time, and all asked for the same times.

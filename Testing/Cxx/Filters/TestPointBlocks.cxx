@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Points that are mapped many at a time go where each goes by itself, to the last bit, in whatever order
-// and company they come.
+// Points that are mapped many at a time go where each goes by itself, to the last bit, in whatever
+// order and company they come.
 
 #include "MappedPoints.h"
 
@@ -39,8 +39,8 @@ bool IsSame(const double* a, const double* b, int count)
   return std::memcmp(a, b, static_cast<std::size_t>(count) * sizeof(double)) == 0;
 }
 
-/// Points of the mesh, of its edges, rounded, of its triangles, row by row and anywhere, outside, far
-/// outside, and none at all.
+/// Points of the mesh, of its edges, rounded, of its triangles, row by row and anywhere, outside,
+/// far outside, and none at all.
 std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
 {
   const std::vector<Point> corners = PointsOf(mesh);

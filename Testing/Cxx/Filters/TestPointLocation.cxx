@@ -339,8 +339,7 @@ TEST(PointLocation, OnlyRoundingIsForgivenOutside)
     {
       for (const double along : { 0.0, 0.3, 3.0, 3.7, 8.0 })
       {
-        const auto at = [&](double distance)
-        {
+        const auto at = [&](double distance) {
           Point p{};
           p[axis] = high ? 8.0 + distance : -distance;
           p[1 - axis] = along;
@@ -811,8 +810,7 @@ TEST(PointLocation, TheOrderOfPointsDoesNotMatter)
 MeshPair Scaled(const MeshPair& pair, double source, double target)
 {
   const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
-  const auto scaled = [&triangles](vtkPolyData* mesh, double factor)
-  {
+  const auto scaled = [&triangles](vtkPolyData* mesh, double factor) {
     std::vector<Point> points = PointsOf(mesh);
     for (Point& p : points)
     {
@@ -1136,8 +1134,7 @@ TEST(PointLocation, AnyPlane)
       // Gram and Schmidt; the normal points along the axis it is closest to, as heights do.
       Point a{ normal(generator), normal(generator), normal(generator) };
       Point b{ normal(generator), normal(generator), normal(generator) };
-      const auto normalize = [](Point& p)
-      {
+      const auto normalize = [](Point& p) {
         const double length = std::hypot(p[0], p[1], p[2]);
         p = { p[0] / length, p[1] / length, p[2] / length };
       };

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Whether data resampled through the homeomorphism is the data at the points that the grid's points come
-// from.
+// Whether data resampled through the homeomorphism is the data at the points that the grid's points
+// come from.
 
 #include "FilterRuns.h"
 #include "TestMeshes.h"
@@ -199,8 +199,7 @@ TEST(Resample, AnyGridAndAnyDataWillDo)
   whole->Update();
   for (vtkIdType i = 0; i < field->GetNumberOfTuples(); ++i)
   {
-    const double expected =
-      whole->GetOutput()->GetPointData()->GetArray("Field")->GetTuple1(i);
+    const double expected = whole->GetOutput()->GetPointData()->GetArray("Field")->GetTuple1(i);
     if (!std::isnan(expected))
     {
       EXPECT_NEAR(field->GetTuple1(i), expected, 1e-12);

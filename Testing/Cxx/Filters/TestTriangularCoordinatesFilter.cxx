@@ -355,8 +355,7 @@ TEST(TriangularCoordinates, EveryKindOfDataKeepsItsType)
     data->GetFieldData()->AddArray(RandomArray("Constants", 1, 3, 67));
   }
 
-  const auto expectCoordinates = [&mesh](vtkDataSet* data, vtkDataObject* outputObject)
-  {
+  const auto expectCoordinates = [&mesh](vtkDataSet* data, vtkDataObject* outputObject) {
     auto* output = vtkDataSet::SafeDownCast(outputObject);
     ASSERT_TRUE(output);
     EXPECT_STREQ(output->GetClassName(), data->GetClassName());
@@ -745,8 +744,7 @@ TEST(TriangularCoordinates, ContoursOfTheSmoothSystemContinueAcrossEdges)
   // What the Smooth system is for: the contours of two neighbours that end at the same point of
   // their edge are one smooth line (seen in the plane).
   const auto mesh = MakePlanarPair(4, 795).Source;
-  const auto worstTurn = [&mesh](const System& system, int resolution)
-  {
+  const auto worstTurn = [&mesh](const System& system, int resolution) {
     const auto filter = MakeCoordinates(system, mesh);
     filter->GenerateLinesOn();
     filter->SetNumberOfContours(4);
@@ -815,8 +813,7 @@ TEST(TriangularCoordinates, DescriptionOfTheTriangles)
     // How many triangles use each edge.
     std::map<std::pair<vtkIdType, vtkIdType>, int> uses;
     vtkNew<vtkIdList> ids;
-    const auto key = [&ids](int k)
-    {
+    const auto key = [&ids](int k) {
       return std::make_pair(std::min(ids->GetId((k + 1) % 3), ids->GetId((k + 2) % 3)),
         std::max(ids->GetId((k + 1) % 3), ids->GetId((k + 2) % 3)));
     };

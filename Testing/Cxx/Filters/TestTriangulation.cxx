@@ -181,8 +181,9 @@ bool IsOrientable(const Triangulation& triangulation)
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
   std::vector<TriangleIndex> parent(2 * count);
   std::iota(parent.begin(), parent.end(), 0);
-  const std::function<TriangleIndex(TriangleIndex)> root = [&](TriangleIndex i)
-  { return parent[i] == i ? i : parent[i] = root(parent[i]); };
+  const std::function<TriangleIndex(TriangleIndex)> root = [&](TriangleIndex i) {
+    return parent[i] == i ? i : parent[i] = root(parent[i]);
+  };
   for (TriangleIndex t = 0; t < count; ++t)
   {
     for (int k = 0; k < 3; ++k)

@@ -83,8 +83,9 @@ inline AdjacentTriangles AnyAdjacentTriangles(RandomNumbers& random)
   };
   const double ratio = random.PowerOfTen(-6.0, 6.0);
   const double height = random.PowerOfTen(-1.0, 1.0) / std::sqrt(ratio);
-  const auto foot = [&random]()
-  { return random.Chance(0.5) ? random.Uniform() : random.Uniform(-20.0, 21.0); };
+  const auto foot = [&random]() {
+    return random.Chance(0.5) ? random.Uniform() : random.Uniform(-20.0, 21.0);
+  };
   const double left = foot();
   const double right = foot();
   return { place(0.0, 0.0), place(1.0, 0.0), place(left, height), place(right, -height * ratio) };

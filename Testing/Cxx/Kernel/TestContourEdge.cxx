@@ -119,13 +119,11 @@ TEST(ContourEdge, JumpIsSeenFromThePointsAlone)
     const CenterPoint center = AnyCenter(random);
     const std::array<ContourChart, 2> chartsP = Charts(p, center);
     const std::array<ContourChart, 2> chartsQ = Charts(q, center);
-    const auto derivative = [&](int side)
-    {
+    const auto derivative = [&](int side) {
       const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
       const PlacedTriangle& image = side == 0 ? q.First : q.Second;
       const double h = 2e-5 * p.Length();
-      const auto map = [&](double distance)
-      {
+      const auto map = [&](double distance) {
         const Vector2 at = p.At(w) + (side == 0 ? distance : -distance) * p.Normal();
         return image.FromFrame(MapPoint(chartsP[side], chartsQ[side], triangle.ToFrame(at)));
       };
@@ -165,8 +163,7 @@ TEST(ContourEdge, NoJumpBetweenMirrorImages)
   // each other, in P and in Q.
   RandomNumbers random(64);
   double worst = 0.0;
-  const auto mirrored = [](const AdjacentTriangles& pair) -> AdjacentTriangles
-  {
+  const auto mirrored = [](const AdjacentTriangles& pair) -> AdjacentTriangles {
     const Vector2 apex = pair.First.Corners[2];
     const double height = Dot(apex - pair.Start, pair.Normal());
     return { pair.Start, pair.End, apex, apex - (2.0 * height) * pair.Normal() };

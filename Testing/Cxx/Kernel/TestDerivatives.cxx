@@ -95,13 +95,13 @@ bool Differences(const Side<System>& from, const Side<System>& to, const Vector2
 {
   const TriangleShape& shape = from.Triangle.Shape;
   const double h = 2e-4 * shape.Base;
-  const auto region = [&from, &to](const Vector2& x)
-  {
+  const auto region = [&from, &to](const Vector2& x) {
     return std::array<int, 2>{ RegionOf(from.Chart, from.Triangle.Shape, x),
       RegionOf(to.Chart, to.Triangle.Shape, MapPoint(from.Chart, to.Chart, x)) };
   };
-  const auto away = [&shape, h](const Vector2& x, const Vector2& special)
-  { return Norm(x - special) > 200.0 * h; };
+  const auto away = [&shape, h](const Vector2& x, const Vector2& special) {
+    return Norm(x - special) > 200.0 * h;
+  };
   if (!away(point, CenterOf(from.Chart, shape)) || !away(point, shape.Corner(0)) ||
     !away(point, shape.Corner(1)) || !away(point, shape.Corner(2)))
   {
@@ -299,8 +299,7 @@ TYPED_TEST(ContourDerivatives, DirectionIsThatOfCoordinates)
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.1, 0.9);
     const double c = random.Uniform(0.1, 0.9);
-    const auto along = [&](double byP, double byC, double h)
-    {
+    const auto along = [&](double byP, double byC, double h) {
       return (0.5 / h) *
         (p.Chart.ToPoint({ e, t + byP * h, c + byC * h }) -
           p.Chart.ToPoint({ e, t - byP * h, c - byC * h }));
@@ -396,8 +395,9 @@ TYPED_TEST(ContourDerivatives, OnAnEdge)
     const Vector2 tangent = (1.0 / Norm(edge)) * edge;
     const Vector2 imageTangent = (1.0 / Norm(imageEdge)) * imageEdge;
     const Matrix2 derivative = MapDerivative(p.Chart, q.Chart, { e, t, 1.0 });
-    const auto apply = [&derivative](const Vector2& v)
-    { return v.x * derivative.ImageOfX + v.y * derivative.ImageOfY; };
+    const auto apply = [&derivative](const Vector2& v) {
+      return v.x * derivative.ImageOfX + v.y * derivative.ImageOfY;
+    };
     const double stretch = Norm(imageEdge) / Norm(edge);
     const double across = q.Chart.ContourLength(e, t) / p.Chart.ContourLength(e, t);
     const Vector2 expectedTangent = stretch * imageTangent;
@@ -428,8 +428,7 @@ TYPED_TEST(ContourDerivatives, ContourLengthDerivativeMatchesDifferences)
     {
       continue;
     }
-    const auto quotient = [&](double step)
-    {
+    const auto quotient = [&](double step) {
       return (p.Chart.ContourLength(e, t + step) - p.Chart.ContourLength(e, t - step)) /
         (2.0 * step);
     };

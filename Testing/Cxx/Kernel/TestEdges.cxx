@@ -161,8 +161,9 @@ TYPED_TEST(Edges, AreMappedLinearly)
     for (int k = 0; k < 3; ++k)
     {
       const double t = random.Uniform(0.0001, 0.9999);
-      const auto at = [k, t](const TriangleShape& shape)
-      { return (1.0 - t) * shape.Corner(NextCorner(k)) + t * shape.Corner(PreviousCorner(k)); };
+      const auto at = [k, t](const TriangleShape& shape) {
+        return (1.0 - t) * shape.Corner(NextCorner(k)) + t * shape.Corner(PreviousCorner(k));
+      };
       const Vector2 point = at(p.Triangle.Shape);
       const auto reference = p.Chart.ToReference(point);
       const Vector2 image = q.Chart.ToPoint(reference);

@@ -70,8 +70,7 @@ Wide Dot3(const Point& a, const Point& b, const Point& c, const Point& d)
 /// By the definition, times 3: 0 < (A + B + C - 3 A).(B - A) < 3 |B - A|^2.
 bool IntegerConcordant(const Point& a, const Point& b, const Point& c)
 {
-  const auto isInside = [](const Point& from, const Point& to, const Point& third)
-  {
+  const auto isInside = [](const Point& from, const Point& to, const Point& third) {
     const Wide square = Dot3(from, to, from, to);
     const Wide foot = square + Dot3(from, to, from, third);
     return foot > 0 && foot < 3 * square;
@@ -104,8 +103,7 @@ bool KernelConcordant(const Point& a, const Point& b, const Point& c, int dimens
 
 int KernelOrientation(const Point& a, const Point& b, const Point& c, int unit)
 {
-  const auto inPlane = [unit](const Point& p)
-  {
+  const auto inPlane = [unit](const Point& p) {
     const std::array<double, 3> x = ToDouble(p, unit);
     return Vector2{ x[0], x[1] };
   };

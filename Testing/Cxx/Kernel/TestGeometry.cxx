@@ -33,8 +33,7 @@ TEST(Geometry, ViewFromEdgeIsGoodToAFewUlp)
   {
     // At most 26 bits, so that products are exact as 64-bit integers. Edges and opposite corners
     // are short or long independently; often the three points are almost on a line.
-    const auto component = [&random]()
-    {
+    const auto component = [&random]() {
       const int bits = random.Integer(1, 25);
       return random.Integer(-(1 << bits), 1 << bits);
     };

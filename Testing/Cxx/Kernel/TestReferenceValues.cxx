@@ -82,8 +82,8 @@ std::array<Neighbor, 3> Neighbors(
   for (int k = 0; k < 3; ++k)
   {
     const std::string number = std::to_string(k + 1);
-    neighbors[k] = triangle.NeighborWithApex(
-      k, { row.at(side + "nx" + number), row.at(side + "ny" + number) });
+    neighbors[k] =
+      triangle.NeighborWithApex(k, { row.at(side + "nx" + number), row.at(side + "ny" + number) });
   }
   return neighbors;
 }
@@ -124,8 +124,7 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
     const Vector2 point{ row.at("x"), row.at("y") };
     const auto reference = chartP.ToReference(p.ToFrame(point));
     const TriangularCoordinates found = chartP.ToCoordinates(reference);
-    const TriangularCoordinates expected{ static_cast<int>(row.at("e")), row.at("p"),
-      row.at("c") };
+    const TriangularCoordinates expected{ static_cast<int>(row.at("e")), row.at("p"), row.at("c") };
     EXPECT_EQ(found.Edge, expected.Edge);
     const double distance =
       std::hypot((found.EdgeParameter - expected.EdgeParameter) * expected.ContourParameter,
@@ -147,8 +146,7 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
     const double carried = extent * Norm(expectedDerivative) + imageExtent;
     worst.Point = std::max(worst.Point, Norm(image - expectedImage) / carried);
 
-    const Matrix2 derivative =
-      InPlane(p, q, MapDerivative(chartP, chartQ, reference));
+    const Matrix2 derivative = InPlane(p, q, MapDerivative(chartP, chartQ, reference));
     // Near the centre of a Contour triangle and near the vertices the derivative depends on the
     // direction from there, and so on the last bit of the point: what moving the point by that much
     // does to the derivative is the error to be expected.
@@ -165,8 +163,7 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
     }
     const double allowed =
       unavoidable + ulp * std::max(Aspect(p), Aspect(q)) * Norm(expectedDerivative);
-    worst.Derivative =
-      std::max(worst.Derivative, Norm(derivative - expectedDerivative) / allowed);
+    worst.Derivative = std::max(worst.Derivative, Norm(derivative - expectedDerivative) / allowed);
   }
   std::cout << name << ": " << rows.size() << " rows; worst error of coordinates "
             << worst.Coordinates << " of the triangle, of points " << worst.Point
@@ -185,8 +182,9 @@ TEST(ReferenceValues, Linear)
 
 TEST(ReferenceValues, Contour)
 {
-  CompareTable("ReferenceContour.csv", 1000,
-    [](const Row&, const char*, const PlacedTriangle& t) { return ContourChart(t.Shape, t.Views()); });
+  CompareTable("ReferenceContour.csv", 1000, [](const Row&, const char*, const PlacedTriangle& t) {
+    return ContourChart(t.Shape, t.Views());
+  });
 }
 
 TEST(ReferenceValues, ContourFromIncenter)

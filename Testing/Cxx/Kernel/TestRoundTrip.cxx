@@ -295,4 +295,15 @@ TYPED_TEST(RoundTrip, CoordinatesToPointToCoordinates)
   EXPECT_LT(worst, 1e-13);
 }
 
+/// Near the tip of a flat cap, where arcs turn by almost a right angle, whose cosine was lost: a
+/// root was taken for found that was half an edge away.
+TEST(ContourRoundTrip, NearTheTipOfACap)
+{
+  const PlacedTriangle triangle({ Vector2{ 40.334549577597691, 0.0 }, { 0.0, 0.0 },
+    { 20.167274795109954, -0.00039122220690191047 } });
+  const ContourChart chart(triangle.Shape, triangle.Views());
+  const Vector2 point = triangle.ToFrame({ 40.334549528054019, -6.4072727144124634e-13 });
+  EXPECT_LT(Norm(chart.ToPoint(chart.ToReference(point)) - point), 1e-14 * triangle.Shape.Base);
+}
+
 } // namespace

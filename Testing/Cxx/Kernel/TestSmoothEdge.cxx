@@ -97,22 +97,21 @@ TEST(SmoothEdge, SecondDerivativesAgree)
     const Vector2 point = p.At(random.Uniform(0.2, 0.8));
     // To the first triangle and, with the sign changed, to the second.
     const Vector2 inward = p.Normal() + random.Uniform(-1.0, 1.0) * p.Tangent();
-    const auto jacobian = [&](int side, double distance)
-    {
+    const auto jacobian = [&](int side, double distance) {
       const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
       const PlacedTriangle& image = side == 0 ? q.First : q.Second;
       const Vector2 at = point + ((side == 0 ? distance : -distance) * p.Length()) * inward;
       const Barycentric l = chartsP[side].ToReference(triangle.ToFrame(at));
       return Jacobian(triangle, chartsP[side], image, chartsQ[side], l);
     };
-    const auto derivative = [&](int side, double h) -> Matrix2
-    {
+    const auto derivative = [&](int side, double h) -> Matrix2 {
       const Matrix2 at0 = jacobian(side, 0.0);
       const Matrix2 at1 = jacobian(side, h);
       const Matrix2 at2 = jacobian(side, 2.0 * h);
       const double factor = (side == 0 ? 0.5 : -0.5) / h;
-      const auto combine = [factor](const Vector2& a, const Vector2& b, const Vector2& c)
-      { return factor * (4.0 * b - 3.0 * a - c); };
+      const auto combine = [factor](const Vector2& a, const Vector2& b, const Vector2& c) {
+        return factor * (4.0 * b - 3.0 * a - c);
+      };
       return { combine(at0.ImageOfX, at1.ImageOfX, at2.ImageOfX),
         combine(at0.ImageOfY, at1.ImageOfY, at2.ImageOfY) };
     };
@@ -149,8 +148,7 @@ TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
     using Wide = long double;
     const Wide ex = static_cast<Wide>(p.End.x) - p.Start.x;
     const Wide ey = static_cast<Wide>(p.End.y) - p.Start.y;
-    const auto fromMiddle = [&](const Vector2& apex) -> std::array<Wide, 2>
-    {
+    const auto fromMiddle = [&](const Vector2& apex) -> std::array<Wide, 2> {
       return { apex.x - 0.5L * (static_cast<Wide>(p.Start.x) + p.End.x),
         apex.y - 0.5L * (static_cast<Wide>(p.Start.y) + p.End.y) };
     };
@@ -190,13 +188,11 @@ TEST(SmoothEdge, AffineImagesGiveTheAffineMap)
     const double a = random.Uniform(0.0, 6.283185307179586);
     const double b = random.Uniform(0.0, 6.283185307179586);
     const double stretch = random.PowerOfTen(-1.0, 1.0);
-    const auto turn = [](const Vector2& v, double angle) -> Vector2
-    {
+    const auto turn = [](const Vector2& v, double angle) -> Vector2 {
       return { v.x * std::cos(angle) - v.y * std::sin(angle),
         v.x * std::sin(angle) + v.y * std::cos(angle) };
     };
-    const auto linear = [&](const Vector2& v)
-    {
+    const auto linear = [&](const Vector2& v) {
       const Vector2 turned = turn(v, a);
       return turn({ stretch * turned.x, turned.y }, b);
     };

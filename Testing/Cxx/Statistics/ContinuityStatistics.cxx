@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How often vtkJacobianContinuity is right: its verdicts on more than 10,000 edges of each of eight maps,
-// and on every other kind of place, against what mathematics says; and what it costs.
+// How often vtkJacobianContinuity is right: its verdicts on more than 10,000 edges of each of eight
+// maps, and on every other kind of place, against what mathematics says; and what it costs.
 //
 //   ContinuityStatistics [TRIANGLES]
 //
-// Fails if a verdict is wrong, if an estimate is farther from the closed form than its own bound, or if
-// more than one verdict in a hundred is left open (one in twenty at wing segments). The last line is the time for a pair of TRIANGLES
-// triangles, 100,000 if none are given.
+// Fails if a verdict is wrong, if an estimate is farther from the closed form than its own bound,
+// or if more than one verdict in a hundred is left open (one in twenty at wing segments). The last
+// line is the time for a pair of TRIANGLES triangles, 100,000 if none are given.
 
 #include "../Filters/MeasuredMaps.h"
 
@@ -79,7 +79,8 @@ void CompareWithClosedForm(vtkPolyData* output, vtkIdType cell, Tally& tally)
   }
 }
 
-/// Runs the filter, adds a row to the table for each kind of place, and returns whether all is well.
+/// Runs the filter, adds a row to the table for each kind of place, and returns whether all is
+/// well.
 bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
 {
   filter->Update();
@@ -92,8 +93,7 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
     Tally& tally = tallies[type];
     ++tally.Count;
     ++tally.Verdicts[verdict];
-    tally.Wrong +=
-      verdict != Continuity::UNDECIDED && verdict != expected(filter, cell, type);
+    tally.Wrong += verdict != Continuity::UNDECIDED && verdict != expected(filter, cell, type);
     CompareWithClosedForm(output, cell, tally);
   }
   bool good = true;
@@ -124,8 +124,8 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
         static_cast<double>(tally.Count),
       static_cast<long long>(tally.Wrong), static_cast<long long>(tally.BeyondBound),
       median.c_str());
-    // Beside a wing segment the Contour map is often made of more pieces, too close to tell apart: the
-    // wing segments of the target are not the images of those of the source.
+    // Beside a wing segment the Contour map is often made of more pieces, too close to tell apart:
+    // the wing segments of the target are not the images of those of the source.
     const vtkIdType rarely = type == Continuity::WING_SEGMENT ? 20 : 100;
     good = good && tally.Wrong == 0 && tally.BeyondBound == 0 &&
       rarely * tally.Verdicts[Continuity::UNDECIDED] <= tally.Count;
@@ -134,9 +134,9 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
   return good;
 }
 
-/// Which places have a kink in a random pair, by the theorems of Documentation/Answer.md. The triangles at
-/// two corners of the grid, which have all their points on its boundary, are the same in both meshes and
-/// mapped by the identity.
+/// Which places have a kink in a random pair, by the theorems of Documentation/Answer.md. The
+/// triangles at two corners of the grid, which have all their points on its boundary, are the same
+/// in both meshes and mapped by the identity.
 int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int placeType, vtkPolyData* source)
 {
   bool kink = false;
@@ -179,9 +179,11 @@ bool EvaluateSystems(const MeshPair& pair, bool everyPlace)
     filter->SetStripBorders(everyPlace);
     filter->SetCentroids(everyPlace);
     filter->SetVertices(everyPlace);
-    good = Evaluate(names[system], filter, [&pair](Continuity* f, vtkIdType cell, int type) {
-      return ExpectedOfSystem(f, cell, type, pair.Source);
-    }) && good;
+    good = Evaluate(names[system], filter,
+             [&pair](Continuity* f, vtkIdType cell, int type) {
+               return ExpectedOfSystem(f, cell, type, pair.Source);
+             }) &&
+      good;
   }
   return good;
 }
@@ -286,8 +288,7 @@ int main(int argc, char* argv[])
   pieces->Exponent = 1;
   pieces->Amount = 1e-6;
   pieces->Modified();
-  good =
-    EvaluateTransform("kink of 1e-6", RegularGrid(60), pieces, KinkOnUprightLines) && good;
+  good = EvaluateTransform("kink of 1e-6", RegularGrid(60), pieces, KinkOnUprightLines) && good;
 
   good = EvaluateSystems(MakePlanarPair(20, 7, 0.15), true) && good;
   std::printf("\n(1) estimates farther from the closed form than their own error bound\n"

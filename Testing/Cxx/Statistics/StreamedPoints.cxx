@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Lets an image that is never there as a whole pass through vtkDifferentiableHomeomorphism piece by piece,
-// and tells how much memory that takes (Linux only).
+// Lets an image that is never there as a whole pass through vtkDifferentiableHomeomorphism piece by
+// piece, and tells how much memory that takes (Linux only).
 //
 //   StreamedPoints [POINTS [PIECES [MEGABYTES]]]
 //
-// By default 100,000,000 points in 100 pieces. Fails if the peak is more than MEGABYTES (1000) beyond what
-// the process has before and one piece takes, if points are missing or outside, or if their determinants do
-// not have the mean that they must have.
+// By default 100,000,000 points in 100 pieces. Fails if the peak is more than MEGABYTES (1000)
+// beyond what the process has before and one piece takes, if points are missing or outside, or if
+// their determinants do not have the mean that they must have.
 
 #include "../Filters/FilterRuns.h"
 
@@ -89,7 +89,8 @@ int main(int argc, char* argv[])
     piece = std::max(piece, MemoryOf(output));
     passed += static_cast<double>(output->GetNumberOfPoints());
     outside += static_cast<double>(map->GetNumberOfOutsidePoints());
-    // Points on the borders of pieces are there more than once: each stands for a part of the plane.
+    // Points on the borders of pieces are there more than once: each stands for a part of the
+    // plane.
     vtkDataArray* determinants = PointArray(output, "JacobianDeterminant");
     int extent[6];
     output->GetExtent(extent);

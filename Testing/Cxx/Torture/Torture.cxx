@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Maps as many points as asked for, in the meanest meshes and at the meanest places, and compares what
-// happens with the limits that Documentation/Limits.md states. The result depends on the seed and on the
-// number of points alone, not on the number of threads.
+// Maps as many points as asked for, in the meanest meshes and at the meanest places, and compares
+// what happens with the limits that Documentation/Limits.md states. The result depends on the seed
+// and on the number of points alone, not on the number of threads.
 //
 //   Torture [--points N] [--seconds S] [--seed N] [--system NAME] [--family NAME] [--threads N]
 //   Torture --reproduce SYSTEM FAMILY CASE [--seed N]
@@ -220,9 +220,9 @@ private:
     std::uint64_t seed, const TestedSystem& system, int family, std::int64_t number)
   {
     std::uint64_t x = seed;
-    for (const std::uint64_t part : { static_cast<std::uint64_t>(system.System),
-           static_cast<std::uint64_t>(system.Center), static_cast<std::uint64_t>(family),
-           static_cast<std::uint64_t>(number) })
+    for (const std::uint64_t part :
+      { static_cast<std::uint64_t>(system.System), static_cast<std::uint64_t>(system.Center),
+        static_cast<std::uint64_t>(family), static_cast<std::uint64_t>(number) })
     {
       // splitmix64
       x += 0x9e3779b97f4a7c15u * (part + 1);
@@ -253,7 +253,8 @@ private:
       l[0] * corners[0].y + l[1] * corners[1].y + l[2] * corners[2].y };
   }
 
-  /// A place in the input's coordinates: anywhere, on and within a few ulp of where formulas change.
+  /// A place in the input's coordinates: anywhere, on and within a few ulp of where formulas
+  /// change.
   Vector3 AnyPoint(Side side, TriangleIndex triangle)
   {
     RandomNumbers& random = this->Random;
@@ -321,18 +322,18 @@ private:
     switch (this->System.System)
     {
       case homeomorphism::CoordinateSystem::Smooth:
-        return Combined(corners,
-          OnStripBorder(k, charts.GetSmoothChart(triangle).StripWidth(k), proportion));
+        return Combined(
+          corners, OnStripBorder(k, charts.GetSmoothChart(triangle).StripWidth(k), proportion));
       case homeomorphism::CoordinateSystem::Contour:
       {
         // A wing segment, in the triangle's frame.
         const homeomorphism::ContourChart& chart = charts.GetContourChart(triangle);
         const Embedding& embedding = this->EmbeddingOf(side);
         const Vector2 middle = 0.5 * (chart.Center() + chart.Foot(k + 1));
-        const Vector2 end = embedding.GetShape(triangle).Corner(
-          proportion < 0.3 ? NextCorner(k) : PreviousCorner(k));
-        const Vector3 working = embedding.FromFrame(
-          triangle, { (1.0 - proportion) * middle + proportion * end, 0.0 });
+        const Vector2 end =
+          embedding.GetShape(triangle).Corner(proportion < 0.3 ? NextCorner(k) : PreviousCorner(k));
+        const Vector3 working =
+          embedding.FromFrame(triangle, { (1.0 - proportion) * middle + proportion * end, 0.0 });
         return { working[0], working[1] };
       }
       default:
@@ -342,8 +343,7 @@ private:
 
   Location Locate(Side side, const Vector3& point, TriangleIndex hint) const
   {
-    return this->Map->Locate(
-      side, point.data(), this->Map->GetReach(side, 0.0, HalfUlp), hint);
+    return this->Map->Locate(side, point.data(), this->Map->GetReach(side, 0.0, HalfUlp), hint);
   }
 
   /// The derivative in working coordinates, and its determinant.
@@ -370,13 +370,12 @@ private:
       jacobian.Determinant * rescale * rescale };
   }
 
-  /// The size of numbers in a triangle: the largest coordinate of its corners, and not less than the
-  /// least normal number of the input, below which numbers are coarser.
+  /// The size of numbers in a triangle: the largest coordinate of its corners, and not less than
+  /// the least normal number of the input, below which numbers are coarser.
   double SizeOf(Side side, TriangleIndex triangle) const
   {
     const Corners corners = this->CornersOf(side, triangle);
-    double size =
-      std::numeric_limits<double>::min() * this->EmbeddingOf(side).GetScale();
+    double size = std::numeric_limits<double>::min() * this->EmbeddingOf(side).GetScale();
     for (const Vector2& p : corners)
     {
       size = std::max({ size, std::abs(p.x), std::abs(p.y) });
@@ -409,8 +408,7 @@ private:
       const Vector2 edge = end - start;
       const double length = Norm(edge);
       const Vector2 d = point - start;
-      const double along =
-        std::min(1.0, std::max(0.0, Dot(d, (1.0 / length) * edge) / length));
+      const double along = std::min(1.0, std::max(0.0, Dot(d, (1.0 / length) * edge) / length));
       nearest = std::min(nearest, Norm(d - along * edge));
     }
     // Written so that NaN counts as outside.
@@ -473,8 +471,7 @@ private:
     if (place.Triangle < 0)
     {
       // A few ulp aside is outside if it is farther than the reach, which is itself rounded.
-      if (!(this->DistanceFromDomain(from, point) >
-            0.25 * this->Map->GetReach(from, 0.0, HalfUlp)))
+      if (!(this->DistanceFromDomain(from, point) > 0.25 * this->Map->GetReach(from, 0.0, HalfUlp)))
       {
         this->Lose(i);
       }
@@ -486,7 +483,8 @@ private:
     const Vector3 p = source.FromFrame(place.Triangle, place.Point);
     const Vector2 start{ p[0], p[1] };
     this->Take(LOCATION,
-      Norm(start - Vector2{ w[0], w[1] }) / (LocationLimit * HalfUlp * source.GetLargestCoordinate()),
+      Norm(start - Vector2{ w[0], w[1] }) /
+        (LocationLimit * HalfUlp * source.GetLargestCoordinate()),
       i);
 
     // The image lies in the triangle's counterpart.
@@ -497,8 +495,8 @@ private:
     const double targetSize = this->SizeOf(to, place.Triangle);
     this->Take(INSIDE, DistanceOutside(imageCorners, y) / (InsideLimit * HalfUlp * targetSize), i);
 
-    // The determinant is positive, or negative if the pair is mirrored, as rounding to millimetres does to
-    // some.
+    // The determinant is positive, or negative if the pair is mirrored, as rounding to millimetres
+    // does to some.
     const Derivative derivative = this->DerivativeAt(from, place);
     const Corners corners = this->CornersOf(from, place.Triangle);
     const int sense = Orientation(corners[0], corners[1], corners[2]) *
@@ -550,8 +548,8 @@ private:
     double limit = RoundTripLimit * HalfUlp * (sourceSize + inverseNorm * stretchedSize);
     if (!(error <= limit))
     {
-      // Where the derivative changes within the rounding of the image, what a change of the image by rounding
-      // amounts to is the limit.
+      // Where the derivative changes within the rounding of the image, what a change of the image
+      // by rounding amounts to is the limit.
       limit += 4.0 * this->LargestShiftNear(to, image, 32.0 * HalfUlp * stretchedSize, back);
     }
     this->Take(ROUND_TRIP, error / limit, i);
@@ -564,13 +562,15 @@ private:
                 << second.EdgeParameter << ", " << second.ContourParameter << ")\n"
                 << "  comes back to " << back.x / this->EmbeddingOf(from).GetScale() << ", "
                 << back.y / this->EmbeddingOf(from).GetScale() << "\n"
-                << "  round trip's error " << error << " at sizes " << sourceSize << " and " << stretchedSize
-                << ", |J^-1| " << inverseNorm << ", det J " << derivative.Determinant << "\n";
+                << "  round trip's error " << error << " at sizes " << sourceSize << " and "
+                << stretchedSize << ", |J^-1| " << inverseNorm << ", det J "
+                << derivative.Determinant << "\n";
     }
   }
 
-  /// How far the images of points at most a distance away from a point are from a place: by how much the map
-  /// from @a from's domain turns rounding into errors, however fast its derivative changes.
+  /// How far the images of points at most a distance away from a point are from a place: by how
+  /// much the map from @a from's domain turns rounding into errors, however fast its derivative
+  /// changes.
   double LargestShiftNear(
     Side from, const Vector3& point, double distance, const Vector2& image) const
   {
@@ -588,8 +588,7 @@ private:
       // A triangle may be thinner than the distance: its whole thickness counts, there.
       for (int i = 0; i < 5; ++i)
       {
-        const double x =
-          std::min(shape.Base, std::max(0.0, center.x + 0.5 * (i - 2) * distance));
+        const double x = std::min(shape.Base, std::max(0.0, center.x + 0.5 * (i - 2) * distance));
         const double thickness = x < shape.ApexX
           ? shape.Height * (x / shape.ApexX)
           : shape.Height * ((shape.Base - x) / (shape.Base - shape.ApexX));
@@ -634,8 +633,8 @@ private:
     return v.x * matrix.ImageOfX + v.y * matrix.ImageOfY;
   }
 
-  /// Maps a triangle around the place, so small that the map is almost affine on it and so large that
-  /// rounding does not matter, and looks at its orientation.
+  /// Maps a triangle around the place, so small that the map is almost affine on it and so large
+  /// that rounding does not matter, and looks at its orientation.
   void MeasureOrientation(int i, Side from, const Location& place, double targetSize)
   {
     const homeomorphism::TriangleShape& shape = this->EmbeddingOf(from).GetShape(place.Triangle);
@@ -679,8 +678,8 @@ private:
       const Vector2& corner = places[0].Point.InPlane;
       const Vector2 first = places[1].Point.InPlane - corner;
       const Vector2 second = places[2].Point.InPlane - corner;
-      // What rounding leaves of the triangle itself: as much of a needle as of any triangle, but for
-      // Contour, whose frames are those of the edges.
+      // What rounding leaves of the triangle itself: as much of a needle as of any triangle, but
+      // for Contour, whose frames are those of the edges.
       const double area = Cross(first, second);
       if (area < 1e-3 * size * size * shape.Base * shape.Height ||
         (this->System.System == homeomorphism::CoordinateSystem::Contour &&
@@ -694,8 +693,8 @@ private:
       double longest = 0.0;
       for (int a = 0; a < count && tame; ++a)
       {
-        longest =
-          std::max({ longest, Norm(Times(derivatives[a], first)), Norm(Times(derivatives[a], second)) });
+        longest = std::max(
+          { longest, Norm(Times(derivatives[a], first)), Norm(Times(derivatives[a], second)) });
         for (int b = 0; b < count; ++b)
         {
           const double other = Cross(Times(derivatives[a], first), Times(derivatives[b], second));
@@ -753,8 +752,8 @@ struct Options
 };
 
 /// Runs cases of one system and family until their points or the time are used up.
-Report RunCases(const Options& options, const TestedSystem& system, int family, double points,
-  double seconds)
+Report RunCases(
+  const Options& options, const TestedSystem& system, int family, double points, double seconds)
 {
   const auto start = std::chrono::steady_clock::now();
   const auto enough = [&](std::int64_t number) {
@@ -794,16 +793,16 @@ Report RunCases(const Options& options, const TestedSystem& system, int family, 
 
 bool Print(const TestedSystem& system, int family, const Report& report)
 {
-  std::cout << "| " << system.Name << " | " << Families[family].Name << " | " << report.Pairs << " | "
-            << report.Points << " | " << report.Lost;
+  std::cout << "| " << system.Name << " | " << Families[family].Name << " | " << report.Pairs
+            << " | " << report.Points << " | " << report.Lost;
   bool good = report.Lost == 0;
   for (const int q : { LOCATION, INSIDE, ROUND_TRIP })
   {
     std::cout << " | " << report.Worsts[q].Value << " (" << report.Worsts[q].Case << ")";
   }
-  std::cout << " | " << (report.Worsts[DETERMINANT].Value > 1.0 ? "NOT POSITIVE" : "positive") << " | "
-            << report.Oriented << (report.Worsts[ORIENTATION].Value > 1.0 ? " NOT ALL KEPT" : "")
-            << " |" << std::endl;
+  std::cout << " | " << (report.Worsts[DETERMINANT].Value > 1.0 ? "NOT POSITIVE" : "positive")
+            << " | " << report.Oriented
+            << (report.Worsts[ORIENTATION].Value > 1.0 ? " NOT ALL KEPT" : "") << " |" << std::endl;
   const auto tell = [&](const char* what, std::int64_t number) {
     std::cout << "LIMIT BROKEN: " << what << "; Torture --reproduce " << system.Name << " "
               << Families[family].Name << " " << number << "\n";
@@ -936,9 +935,10 @@ int main(int argc, char* argv[])
   }
 
   std::cout.precision(3);
-  std::cout << "| system | family | pairs | points | lost | location (case) | image inside (case) | "
-               "round trip (case) | det J | triangles whose orientation was kept |\n"
-               "|---|---|--:|--:|--:|--:|--:|--:|---|--:|\n";
+  std::cout
+    << "| system | family | pairs | points | lost | location (case) | image inside (case) | "
+       "round trip (case) | det J | triangles whose orientation was kept |\n"
+       "|---|---|--:|--:|--:|--:|--:|--:|---|--:|\n";
   const auto share = static_cast<double>(chosen.size());
   bool good = true;
   Report total;

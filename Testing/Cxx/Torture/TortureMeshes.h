@@ -28,7 +28,8 @@ struct TestedSystem
   homeomorphism::CenterPoint Center;
   /// Power of ten of the least height over base that the system can take.
   double Thinnest;
-  /// By what the powers of ten of all shapes are multiplied: less than 1 for a system that takes less.
+  /// By what the powers of ten of all shapes are multiplied: less than 1 for a system that takes
+  /// less.
   double Malice;
 
   /// Whether all triangles must be concordant.
@@ -66,7 +67,8 @@ enum FamilyIndex
 constexpr std::array<Family, 7> Families{ {
   { "fair", "grids, fans and clusters of triangles that are neither thin nor small" },
   { "ratios", "areas across edges up to 1e12 times each other, apexes up to 20 edges aside" },
-  { "needles", "needles and caps, as thin as 1e-15, and far thinner where an edge is parallel to an axis" },
+  { "needles",
+    "needles and caps, as thin as 1e-15, and far thinner where an edge is parallel to an axis" },
   { "survey", "coordinates of a national grid: seven digits before the point, three behind" },
   { "small", "any of these, coordinates about 1e-300" },
   { "large", "any of these, coordinates about 1e300" },
@@ -98,7 +100,8 @@ inline Vector2 AnyApex(RandomNumbers& random, Shape shape, double malice, double
     case Shape::Fair:
       return { random.Uniform(-0.3, 1.3), random.Uniform(0.3, 1.5) };
     case Shape::Ratio:
-      return { random.Chance(0.5) ? random.Uniform() : random.Uniform(-20.0 * malice, 1.0 + 20.0 * malice),
+      return { random.Chance(0.5) ? random.Uniform()
+                                  : random.Uniform(-20.0 * malice, 1.0 + 20.0 * malice),
         random.PowerOfTen(-6.0 * malice, 6.0 * malice) };
     default:
       return { random.Proportion(),
@@ -147,35 +150,37 @@ inline std::vector<Vector2> TwoTriangles(
 /// A triangle and its three neighbours; they may overlap, in which case the mesh is refused.
 inline std::vector<Vector2> Cluster(RandomNumbers& random, Shape shape, double malice)
 {
-  std::vector<Vector2> points{ { 0.0, 0.0 }, { 1.0, 0.0 }, AnyApex(random, shape, malice, -15.0 * malice) };
+  std::vector<Vector2> points{ { 0.0, 0.0 }, { 1.0, 0.0 },
+    AnyApex(random, shape, malice, -15.0 * malice) };
   for (int k = 0; k < 3; ++k)
   {
     const Vector2 start = points[NextCorner(k)];
     const Vector2 edge = points[PreviousCorner(k)] - start;
-    const double height = shape == Shape::Fair ? random.Uniform(0.1, 0.8)
-                                               : random.PowerOfTen(-12.0 * malice, 0.0);
-    points.push_back(start + random.Uniform(0.05, 0.95) * edge + height * Vector2{ edge.y, -edge.x });
+    const double height =
+      shape == Shape::Fair ? random.Uniform(0.1, 0.8) : random.PowerOfTen(-12.0 * malice, 0.0);
+    points.push_back(
+      start + random.Uniform(0.05, 0.95) * edge + height * Vector2{ edge.y, -edge.x });
   }
   return points;
 }
 
 /// A vertex with @a count triangles around it.
-inline std::vector<Vector2> Fan(
-  RandomNumbers& random, Shape shape, double malice, int count)
+inline std::vector<Vector2> Fan(RandomNumbers& random, Shape shape, double malice, int count)
 {
   std::vector<double> angles(count);
   double sum = 0.0;
   for (double& angle : angles)
   {
-    angle = shape == Shape::Thin ? random.PowerOfTen(-12.0 * malice, 0.0) : random.Uniform(0.2, 1.0);
+    angle =
+      shape == Shape::Thin ? random.PowerOfTen(-12.0 * malice, 0.0) : random.Uniform(0.2, 1.0);
     sum += angle;
   }
   std::vector<Vector2> points{ { 0.0, 0.0 } };
   double at = 0.0;
   for (const double angle : angles)
   {
-    const double radius =
-      shape == Shape::Fair ? random.Uniform(0.5, 1.5) : random.PowerOfTen(-3.0 * malice, 3.0 * malice);
+    const double radius = shape == Shape::Fair ? random.Uniform(0.5, 1.5)
+                                               : random.PowerOfTen(-3.0 * malice, 3.0 * malice);
     points.push_back({ radius * std::cos(at), radius * std::sin(at) });
     at += 6.283185307179586 * angle / sum;
   }
@@ -260,7 +265,8 @@ inline void Put(RandomNumbers& random, int family, bool turn, std::vector<Vector
   }
 }
 
-/// A pair of a family. It may turn out to be no valid pair, above all where coordinates are rounded.
+/// A pair of a family. It may turn out to be no valid pair, above all where coordinates are
+/// rounded.
 inline PlanePair AnyPair(RandomNumbers& random, int family, const TestedSystem& system)
 {
   Shape shape = Shape::Fair;
