@@ -25,6 +25,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkExecutive.h"
 #include "vtkIdList.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
@@ -115,6 +116,30 @@ inline void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
   if (pointSet && pointSet->GetPoints())
   {
     ReadPoints(pointSet->GetPoints()->GetData(), first, block);
+    return;
+  }
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    // As GetPoint, without finding the row anew for each point.
+    const int* extent = image->GetExtent();
+    const int* dimensions = image->GetDimensions();
+    const vtkIdType row = first / dimensions[0];
+    int index[3] = { static_cast<int>(first % dimensions[0]), static_cast<int>(row % dimensions[1]),
+      static_cast<int>(row / dimensions[1]) };
+    for (int i = 0; i < block.Count; ++i)
+    {
+      image->TransformIndexToPhysicalPoint(
+        extent[0] + index[0], extent[2] + index[1], extent[4] + index[2], block.Points[i]);
+      if (++index[0] == dimensions[0])
+      {
+        index[0] = 0;
+        if (++index[1] == dimensions[1])
+        {
+          index[1] = 0;
+          ++index[2];
+        }
+      }
+    }
     return;
   }
   for (int i = 0; i < block.Count; ++i)

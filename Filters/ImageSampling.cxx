@@ -29,7 +29,7 @@ Value FromDouble(double value)
   if constexpr (std::is_integral<Value>::value)
   {
     // A mean of numbers of the type is within its range.
-    return static_cast<Value>(std::floor(value + 0.5));
+    return static_cast<Value>(value + (value < 0.0 ? -0.5 : 0.5));
   }
   else
   {
