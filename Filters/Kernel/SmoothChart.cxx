@@ -292,7 +292,7 @@ void MapSmoothLanes(SmoothLanes& lanes, int count)
   constexpr int width = 32;
   static_assert(SmoothLanes::Capacity % width == 0, "whole groups of lanes");
   const int end = (count + width - 1) / width * width;
-  FillSmoothLanes(lanes, count, end);
+  FillSmoothLanes(lanes, count, std::max(end, count + WidestVector));
   for (int first = 0; first < end; first += width)
   {
     double* k = lanes.L[0] + first;

@@ -250,6 +250,12 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
       }
     }
   }
+  // What whole vectors read beyond the points.
+  for (int i = block.Count; i < block.Count + WidestVector; ++i)
+  {
+    working[0][i] = working[1][i] = working[2][i] = 0.0;
+    block.Apex[i] = block.First[i] = block.Second[i] = 0.0;
+  }
   int moves = 0;
   int outside = 0;
   int steps = 0;
@@ -318,6 +324,7 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
     }
     else
     {
+      block.Apex[i] = block.First[i] = block.Second[i] = 0.0;
       ++outside;
     }
     ++i;
