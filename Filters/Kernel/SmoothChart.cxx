@@ -32,7 +32,9 @@ struct StripFunction
   {
     // One division for 1 / sum and k / (tau q) = k sum / product.
     const double sum = next + previous;
-    const double product = tau * (next * previous);
+    // Where it would underflow, within so little of a corner, there is nothing to tell apart.
+    double product = tau * (next * previous);
+    product += 1e-290;
     const double over = 1.0 / (sum * product);
     const double overSum = product * over;
     this->ShareNext = next * overSum;
