@@ -11,6 +11,7 @@
 #include "CellPoints.h"
 
 #include "Mesh/HomeomorphismCache.h"
+#include "Mesh/MeshValidation.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkAlgorithm.h"
@@ -395,9 +396,7 @@ void ConvertLeaves(
 inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkIdType tuples)
 {
   const auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  auto* current = vtkArrayDownCast<vtkUnsignedCharArray>(
-    attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  if (current && current->GetNumberOfValues() == tuples)
+  if (vtkUnsignedCharArray* current = GhostsOf(attributes, tuples))
   {
     ghosts->DeepCopy(current);
   }
@@ -416,12 +415,7 @@ inline vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkId
 inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
 {
   const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
-  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
-    data->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  if (ghosts && ghosts->GetNumberOfValues() != numberOfPoints)
-  {
-    ghosts = nullptr;
-  }
+  vtkUnsignedCharArray* ghosts = GhostsOf(data->GetPointData(), numberOfPoints);
   vtkIdType outside = 0;
   for (vtkIdType i = 0; i < numberOfPoints; ++i)
   {
@@ -432,11 +426,17 @@ inline vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask)
 }
 
 /// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use
-/// them or points that do not exist. @a cells has the output's cells.
+/// them or points that do not exist; nothing if it leaves none out. @a cells has the output's
+/// cells.
 inline void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet* output)
 {
   const vtkIdType numberOfPoints = mask->GetNumberOfTuples();
   const vtkIdType numberOfCells = output->GetNumberOfCells();
+  const unsigned char* isShown = mask->GetPointer(0);
+  if (std::find(isShown, isShown + numberOfPoints, 0) == isShown + numberOfPoints)
+  {
+    return;
+  }
   vtkUnsignedCharArray* pointGhosts = RenewGhosts(output->GetPointData(), numberOfPoints);
   vtkUnsignedCharArray* cellGhosts = RenewGhosts(output->GetCellData(), numberOfCells);
   for (vtkIdType i = 0; i < numberOfPoints; ++i)

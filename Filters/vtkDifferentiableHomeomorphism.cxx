@@ -199,12 +199,7 @@ private:
     }
 
     const double reach = this->GetReach();
-    auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(
-      this->Input->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-    if (ghosts && ghosts->GetNumberOfValues() != this->NumberOfPoints)
-    {
-      ghosts = nullptr;
-    }
+    vtkUnsignedCharArray* ghosts = GhostsOf(this->Input->GetPointData(), this->NumberOfPoints);
     const vtkIdType done =
       RunInBlocks(this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
         LocationHint hint;
@@ -427,17 +422,11 @@ private:
 
   void MarkOutside()
   {
-    vtkIdType inside = 0;
-    for (vtkIdType i = 0; i < this->NumberOfPoints; ++i)
-    {
-      inside += this->Mask->GetValue(i);
-    }
     this->Self->NumberOfOutsidePoints += CountOutside(this->Input, this->Mask);
-    if (!this->Self->BlankOutside || inside == this->NumberOfPoints)
+    if (this->Self->BlankOutside)
     {
-      return;
+      HidePoints(this->Input, this->Mask, this->Output);
     }
-    HidePoints(this->Input, this->Mask, this->Output);
   }
 
   vtkDifferentiableHomeomorphism* Self;

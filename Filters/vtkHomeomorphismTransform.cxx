@@ -233,15 +233,6 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
 
   const Internals& internals = *this->Internal;
   const Side from = this->InverseFlag ? Side::Target : Side::Source;
-  if (!internals.Map)
-  {
-    const double outside[3] = { internals.OutsideCoordinate, internals.OutsideCoordinate,
-      internals.OutsideCoordinate };
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      outPts->SetPoint(firstPoint + i, outside);
-    }
-  }
   // Coordinates stored as float are rounded as such, and count as inside accordingly.
   const double reach = internals.Map
     ? internals.Map->GetReach(from, internals.Tolerance, PrecisionOfType(inPts->GetDataType()))
@@ -252,24 +243,26 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
     for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
     {
       block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+      int outside = block.Count;
+      std::fill_n(block.Triangles, block.Count, -1);
       if (internals.Map)
       {
         ReadPoints(inPts->GetData(), first, block);
-        const int outside = internals.Map->LocateBlock(from, block, reach, hint);
+        outside = internals.Map->LocateBlock(from, block, reach, hint);
         internals.Map->MapBlock(from, block);
-        for (int i = 0; i < block.Count && outside > 0; ++i)
-        {
-          if (block.Triangles[i] < 0)
-          {
-            std::fill_n(block.Points[i], 3, internals.OutsideCoordinate);
-          }
-        }
-        WritePoints(block, firstPoint + first, outPts->GetData());
       }
+      for (int i = 0; i < block.Count && outside > 0; ++i)
+      {
+        if (block.Triangles[i] < 0)
+        {
+          std::fill_n(block.Points[i], 3, internals.OutsideCoordinate);
+        }
+      }
+      WritePoints(block, firstPoint + first, outPts->GetData());
       for (int i = 0; i < block.Count && !carried.empty(); ++i)
       {
         double derivative[3][3];
-        internals.GetDerivative(from, internals.Map ? block.GetPlace(i) : Location{}, derivative);
+        internals.GetDerivative(from, block.GetPlace(i), derivative);
         const TensorTransport transport(&derivative[0][0]);
         for (const Carried& array : carried)
         {

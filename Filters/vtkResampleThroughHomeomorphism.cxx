@@ -113,22 +113,21 @@ public:
   {
     if (this->Count++ < static_cast<vtkIdType>(MeshProblem::MaximumIds))
     {
-      this->Ids += (this->Ids.empty() ? "" : ", ") + std::to_string(id);
+      this->FirstIds.push_back(id);
     }
   }
   bool IsEmpty() const { return this->Count == 0; }
   /// "2 points of the data (points 3, 5) have".
   std::string Tell(const std::string& what) const
   {
-    return std::to_string(this->Count) + " " + what + (this->Count == 1 ? "" : "s") +
-      " of the data (" + what + (this->Count == 1 ? " " : "s ") + this->Ids +
-      (this->Count > static_cast<vtkIdType>(MeshProblem::MaximumIds) ? ", ..." : "") +
-      (this->Count == 1 ? ") has" : ") have");
+    const bool one = this->Count == 1;
+    return std::to_string(this->Count) + " " + what + (one ? "" : "s") + " of the data (" + what +
+      (one ? " " : "s ") + ListIds(this->FirstIds, this->Count) + (one ? ") has" : ") have");
   }
 
 private:
   vtkIdType Count = 0;
-  std::string Ids;
+  std::vector<vtkIdType> FirstIds;
 };
 
 /// The first array of some attributes that does not have a value for each point or cell; empty if
@@ -173,9 +172,8 @@ std::string DescribeDefects(vtkDataSet* data)
   {
     if (array && !array->IsValid())
     {
-      return "The offsets of the data's cells do not fit their points. The data is corrupt: read "
-             "or "
-             "build it again.";
+      return "The offsets of the data's cells do not fit their points. The data is corrupt: "
+             "read or build it again.";
     }
     vtkNew<vtkIdList> ids;
     for (vtkIdType cell = 0; array && cell < array->GetNumberOfCells(); ++cell)
@@ -642,10 +640,7 @@ int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyD
   vtkPoints* points = pointSet ? pointSet->GetPoints() : nullptr;
   const double reach = map->GetReach(
     from, this->Tolerance, PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
-  auto* ghosts = vtkArrayDownCast<vtkUnsignedCharArray>(grid
-      ? grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())
-      : nullptr);
-  ghosts = ghosts && ghosts->GetNumberOfValues() == count ? ghosts : nullptr;
+  vtkUnsignedCharArray* ghosts = grid ? GhostsOf(grid->GetPointData(), count) : nullptr;
   static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
   RunInBlocks(this, count, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
     LocationHint hint;
@@ -680,9 +675,7 @@ void vtkResampleThroughHomeomorphism::Mark(
     PassGhosts(grid->GetPointData(), output->GetPointData());
     PassGhosts(grid->GetCellData(), output->GetCellData());
   }
-  const unsigned char* valid = mask->GetPointer(0);
-  if (this->BlankOutside &&
-    std::find(valid, valid + mask->GetNumberOfTuples(), 0) != valid + mask->GetNumberOfTuples())
+  if (this->BlankOutside)
   {
     HidePoints(output, mask, output);
   }

@@ -146,7 +146,7 @@ struct ContourOfHalfDerivative : ArcOfHalfDerivative
 template <int Width>
 struct EndingEquation : RootLanes<Width, true>
 {
-  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double proportion)
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double, double proportion)
   {
     // 0 <= share <= 1 / 2 below.
     this->Start(lane, proportion / 1.5, proportion, proportion / 1.25);
@@ -232,28 +232,10 @@ void SolveThrough(ThroughLanes& lanes, int count)
       lanes.H[i] = lanes.B[i] = 1.0;
       lanes.X[i] = lanes.Y[i] = 0.0;
     }
-    const double* h = lanes.H + first;
-    const double* b = lanes.B + first;
-    const double* x = lanes.X + first;
-    const double* y = lanes.Y + first;
     ThroughEquation<GroupWidth> equation;
-    HOMEOMORPHISM_LANES
-    for (int i = 0; i < GroupWidth; ++i)
-    {
-      equation.Set(i, h[i], b[i], x[i], y[i]);
-    }
-    for (int step = 0; !equation.IsDone(step); ++step)
-    {
-      HOMEOMORPHISM_LANES
-      for (int i = 0; i < GroupWidth; ++i)
-      {
-        equation.Evaluate(i, h[i], b[i], x[i], y[i]);
-      }
-    }
-    for (int i = 0; i < GroupWidth; ++i)
-    {
-      lanes.S[first + i] = equation.Root[i];
-    }
+    SolveLanes<GroupWidth>(
+      equation, lanes.H + first, lanes.B + first, lanes.X + first, lanes.Y + first);
+    std::copy_n(equation.Root, GroupWidth, lanes.S + first);
   }
 }
 
@@ -267,26 +249,9 @@ void SolveEnding(EndingLanes& lanes, int count)
       lanes.Flatness[i] = 1.0;
       lanes.Proportion[i] = 0.0;
     }
-    const double* flatness = lanes.Flatness + first;
-    const double* proportion = lanes.Proportion + first;
     EndingEquation<GroupWidth> equation;
-    HOMEOMORPHISM_LANES
-    for (int i = 0; i < GroupWidth; ++i)
-    {
-      equation.Set(i, proportion[i]);
-    }
-    for (int step = 0; !equation.IsDone(step); ++step)
-    {
-      HOMEOMORPHISM_LANES
-      for (int i = 0; i < GroupWidth; ++i)
-      {
-        equation.Evaluate(i, flatness[i], proportion[i]);
-      }
-    }
-    for (int i = 0; i < GroupWidth; ++i)
-    {
-      lanes.S[first + i] = equation.Root[i];
-    }
+    SolveLanes<GroupWidth>(equation, lanes.Flatness + first, lanes.Proportion + first);
+    std::copy_n(equation.Root, GroupWidth, lanes.S + first);
   }
 }
 
@@ -299,22 +264,14 @@ double Flatness(double h, double b)
 double ContourEndingAt(double flatness, double proportion)
 {
   EndingEquation<1> equation;
-  equation.Set(0, proportion);
-  for (int step = 0; !equation.IsDone(step); ++step)
-  {
-    equation.Evaluate(0, flatness, proportion);
-  }
+  SolveLanes<1>(equation, &flatness, &proportion);
   return equation.Root[0];
 }
 
 double ContourThrough(double h, double b, double x, double y)
 {
   ThroughEquation<1> equation;
-  equation.Set(0, h, b, x, y);
-  for (int step = 0; !equation.IsDone(step); ++step)
-  {
-    equation.Evaluate(0, h, b, x, y);
-  }
+  SolveLanes<1>(equation, &h, &b, &x, &y);
   return equation.Root[0];
 }
 

@@ -121,6 +121,27 @@ private:
   double Done[Width];
 };
 
+/// Finds the roots of some equations, a RootLanes with functions Set and Evaluate, which get a lane
+/// and what
+/// @a numbers, arrays of a value for each lane, have there.
+template <int Width, typename Equation, typename... Numbers>
+HOMEOMORPHISM_ALWAYS_INLINE void SolveLanes(Equation& equation, const Numbers*... numbers)
+{
+  HOMEOMORPHISM_LANES
+  for (int lane = 0; lane < Width; ++lane)
+  {
+    equation.Set(lane, numbers[lane]...);
+  }
+  for (int step = 0; !equation.IsDone(step); ++step)
+  {
+    HOMEOMORPHISM_LANES
+    for (int lane = 0; lane < Width; ++lane)
+    {
+      equation.Evaluate(lane, numbers[lane]...);
+    }
+  }
+}
+
 } // namespace homeomorphism
 
 #endif

@@ -97,7 +97,8 @@ struct StripFunction
 template <int Width>
 struct StripEquation : RootLanes<Width, false>
 {
-  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double k, double next, double previous, double tau)
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(
+    int lane, double k, double next, double previous, double, double, double, double tau)
   {
     // B <= tau q max(u W) <= (1 / 4) (16 / 81).
     constexpr double bound = 0.05;
@@ -183,8 +184,7 @@ void SetSmoothLane(SmoothLanes& lanes, int i, const double* const coordinates[3]
   const SmoothStrips& source, const SmoothStrips& target)
 {
   const double l[3] = { coordinates[0][i], coordinates[1][i], coordinates[2][i] };
-  const int lesser = l[1] < l[0] ? 1 : 0;
-  const int corner = l[2] < l[lesser] ? 2 : lesser;
+  const int corner = LeastCorner(l[0], l[1], l[2]);
   lanes.Corner[i] = corner;
   lanes.L[0][i] = l[corner];
   lanes.L[1][i] = l[NextCorner(corner)];
@@ -306,20 +306,7 @@ void MapSmoothLanes(SmoothLanes& lanes, int count)
       const double* kappa = lanes.Kappa[0] + first;
       const double* tau = lanes.Tau[0] + first;
       StripEquation<width> equation;
-      HOMEOMORPHISM_LANES
-      for (int i = 0; i < width; ++i)
-      {
-        equation.Set(i, k[i], next[i], previous[i], tau[i]);
-      }
-      for (int step = 0; !equation.IsDone(step); ++step)
-      {
-        HOMEOMORPHISM_LANES
-        for (int i = 0; i < width; ++i)
-        {
-          equation.Evaluate(
-            i, k[i], next[i], previous[i], kappa[i], offsetNext[i], offsetPrevious[i], tau[i]);
-        }
-      }
+      SolveLanes<width>(equation, k, next, previous, kappa, offsetNext, offsetPrevious, tau);
       HOMEOMORPHISM_LANES
       for (int i = 0; i < width; ++i)
       {
@@ -365,15 +352,9 @@ SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
     return affine;
   }
   const SmoothStrip& strip = this->Strips[k];
-  const double next = affine[NextCorner(k)];
-  const double previous = affine[PreviousCorner(k)];
   StripEquation<1> equation;
-  equation.Set(0, affine[k], next, previous, strip.Tau);
-  for (int step = 0; !equation.IsDone(step); ++step)
-  {
-    equation.Evaluate(
-      0, affine[k], next, previous, strip.Kappa, strip.OffsetNext, strip.OffsetPrevious, strip.Tau);
-  }
+  SolveLanes<1>(equation, &affine[k], &affine[NextCorner(k)], &affine[PreviousCorner(k)],
+    &strip.Kappa, &strip.OffsetNext, &strip.OffsetPrevious, &strip.Tau);
   return Moved(affine, k, strip, -equation.Root[0]);
 }
 

@@ -96,6 +96,13 @@ struct SmoothLanes
   double Tau[2][Size];
 };
 
+/// The corner with the least of three barycentric coordinates, the first of equals.
+inline int LeastCorner(double first, double second, double third)
+{
+  const double lesser = second < first ? second : first;
+  return third < lesser ? 2 : (second < first ? 1 : 0);
+}
+
 /// Puts points of one triangle into the lanes from @a begin to before @a end. @a
 /// coordinates[corner] points to arrays of the barycentric coordinates of the source's affine
 /// chart, one for each lane. Up to WidestVector - 1 lanes after the last are spoilt.

@@ -31,6 +31,13 @@ std::vector<Chart> MakeCharts(
   return charts;
 }
 
+/// What the triangle on one side of an edge is to the one on the other side. What an edge sees of a
+/// triangle does not change when the triangle turns about the edge.
+EdgeView Unfolded(const EdgeView& view, const AcrossEdge& across)
+{
+  return across.SameDirection ? view : Reversed(view);
+}
+
 /// The strips of all triangles. Each edge is looked at once, for both of its triangles.
 std::vector<SmoothStrips> MakeStrips(const Triangulation& triangulation, const Embedding& embedding)
 {
@@ -46,13 +53,11 @@ std::vector<SmoothStrips> MakeStrips(const Triangulation& triangulation, const E
         {
           continue;
         }
-        // What an edge sees of a triangle does not change when the triangle turns about the edge.
         const EdgeView own = embedding.GetView(triangulation.GetCorners(t), k);
         const EdgeView other =
           embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
-        strips[t][k] = SmoothStrip(own, across.SameDirection ? other : Reversed(other));
-        strips[across.Triangle][across.Edge] =
-          SmoothStrip(other, across.SameDirection ? own : Reversed(own));
+        strips[t][k] = SmoothStrip(own, Unfolded(other, across));
+        strips[across.Triangle][across.Edge] = SmoothStrip(other, Unfolded(own, across));
       }
     }
   });
@@ -72,9 +77,8 @@ std::array<Neighbor, 3> UnfoldNeighbors(
     {
       continue;
     }
-    // What an edge sees of a triangle does not change when the triangle turns about the edge.
     const EdgeView view = embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
-    neighbors[k] = { true, across.SameDirection ? view : Reversed(view) };
+    neighbors[k] = { true, Unfolded(view, across) };
   }
   return neighbors;
 }

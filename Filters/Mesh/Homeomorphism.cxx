@@ -379,8 +379,7 @@ void Homeomorphism::MapByStrips(Side from, PointBlock& block) const
     block,
     [&](int begin, int, TriangleIndex t) {
       const std::array<double*, 3> l = this->ByCorner(from, t, block);
-      const int lesser = l[1][begin] < l[0][begin] ? 1 : 0;
-      const int corner = l[2][begin] < l[lesser][begin] ? 2 : lesser;
+      const int corner = LeastCorner(l[0][begin], l[1][begin], l[2][begin]);
       Prefetch(&charts.GetSmoothStrips(t)[corner]);
       Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
       target.PrefetchFrame(t);

@@ -63,8 +63,7 @@ const char* Advice(MeshProblem::Kind kind)
       return "Split the meshes.";
     case Kind::NotTriangles:
       return "Triangulate the source (vtkTriangleFilter) and give the target the source's cells, "
-             "so "
-             "that both are cut along the same diagonals.";
+             "so that both are cut along the same diagonals.";
     case Kind::BadConnectivity:
       return "The mesh is corrupt: read or build it again.";
     case Kind::ConnectivityDiffers:
@@ -81,8 +80,7 @@ const char* Advice(MeshProblem::Kind kind)
       return "Cut the surface open along a line of edges in both meshes.";
     case Kind::Flipped:
       return "Move their points so that all triangles keep their orientation (or all are "
-             "mirrored), "
-             "or turn MaskInvalidTriangles on to leave them out.";
+             "mirrored), or turn MaskInvalidTriangles on to leave them out.";
     case Kind::Discordant:
       return "Use the Smooth system, which takes any triangle, or let the Linear system carry them "
              "(DiscordantTriangles).";
@@ -91,6 +89,16 @@ const char* Advice(MeshProblem::Kind kind)
 }
 
 } // namespace
+
+std::string ListIds(const std::vector<vtkIdType>& firstIds, vtkIdType count)
+{
+  std::string text;
+  for (const vtkIdType id : firstIds)
+  {
+    text += (text.empty() ? "" : ", ") + std::to_string(id);
+  }
+  return text + (count > static_cast<vtkIdType>(firstIds.size()) ? ", ..." : "");
+}
 
 std::string MeshProblem::Message() const
 {
@@ -106,11 +114,7 @@ std::string MeshProblem::Message() const
     const bool cells = this->What == Kind::NotTriangles;
     text << this->Count << (cells ? " cell" : " triangle") << (one ? "" : "s") << " of the "
          << this->Where << (one ? " (cell " : " (cells ");
-    for (std::size_t i = 0; i < this->FirstCells.size(); ++i)
-    {
-      text << (i ? ", " : "") << this->FirstCells[i];
-    }
-    text << (this->Count > static_cast<vtkIdType>(this->FirstCells.size()) ? ", ...) " : ") ");
+    text << ListIds(this->FirstCells, this->Count) << ") ";
     if (cells)
     {
       text << (one ? "is not a triangle" : "are not triangles") << " (" << this->Details << ")";

@@ -67,6 +67,9 @@ struct MeshProblem
 
 using MeshProblems = std::vector<MeshProblem>;
 
+/// The first of @a count ids, for messages: "1, 2, 5", or "1, 2, 5, ..." if there are more.
+std::string ListIds(const std::vector<vtkIdType>& firstIds, vtkIdType count);
+
 /// True if one of the problems made the meshes be refused.
 bool IsRefused(const MeshProblems& problems);
 

@@ -275,15 +275,17 @@ void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   different.Report(problems);
 }
 
+vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* attributes, vtkIdType tuples)
+{
+  auto* array = vtkArrayDownCast<vtkUnsignedCharArray>(
+    attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  return array && array->GetNumberOfValues() == tuples ? array : nullptr;
+}
+
 TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation)
 {
-  const auto ghosts = [](vtkDataSetAttributes* attributes, vtkIdType tuples) {
-    auto* array = vtkArrayDownCast<vtkUnsignedCharArray>(
-      attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-    return array && array->GetNumberOfValues() == tuples ? array : nullptr;
-  };
-  vtkUnsignedCharArray* cells = ghosts(mesh->GetCellData(), mesh->GetNumberOfCells());
-  vtkUnsignedCharArray* points = ghosts(mesh->GetPointData(), mesh->GetNumberOfPoints());
+  vtkUnsignedCharArray* cells = GhostsOf(mesh->GetCellData(), mesh->GetNumberOfCells());
+  vtkUnsignedCharArray* points = GhostsOf(mesh->GetPointData(), mesh->GetNumberOfPoints());
   const vtkIdType firstCell = FirstPolygon(mesh);
   return FindTriangles(triangulation, [&](TriangleIndex t) {
     if (cells && (cells->GetValue(firstCell + t) & vtkDataSetAttributes::HIDDENCELL))

@@ -17,7 +17,9 @@
 #include <string>
 #include <vector>
 
+class vtkDataSetAttributes;
 class vtkPolyData;
+class vtkUnsignedCharArray;
 
 namespace homeomorphism
 {
@@ -39,6 +41,10 @@ std::vector<Triangulation::Corners> ReadTriangles(
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const std::vector<Triangulation::Corners>& sourceTriangles,
   const std::vector<Triangulation::Corners>& targetTriangles, MeshProblems& problems);
+
+/// The array of some attributes that marks what is hidden or belongs to another piece
+/// (vtkGhostType); null if there is none that has one value for each of @a tuples points or cells.
+vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* attributes, vtkIdType tuples);
 
 /// Triangles that the mesh itself blanks: hidden cells and cells with hidden points (vtkGhostType).
 TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation);
