@@ -8,6 +8,9 @@
 
 #include "Mesh/Homeomorphism.h"
 
+#include "vtkDifferentiableHomeomorphism.h"
+#include "vtkImageData.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -186,6 +189,44 @@ TEST(PointBlocks, OnSurfaces)
   MeshPair mixed = MakePlanarPair(6, 25);
   mixed.Target = Moved(mixed, [](double x, double y) { return 0.1 * x * y; }).Target;
   ExpectBlocksLikePoints(mixed, "a plane and a surface");
+}
+
+TEST(PointBlocks, AnImageIsItsPoints)
+{
+  // Rows and slices end anywhere in a block.
+  const MeshPair pair = MakePlanarPair(9, 26);
+  vtkNew<vtkImageData> image;
+  image->SetExtent(-3, 13, 2, 14, -1, 8);
+  image->SetOrigin(2.3, -1.9, 0.4);
+  image->SetSpacing(0.61, 0.83, 0.27);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    points->InsertNextPoint(image->GetPoint(i));
+  }
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(points);
+  vtkNew<vtkPoints> images[2];
+  for (vtkDataSet* data : { static_cast<vtkDataSet*>(image), static_cast<vtkDataSet*>(cloud) })
+  {
+    vtkNew<vtkDifferentiableHomeomorphism> filter;
+    filter->SetSourceData(pair.Source);
+    filter->SetTargetData(pair.Target);
+    filter->SetDataObject(data);
+    filter->Update();
+    EXPECT_LT(filter->GetNumberOfOutsidePoints(), points->GetNumberOfPoints() / 2);
+    images[data == cloud]->ShallowCopy(
+      vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPoints());
+  }
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    Point a;
+    Point b;
+    images[0]->GetPoint(i, a.data());
+    images[1]->GetPoint(i, b.data());
+    ASSERT_TRUE(IsSame(a.data(), b.data(), 3)) << i;
+  }
 }
 
 } // namespace
