@@ -3,7 +3,7 @@
 
 // Reads xmorph meshes from any bytes, and maps the points of the first onto the second.
 
-#include "../../Examples/CarryFaces/XmorphMesh.h"
+#include "../../Filters/Program/XmorphMesh.h"
 
 #include "vtkDifferentiableHomeomorphism.h"
 #include "vtkNew.h"

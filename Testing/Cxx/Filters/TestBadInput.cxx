@@ -9,7 +9,7 @@
 
 #include "FilterRuns.h"
 
-#include "../../../Examples/CarryFaces/XmorphMesh.h"
+#include "../../../Filters/Program/XmorphMesh.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkCellData.h"

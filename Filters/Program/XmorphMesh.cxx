@@ -70,6 +70,19 @@ XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName)
   return mesh;
 }
 
+void TurnUpright(XmorphMesh& mesh)
+{
+  double bottom = 0.0;
+  for (const auto& point : mesh.Points)
+  {
+    bottom = std::max(bottom, point[1]);
+  }
+  for (auto& point : mesh.Points)
+  {
+    point[1] = bottom - point[1];
+  }
+}
+
 void FitToPicture(XmorphMesh& mesh, int width, int height)
 {
   double right = 0.0;

@@ -31,6 +31,9 @@ XmorphMesh ReadXmorphMesh(const std::string& fileName);
 /// The same from an open file; the name is for messages.
 XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName);
 
+/// Turns the mesh's own units, in which y runs downwards, so that it runs upwards.
+void TurnUpright(XmorphMesh& mesh);
+
 /// Moves the points from the mesh's own units, which end at its last column and row, to the pixels
 /// of a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh
 /// has no extent.

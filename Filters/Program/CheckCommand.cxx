@@ -1,0 +1,331 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Canvas.h"
+#include "Command.h"
+#include "Failure.h"
+#include "InputFile.h"
+#include "OutputFile.h"
+#include "PairPicture.h"
+#include "PairReport.h"
+
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdarg>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+namespace dhm
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using homeomorphism::ListIds;
+using homeomorphism::MeshProblem;
+
+std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
+
+std::string Format(const char* format, ...)
+{
+  char text[400];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+// --- For machines
+
+Json ToJson(const Extreme& extreme)
+{
+  return { { "value", extreme.Value }, { "cell", extreme.Cell } };
+}
+
+const char* NameOf(MeshProblem::Kind kind)
+{
+  using Kind = MeshProblem::Kind;
+  switch (kind)
+  {
+    case Kind::PointCountsDiffer:
+      return "point counts differ";
+    case Kind::CellCountsDiffer:
+      return "cell counts differ";
+    case Kind::TooManyTriangles:
+      return "too many triangles";
+    case Kind::NotTriangles:
+      return "not triangles";
+    case Kind::BadConnectivity:
+      return "bad connectivity";
+    case Kind::ConnectivityDiffers:
+      return "connectivity differs";
+    case Kind::RepeatedCorner:
+      return "repeated corner";
+    case Kind::NotFinite:
+      return "not finite";
+    case Kind::NoArea:
+      return "no area";
+    case Kind::EdgeOfManyTriangles:
+      return "edge of many triangles";
+    case Kind::NotOrientable:
+      return "not orientable";
+    case Kind::Flipped:
+      return "flipped";
+    case Kind::Overlapping:
+      return "overlapping";
+    case Kind::Discordant:
+      return "discordant";
+  }
+  return "";
+}
+
+Json ToJson(const PairReport& report, const MeshPair& pair)
+{
+  Json json;
+  json["valid"] = report.Valid;
+  json["problems"] = Json::array();
+  for (const MeshProblem& problem : report.Problems)
+  {
+    json["problems"].push_back({ { "kind", NameOf(problem.What) }, { "where", problem.Where },
+      { "count", problem.Count }, { "first_cells", problem.FirstCells }, { "message", Describe(problem) } });
+  }
+  const char* const sides[2] = { "source", "target" };
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    const MeshReport& mesh = report.Meshes[side];
+    Json& object = json[sides[side]];
+    object = { { "file", pair.Names[side] }, { "points", mesh.Points }, { "triangles", mesh.Triangles },
+      { "unused_points", mesh.UnusedPoints }, { "duplicate_points", mesh.DuplicatePoints },
+      { "first_duplicates", mesh.FirstDuplicates } };
+    if (report.Measured)
+    {
+      object["planar"] = mesh.Planar;
+      object["discordant_triangles"] = mesh.DiscordantTriangles.size();
+      object["smallest_angle_degrees"] = ToJson(mesh.SmallestAngle);
+      object["largest_area_ratio_across_an_edge"] = ToJson(mesh.LargestAreaRatio);
+    }
+  }
+  if (!report.Measured)
+  {
+    return json;
+  }
+  json["mirrored"] = report.Mirrored;
+  json["mended_windings"] = report.MendedWindings;
+  json["reordered_triangles"] = report.ReorderedTriangles;
+  json["components"] = report.Components;
+  json["interior_edges"] = report.InteriorEdges;
+  json["boundary_edges"] = report.BoundaryEdges;
+  json["boundary_loops"] = report.BoundaryLoops;
+  json["largest_stretch"] = ToJson(report.LargestStretch);
+  json["smallest_stretch"] = ToJson(report.SmallestStretch);
+  json["worst_distortion"] = ToJson(report.WorstDistortion);
+  for (std::size_t system = 0; system < 3; ++system)
+  {
+    const SystemReport& measured = report.Systems[system];
+    Json object;
+    if (measured.Samples > 0)
+    {
+      object["samples"] = measured.Samples;
+      object["smallest_determinant"] = ToJson(measured.SmallestDeterminant);
+      object["largest_determinant"] = ToJson(measured.LargestDeterminant);
+      object["not_positive"] = measured.NotPositive;
+      object["largest_distance_from_linear"] = ToJson(measured.DistanceFromLinear);
+    }
+    if (measured.ContinuityMeasured)
+    {
+      object["differentiable_edges"] = measured.DifferentiableEdges;
+      object["kinks"] = measured.Kinks;
+      object["undecided_edges"] = measured.UndecidedEdges;
+      object["largest_jump"] = measured.LargestJump;
+    }
+    json["systems"][SystemNames[system]] = object;
+  }
+  return json;
+}
+
+// --- For people
+
+void Line(const std::string& name, const std::string& text)
+{
+  std::cout << Format("  %-34s ", name.c_str()) << text << "\n";
+}
+
+void Pair(const std::string& name, const std::string& source, const std::string& target)
+{
+  Line(name, Format("%-22s %-22s", source.c_str(), target.c_str()));
+}
+
+std::string AtCell(const char* format, const Extreme& extreme)
+{
+  return Format(format, extreme.Value) + " (cell " + std::to_string(extreme.Cell) + ")";
+}
+
+void PrintMeshes(const PairReport& report)
+{
+  const auto both = [&report](const std::string& name, auto&& text) {
+    Pair(name, text(report.Meshes[0]), text(report.Meshes[1]));
+  };
+  Pair("", "source", "target");
+  both("points", [](const MeshReport& mesh) { return std::to_string(mesh.Points); });
+  both("triangles", [](const MeshReport& mesh) { return std::to_string(mesh.Triangles); });
+  both("points that no triangle uses", [](const MeshReport& mesh) { return std::to_string(mesh.UnusedPoints); });
+  both("duplicate points", [](const MeshReport& mesh) {
+    return std::to_string(mesh.DuplicatePoints) +
+      (mesh.DuplicatePoints > 0 ? " (" + ListIds({ mesh.FirstDuplicates.front() }, mesh.DuplicatePoints) + ")"
+                                : std::string());
+  });
+  if (!report.Measured)
+  {
+    return;
+  }
+  both("planar", [](const MeshReport& mesh) { return std::string(mesh.Planar ? "yes" : "no, a surface"); });
+  both("concordant triangles", [](const MeshReport& mesh) {
+    return Format("%.1f %%", 100.0 * (1.0 - static_cast<double>(mesh.DiscordantTriangles.size()) / static_cast<double>(mesh.Triangles)));
+  });
+  both("smallest angle, degrees", [](const MeshReport& mesh) { return AtCell("%.3g", mesh.SmallestAngle); });
+  both("largest area ratio across an edge",
+    [](const MeshReport& mesh) { return AtCell("%.4g", mesh.LargestAreaRatio); });
+}
+
+void PrintMap(const PairReport& report)
+{
+  std::cout << "\n";
+  Line("mirrored", report.Mirrored ? "yes" : "no");
+  Line("windings mended", std::to_string(report.MendedWindings));
+  Line("triangles listed in another order", std::to_string(report.ReorderedTriangles));
+  Line("components", std::to_string(report.Components));
+  Line("boundary loops", std::to_string(report.BoundaryLoops));
+  Line("edges", std::to_string(report.InteriorEdges) + " interior, " + std::to_string(report.BoundaryEdges) +
+      " on the boundary");
+  Line("lengths change by factors of", AtCell("%.6g", report.SmallestStretch) + " to " +
+      AtCell("%.6g", report.LargestStretch));
+  Line("worst distortion (ratio of the two)", AtCell("%.6g", report.WorstDistortion));
+
+  std::cout << "\n" << Format("  %-34s ", "");
+  for (const char* name : SystemNames)
+  {
+    std::cout << Format("%-22s ", name);
+  }
+  std::cout << "\n";
+  const auto row = [&report](const std::string& name, auto&& text) {
+    std::cout << Format("  %-34s ", name.c_str());
+    for (const SystemReport& system : report.Systems)
+    {
+      std::cout << Format("%-22s ", text(system).c_str());
+    }
+    std::cout << "\n";
+  };
+  if (report.Systems[0].Samples > 0)
+  {
+    row("det J, smallest", [](const SystemReport& system) { return AtCell("%.6g", system.SmallestDeterminant); });
+    row("det J, largest", [](const SystemReport& system) { return AtCell("%.6g", system.LargestDeterminant); });
+    row("points where det J has the wrong sign",
+      [](const SystemReport& system) { return std::to_string(system.NotPositive); });
+    row("farthest from Linear, target's units",
+      [](const SystemReport& system) { return AtCell("%.4g", system.DistanceFromLinear); });
+  }
+  if (report.Systems[0].ContinuityMeasured)
+  {
+    row("edges: differentiable", [](const SystemReport& system) { return std::to_string(system.DifferentiableEdges); });
+    row("edges: kinks", [](const SystemReport& system) { return std::to_string(system.Kinks); });
+    row("edges: undecided", [](const SystemReport& system) { return std::to_string(system.UndecidedEdges); });
+    row("largest jump of J, relative", [](const SystemReport& system) { return Format("%.2g", system.LargestJump); });
+  }
+  if (report.Systems[0].Samples > 0)
+  {
+    std::cout << "\n  det J: at " << report.Systems[0].Samples << " points within the triangles.";
+  }
+  if (!report.Meshes[0].DiscordantTriangles.empty() || !report.Meshes[1].DiscordantTriangles.empty())
+  {
+    std::cout << "\n  Discordant triangles are Linear's in the column Contour.";
+  }
+  std::cout << "\n";
+}
+
+void Print(const PairReport& report, const MeshPair& pair)
+{
+  std::cout << pair.Names[0] << (pair.Names[0] == pair.Names[1] ? std::string() : " and " + pair.Names[1])
+            << ": " << (report.Valid ? "a valid pair" : "NOT a valid pair") << "\n";
+  for (const MeshProblem& problem : report.Problems)
+  {
+    std::cout << "  - " << Describe(problem) << "\n";
+  }
+  std::cout << "\n";
+  PrintMeshes(report);
+  if (report.Measured)
+  {
+    PrintMap(report);
+  }
+}
+
+} // namespace
+
+void AddCheck(CLI::App& program)
+{
+  struct Options
+  {
+    InputFiles Inputs;
+    bool Machine = false;
+    bool Quick = false;
+    std::string Picture;
+    bool Replace = false;
+  };
+  CLI::App* command =
+    program.add_subcommand("check", "Tell whether two meshes define a map, and what it is like");
+  const auto options = std::make_shared<Options>();
+  options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair");
+  command->add_flag("--json", options->Machine, "Write the report as JSON")->group("Results");
+  command
+    ->add_flag("--quick", options->Quick, "Look at the meshes only: do not measure determinants and continuity")
+    ->group("Results");
+  command->add_option("--picture", options->Picture, "Draw the pair with the offenders marked: .png .svg .pdf")
+    ->type_name("FILE")
+    ->group("Results");
+  command->add_flag("-f,--force", options->Replace, "Replace the picture if it exists")->group("Results");
+  command->footer("Exit status: 0 the pair defines a map, 1 it does not.\n"
+                  "Invalid triangles are left out of what is measured. Continuity: at each interior edge, whether "
+                  "the map's derivative is the same on both sides, as measured from the map's values.");
+  command->callback([options] {
+    std::unique_ptr<OutputFile> picture;
+    if (!options->Picture.empty())
+    {
+      if (!Canvas::IsFormat(FormatOf(options->Picture)))
+      {
+        throw Failure(WRONG_USAGE, "Pictures are .png, .svg or .pdf: " + options->Picture + " is none.");
+      }
+      picture = std::make_unique<OutputFile>(options->Picture, "", options->Replace);
+    }
+    const MeshPair pair = options->Inputs.ReadPair(0);
+    CheckExtent extent;
+    extent.Determinants = extent.Continuity = !options->Quick;
+    const PairReport report = CheckPair(pair, extent);
+    if (options->Machine)
+    {
+      std::cout << ToJson(report, pair).dump(2) << "\n";
+    }
+    else
+    {
+      Print(report, pair);
+    }
+    if (!std::cout.flush())
+    {
+      throw Failure(FILE_TROUBLE, "Cannot write to standard output.");
+    }
+    if (picture)
+    {
+      DrawPair(pair, report, *picture);
+      picture->Commit();
+    }
+    if (!report.Valid)
+    {
+      // The report has said why.
+      throw Failure(REFUSED, "not a valid pair.");
+    }
+  });
+}
+
+} // namespace dhm

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Command.h"
+
+#include "Console.h"
+#include "Failure.h"
+
+#include "vtkAlgorithm.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace dhm
+{
+
+const char* const SystemNames[3] = { "Linear", "Contour", "Smooth" };
+
+void MapOptions::AddTo(CLI::App& command)
+{
+  static const std::map<std::string, int> systems{ { "linear", vtkDifferentiableHomeomorphism::LINEAR },
+    { "contour", vtkDifferentiableHomeomorphism::CONTOUR },
+    { "smooth", vtkDifferentiableHomeomorphism::SMOOTH } };
+  command
+    .add_option("-s,--system", this->System,
+      "Coordinate system: smooth (default; twice continuously differentiable), contour (the published "
+      "construction) or linear (the piecewise linear map)")
+    ->transform(CLI::CheckedTransformer(systems, CLI::ignore_case).description(""))
+    ->type_name("NAME")
+    ->group("Map");
+  command
+    .add_flag("--incenter", this->Incenter, "Let Contour's contours start at the incenter, not the centroid")
+    ->group("Map");
+  command
+    .add_flag("--linear-where-discordant", this->LinearWhereDiscordant,
+      "Let Linear carry the triangles in which Contour does not exist, instead of refusing them")
+    ->group("Map");
+  command
+    .add_flag("--mask-invalid", this->MaskInvalid,
+      "Leave invalid triangles out, as holes, instead of refusing the meshes")
+    ->group("Map");
+  command
+    .add_option("--tolerance", this->Tolerance,
+      "How far outside a point may be and still be taken to the nearest point of the domain, as a proportion "
+      "of the domain's diagonal (default: rounding only)")
+    ->check(CLI::NonNegativeNumber.description(""))
+    ->type_name("NUMBER")
+    ->group("Map");
+}
+
+void InputFiles::AddTo(CLI::App& command, const std::string& names, int least, int most,
+  const std::string& description)
+{
+  command.add_option(names, this->Files, description)->expected(1 + least, 2 + most)->required()->type_name("");
+  command
+    .add_option("--target-array", this->Pair.TargetArray,
+      "Point array with the target's positions, where one mesh file has both (default: Target)")
+    ->type_name("NAME")
+    ->group("Files");
+  command
+    .add_option("--input-format", this->Pair.InputFormat,
+      "What standard input (-) holds, as a file name's extension")
+    ->type_name("EXTENSION")
+    ->group("Files");
+}
+
+MeshPair InputFiles::ReadPair(std::size_t others) const
+{
+  if (std::count(this->Files.begin(), this->Files.end(), "-") > 1)
+  {
+    throw Failure(WRONG_USAGE, "Only one of the files can come from standard input.");
+  }
+  const std::vector<std::string> files(
+    this->Files.begin(), this->Files.end() - static_cast<std::ptrdiff_t>(others));
+  return ReadMeshPair(files, this->Pair);
+}
+
+void OutputOptions::AddTo(
+  CLI::App& command, const std::string& description, const std::string& defaultFormat)
+{
+  this->Format = defaultFormat;
+  command.add_option("-o,--output", this->Name, description)->required()->type_name("FILE")->group("Files");
+  command.add_flag("-f,--force", this->Replace, "Replace the output if it exists")->group("Files");
+  command
+    .add_option("--output-format", this->Format,
+      "What to write to standard output (-), as a file name's extension (default: " + defaultFormat + ")")
+    ->type_name("EXTENSION")
+    ->group("Files");
+}
+
+void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings)
+{
+  {
+    ProgressBar bar(what);
+    bar.Follow(filter);
+    filter->Update();
+  }
+  const std::string errors = TakeErrors();
+  if (!errors.empty())
+  {
+    throw Failure(REFUSED, NameOptions(errors));
+  }
+  const std::string warnings = TakeWarnings();
+  if (!warnings.empty() && showWarnings)
+  {
+    Warn(NameOptions(warnings));
+  }
+}
+
+std::string NameOptions(std::string message)
+{
+  const std::pair<const char*, const char*> names[] = { { "turn MaskInvalidTriangles on", "use --mask-invalid" },
+    { "MaskInvalidTriangles", "--mask-invalid" }, { "DiscordantTriangles", "--linear-where-discordant" },
+    { "Triangulate the source (vtkTriangleFilter)", "Triangulate the source" } };
+  for (const auto& name : names)
+  {
+    const std::string setter = name.first;
+    for (std::size_t at = message.find(setter); at != std::string::npos; at = message.find(setter, at))
+    {
+      message.replace(at, setter.size(), name.second);
+      at += std::string(name.second).size();
+    }
+  }
+  return message;
+}
+
+std::string Count(
+  vtkIdType count, const std::string& what, const std::string& one, const std::string& several)
+{
+  return std::to_string(count) + " " + what + (count == 1 ? " " + one : "s " + several);
+}
+
+} // namespace dhm

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file DataFile.h
+/// Reads and writes data sets of any kind through VTK's readers and writers.
+
+#ifndef dhm_DataFile_h
+#define dhm_DataFile_h
+
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+
+namespace dhm
+{
+
+class InputFile;
+class OutputFile;
+
+/// Whether the format is one of pictures (png, jpg, tif, ...).
+bool IsPicture(const std::string& format);
+
+/// Reads VTK's XML and legacy files, and pictures. Throws Failure if the format is not known or the file
+/// cannot be read as what its name says.
+vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file);
+
+/// Reads a picture or VTK image. A picture's pixels are at 0, 1, 2, ..., whatever resolution it claims.
+/// Throws Failure.
+vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file);
+
+/// Writes data: VTK's XML and legacy formats, and pictures. Throws Failure if the format is not known or
+/// not for such data, or the file cannot be written.
+void WriteData(vtkDataObject* data, const OutputFile& file);
+
+/// Throws Failure if WriteData does not know the format, so that nobody waits for a result that cannot
+/// be written.
+void CheckOutputFormat(const std::string& format);
+
+} // namespace dhm
+
+#endif

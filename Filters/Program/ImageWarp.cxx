@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "ImageWarp.h"
+
+#include "Command.h"
+#include "Failure.h"
+#include "Numbers.h"
+
+#include "vtkDataArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkResampleThroughHomeomorphism.h"
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace dhm
+{
+namespace
+{
+
+/// The value that is fully opaque, or the brightest.
+template <typename Value>
+constexpr double Full()
+{
+  return std::is_floating_point<Value>::value ? 1.0 : static_cast<double>(std::numeric_limits<Value>::max());
+}
+
+template <typename Value>
+Value ToValue(double value)
+{
+  return static_cast<Value>(std::is_floating_point<Value>::value ? value : std::round(value));
+}
+
+template <typename Value>
+void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, int components, int colors,
+  bool hasAlpha, const Background& background, Value* to, int newComponents)
+{
+  for (vtkIdType i = 0; i < count; ++i, from += components, to += newComponents)
+  {
+    const bool inside = mask[i] != 0;
+    for (int k = 0; k < newComponents; ++k)
+    {
+      const bool isAlpha = k == colors;
+      if (inside)
+      {
+        to[k] = isAlpha && !hasAlpha ? ToValue<Value>(Full<Value>()) : from[k];
+      }
+      else if (!background)
+      {
+        to[k] = Value(0);
+      }
+      else if (isAlpha)
+      {
+        to[k] = ToValue<Value>(Full<Value>());
+      }
+      else
+      {
+        const auto& color = *background;
+        const double gray = (color[0] + color[1] + color[2]) / 3.0;
+        to[k] = ToValue<Value>(Full<Value>() * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
+      }
+    }
+  }
+}
+
+template <typename Value>
+void BlendPixels(const Value* first, const Value* second, vtkIdType count, double t, Value* result)
+{
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    result[i] =
+      ToValue<Value>((1.0 - t) * static_cast<double>(first[i]) + t * static_cast<double>(second[i]));
+  }
+}
+
+/// The pixels of a warped image.
+vtkDataArray* PixelsOf(vtkImageData* warped)
+{
+  vtkDataArray* pixels = warped->GetPointData()->GetScalars();
+  if (!pixels)
+  {
+    throw Failure(FILE_TROUBLE, "The image has no pixels.");
+  }
+  return pixels;
+}
+
+vtkSmartPointer<vtkImageData> LikeWithout(vtkImageData* image)
+{
+  auto result = vtkSmartPointer<vtkImageData>::New();
+  result->CopyStructure(image);
+  return result;
+}
+
+} // namespace
+
+Background ReadBackground(const std::string& text)
+{
+  if (text == "transparent")
+  {
+    return {};
+  }
+  if (text == "white" || text == "black")
+  {
+    const double value = text == "white" ? 1.0 : 0.0;
+    return std::array<double, 3>{ value, value, value };
+  }
+  std::array<double, 3> color{};
+  bool valid = text.size() == 7 && text[0] == '#';
+  for (std::size_t k = 0; valid && k < 3; ++k)
+  {
+    unsigned int value = 0;
+    const char* begin = text.data() + 1 + 2 * k;
+    const auto result = std::from_chars(begin, begin + 2, value, 16);
+    valid = result.ec == std::errc() && result.ptr == begin + 2;
+    color[k] = value / 255.0;
+  }
+  if (!valid)
+  {
+    throw Failure(WRONG_USAGE,
+      "\"" + text + "\" is no colour: transparent, white, black, or #rrggbb, such as #ff8000 for orange.");
+  }
+  return color;
+}
+
+std::array<int, 2> ReadSize(const std::string& text)
+{
+  if (text.empty())
+  {
+    return { 0, 0 };
+  }
+  const std::size_t x = text.find('x');
+  if (x != std::string::npos)
+  {
+    const auto width = ToNumber<int>(text.substr(0, x));
+    const auto height = ToNumber<int>(text.substr(x + 1));
+    if (width && height && *width >= 1 && *height >= 1 && *width <= 100000 && *height <= 100000)
+    {
+      return { *width, *height };
+    }
+  }
+  throw Failure(WRONG_USAGE, "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, such as 640x480.");
+}
+
+vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int, 2>& size)
+{
+  vtkSmartPointer<vtkImageData> grid = LikeWithout(image);
+  if (size[0] > 0)
+  {
+    grid->SetExtent(0, size[0] - 1, 0, size[1] - 1, 0, 0);
+  }
+  return grid;
+}
+
+vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source, vtkPolyData* target,
+  vtkImageData* grid, bool inverse, const MapOptions& map, const std::string& what)
+{
+  // Pixels without a name would not be found again.
+  const auto named = vtkSmartPointer<vtkImageData>::New();
+  named->ShallowCopy(image);
+  if (!PixelsOf(named)->GetName())
+  {
+    PixelsOf(named)->SetName("Pixels");
+  }
+  const std::string name = PixelsOf(named)->GetName();
+
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  map.ApplyTo(resample.Get());
+  resample->SetSourceData(source);
+  resample->SetTargetData(target);
+  resample->SetDataObject(named);
+  resample->SetGridData(grid);
+  resample->SetInverse(inverse);
+  resample->BlankOutsideOff();
+  Run(resample, what);
+  vtkSmartPointer<vtkImageData> result = vtkImageData::SafeDownCast(resample->GetOutputDataObject(0));
+  result->GetPointData()->SetActiveScalars(name.c_str());
+  return result;
+}
+
+vtkSmartPointer<vtkImageData> Blend(vtkImageData* first, vtkImageData* second, double t)
+{
+  vtkDataArray* a = PixelsOf(first);
+  vtkDataArray* b = PixelsOf(second);
+  if (a->GetDataType() != b->GetDataType() || a->GetNumberOfComponents() != b->GetNumberOfComponents() ||
+    a->GetNumberOfTuples() != b->GetNumberOfTuples())
+  {
+    throw Failure(REFUSED,
+      "The two images are not of the same kind: " + std::to_string(a->GetNumberOfComponents()) +
+        " components of " + a->GetDataTypeAsString() + ", and " + std::to_string(b->GetNumberOfComponents()) +
+        " of " + b->GetDataTypeAsString() + ".");
+  }
+  const auto pixels = vtk::TakeSmartPointer(a->NewInstance());
+  pixels->SetName(a->GetName());
+  pixels->SetNumberOfComponents(a->GetNumberOfComponents());
+  pixels->SetNumberOfTuples(a->GetNumberOfTuples());
+  switch (a->GetDataType())
+  {
+    vtkTemplateMacro(BlendPixels(static_cast<const VTK_TT*>(a->GetVoidPointer(0)),
+      static_cast<const VTK_TT*>(b->GetVoidPointer(0)), a->GetNumberOfValues(), t,
+      static_cast<VTK_TT*>(pixels->GetVoidPointer(0))));
+  }
+  vtkSmartPointer<vtkImageData> result = LikeWithout(first);
+  result->GetPointData()->SetScalars(pixels);
+  result->GetPointData()->AddArray(first->GetPointData()->GetArray("ValidPointMask"));
+  return result;
+}
+
+vtkSmartPointer<vtkImageData> Finish(vtkImageData* warped, const Background& background)
+{
+  vtkDataArray* from = PixelsOf(warped);
+  vtkDataArray* mask = warped->GetPointData()->GetArray("ValidPointMask");
+  const int components = from->GetNumberOfComponents();
+  const bool hasAlpha = components == 2 || components == 4;
+  const int colors = components - (hasAlpha ? 1 : 0);
+  const bool isPicture = components <= 4;
+  const int newComponents = components + (!background && !hasAlpha && isPicture ? 1 : 0);
+  const auto pixels = vtk::TakeSmartPointer(from->NewInstance());
+  pixels->SetName(from->GetName());
+  pixels->SetNumberOfComponents(newComponents);
+  pixels->SetNumberOfTuples(from->GetNumberOfTuples());
+  switch (from->GetDataType())
+  {
+    vtkTemplateMacro(FillPixels(static_cast<const VTK_TT*>(from->GetVoidPointer(0)),
+      static_cast<const unsigned char*>(mask->GetVoidPointer(0)), from->GetNumberOfTuples(), components,
+      colors, hasAlpha, background, static_cast<VTK_TT*>(pixels->GetVoidPointer(0)), newComponents));
+  }
+  vtkSmartPointer<vtkImageData> result = LikeWithout(warped);
+  result->GetPointData()->SetScalars(pixels);
+  return result;
+}
+
+} // namespace dhm

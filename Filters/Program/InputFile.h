@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file InputFile.h
+/// A file to be read, or standard input.
+
+#ifndef dhm_InputFile_h
+#define dhm_InputFile_h
+
+#include <string>
+
+namespace dhm
+{
+
+/// A file to be read. "-" is standard input, which is copied to a temporary file first, since most
+/// readers need a file that has a name.
+class InputFile
+{
+public:
+  /// @a format is the extension that says what standard input holds. Throws Failure if there is no
+  /// such file, or it cannot be read.
+  InputFile(const std::string& name, const std::string& format);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  /// What to open.
+  const std::string& GetPath() const { return this->Path; }
+  /// What to call it in messages.
+  const std::string& GetName() const { return this->Name; }
+  /// The extension in lower case, without the dot.
+  const std::string& GetFormat() const { return this->Format; }
+
+private:
+  std::string Name;
+  std::string Path;
+  std::string Format;
+  bool Temporary = false;
+};
+
+/// The extension of a file name in lower case, without the dot; empty if it has none.
+std::string FormatOf(const std::string& fileName);
+
+} // namespace dhm
+
+#endif

@@ -1,0 +1,361 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "MeshPair.h"
+
+#include "Console.h"
+#include "DataFile.h"
+#include "Failure.h"
+#include "InputFile.h"
+#include "OutputFile.h"
+#include "TextMesh.h"
+#include "TriangulationFile.h"
+#include "XmorphMesh.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkPLYReader.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkSTLReader.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <fstream>
+#include <map>
+#include <utility>
+
+namespace dhm
+{
+namespace
+{
+
+/// Throws what @a read throws as a Failure that a file is to blame for.
+template <typename Read>
+auto ReadXmorph(Read&& read)
+{
+  try
+  {
+    return read();
+  }
+  catch (const std::runtime_error& error)
+  {
+    throw Failure(FILE_TROUBLE, error.what());
+  }
+}
+
+template <typename Reader>
+vtkSmartPointer<vtkPolyData> ReadWith(Reader* reader, const InputFile& file)
+{
+  reader->SetFileName(file.GetPath().c_str());
+  reader->Update();
+  const std::string errors = TakeErrors();
+  if (!errors.empty() || reader->GetOutput()->GetNumberOfPoints() == 0)
+  {
+    throw Failure(FILE_TROUBLE,
+      "Cannot read " + file.GetName() + (errors.empty() ? ": no points in it." : ": " + errors));
+  }
+  return reader->GetOutput();
+}
+
+/// An unstructured grid's cells as polygons.
+vtkSmartPointer<vtkPolyData> ToPolygons(vtkUnstructuredGrid* grid, const std::string& name)
+{
+  vtkNew<vtkCellArray> polygons;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    const int type = grid->GetCellType(cell);
+    if (type != VTK_TRIANGLE && type != VTK_QUAD && type != VTK_POLYGON)
+    {
+      throw Failure(FILE_TROUBLE,
+        name + ": cell " + std::to_string(cell) + " is no polygon (type " + std::to_string(type) +
+          "): a mesh consists of triangles only.");
+    }
+    polygons->InsertNextCell(grid->GetCell(cell));
+  }
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->SetPoints(grid->GetPoints());
+  mesh->SetPolys(polygons);
+  mesh->GetPointData()->ShallowCopy(grid->GetPointData());
+  mesh->GetCellData()->ShallowCopy(grid->GetCellData());
+  return mesh;
+}
+
+vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
+{
+  const std::string& format = file.GetFormat();
+  if (format == "obj" || format == "off")
+  {
+    std::ifstream text(file.GetPath());
+    return format == "obj" ? ReadObj(text, file.GetName()) : ReadOff(text, file.GetName());
+  }
+  if (format == "ply")
+  {
+    return ReadWith(vtkNew<vtkPLYReader>().Get(), file);
+  }
+  if (format == "stl")
+  {
+    // Each triangle has points of its own; see JoinPoints.
+    vtkNew<vtkSTLReader> reader;
+    reader->MergingOff();
+    return ReadWith(reader.Get(), file);
+  }
+  if (format != "vtp" && format != "vtk" && format != "vtu")
+  {
+    throw Failure(WRONG_USAGE,
+      "Cannot read " + file.GetName() +
+        ": the formats of meshes are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, .off, .ply, "
+        ".stl, and .mesh (xmorph).");
+  }
+  const vtkSmartPointer<vtkDataObject> data = ReadData(file);
+  if (auto* mesh = vtkPolyData::SafeDownCast(data))
+  {
+    return mesh;
+  }
+  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    return ToPolygons(grid, file.GetName());
+  }
+  throw Failure(FILE_TROUBLE,
+    file.GetName() + " holds a " + data->GetClassName() + ", which is no mesh of triangles.");
+}
+
+/// Of two meshes whose triangles have points of their own: makes those one that are in the same
+/// place in both. (What is one in one mesh only must not be: it is not the same point.)
+void JoinPoints(MeshPair& pair)
+{
+  if (pair.Source()->GetNumberOfPoints() != pair.Target()->GetNumberOfPoints() ||
+    pair.Source()->GetNumberOfPolys() != pair.Target()->GetNumberOfPolys())
+  {
+    return;
+  }
+  std::map<std::array<double, 6>, vtkIdType> places;
+  std::array<vtkSmartPointer<vtkPoints>, 2> points;
+  for (auto& side : points)
+  {
+    side = vtkSmartPointer<vtkPoints>::New();
+    side->SetDataTypeToDouble();
+  }
+  std::vector<vtkIdType> joined;
+  for (vtkIdType i = 0; i < pair.Source()->GetNumberOfPoints(); ++i)
+  {
+    std::array<double, 6> place;
+    pair.Source()->GetPoint(i, place.data());
+    pair.Target()->GetPoint(i, place.data() + 3);
+    const auto found = places.emplace(place, points[0]->GetNumberOfPoints());
+    if (found.second)
+    {
+      points[0]->InsertNextPoint(place.data());
+      points[1]->InsertNextPoint(place.data() + 3);
+    }
+    joined.push_back(found.first->second);
+  }
+  vtkNew<vtkCellArray> polygons;
+  for (std::size_t i = 0; i + 2 < joined.size(); i += 3)
+  {
+    polygons->InsertNextCell(3, &joined[i]);
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    pair.Meshes[side]->Initialize();
+    pair.Meshes[side]->SetPoints(points[side]);
+    pair.Meshes[side]->SetPolys(polygons);
+  }
+}
+
+MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& options)
+{
+  const InputFile file(fileName, options.InputFormat);
+  MeshPair pair;
+  pair.Names = { file.GetName(), file.GetName() };
+  if (file.GetFormat() == "json")
+  {
+    std::ifstream text(file.GetPath());
+    TriangulationFile read = ReadTriangulationFile(text, file.GetName());
+    if (read.ShiftsHeights)
+    {
+      Warn(file.GetName() + " shifts heights, too: that is left alone.");
+    }
+    pair.Metadata = std::move(read.Metadata);
+    pair.Meshes = read.Meshes;
+    return pair;
+  }
+  pair.Meshes[0] = ReadMesh(file);
+  vtkDataArray* positions = pair.Source()->GetPointData()->GetArray(options.TargetArray.c_str());
+  if (!positions || positions->GetNumberOfComponents() < 2 || positions->GetNumberOfComponents() > 3)
+  {
+    throw Failure(WRONG_USAGE,
+      file.GetName() + " has no point array \"" + options.TargetArray +
+        "\" of 2 or 3 components that would be the target's positions: give the target's file, too, or name "
+        "the array (--target-array).");
+  }
+  vtkNew<vtkPoints> points;
+  points->SetDataType(positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
+  for (vtkIdType i = 0; i < positions->GetNumberOfTuples(); ++i)
+  {
+    double position[3] = { 0.0, 0.0, 0.0 };
+    positions->GetTuple(i, position);
+    points->InsertNextPoint(position);
+  }
+  pair.Meshes[1] = vtkSmartPointer<vtkPolyData>::New();
+  pair.Meshes[1]->SetPoints(points);
+  pair.Meshes[1]->SetPolys(pair.Source()->GetPolys());
+  pair.Meshes[1]->SetVerts(pair.Source()->GetVerts());
+  pair.Meshes[1]->SetLines(pair.Source()->GetLines());
+  return pair;
+}
+
+} // namespace
+
+MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptions& options)
+{
+  if (files.size() == 1)
+  {
+    return ReadTwoInOne(files[0], options);
+  }
+  const InputFile source(files[0], options.InputFormat);
+  const InputFile target(files[1], options.InputFormat);
+  MeshPair pair;
+  pair.Names = { source.GetName(), target.GetName() };
+  const bool xmorph[2] = { source.GetFormat() == "mesh", target.GetFormat() == "mesh" };
+  if (xmorph[0] != xmorph[1])
+  {
+    throw Failure(WRONG_USAGE,
+      "Either both files are meshes of xmorph (.mesh) or none: they are cut into triangles together.");
+  }
+  if (xmorph[0])
+  {
+    pair.FromXmorph = true;
+    pair.Meshes = ReadXmorph([&] {
+      std::array<XmorphMesh, 2> grids{ ReadXmorphMesh(files[0]), ReadXmorphMesh(files[1]) };
+      TurnUpright(grids[0]);
+      TurnUpright(grids[1]);
+      return CutIntoTriangles(grids[0], grids[1]);
+    });
+    return pair;
+  }
+  for (const InputFile* file : { &source, &target })
+  {
+    if (file->GetFormat() == "json")
+    {
+      throw Failure(WRONG_USAGE,
+        file->GetName() + " is a triangulation file, which has both source and target: give it alone.");
+    }
+  }
+  pair.Meshes = { ReadMesh(source), ReadMesh(target) };
+  if (source.GetFormat() == "stl" && target.GetFormat() == "stl")
+  {
+    JoinPoints(pair);
+  }
+  return pair;
+}
+
+vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::string& inputFormat)
+{
+  const InputFile file(fileName, inputFormat);
+  if (file.GetFormat() == "json")
+  {
+    return ReadTwoInOne(fileName, {}).Meshes[0];
+  }
+  if (file.GetFormat() == "mesh")
+  {
+    return ReadXmorph([&] {
+      XmorphMesh mesh = ReadXmorphMesh(fileName);
+      TurnUpright(mesh);
+      return CutIntoTriangles(mesh, mesh)[0];
+    });
+  }
+  return ReadMesh(file);
+}
+
+void FitToPictures(
+  MeshPair& pair, const std::array<int, 2>& sourceSize, const std::array<int, 2>& targetSize)
+{
+  if (!pair.FromXmorph)
+  {
+    return;
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    const auto& size = side == 0 ? sourceSize : targetSize;
+    double bounds[6];
+    pair.Meshes[side]->GetBounds(bounds);
+    if (!(bounds[1] > 0.0 && bounds[3] > 0.0))
+    {
+      throw Failure(FILE_TROUBLE, pair.Names[side] + ": the mesh has no extent.");
+    }
+    // Xmorph's units end where the picture does.
+    const double factors[2] = { (size[0] - 1) / bounds[1], (size[1] - 1) / bounds[3] };
+    vtkPoints* points = pair.Meshes[side]->GetPoints();
+    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+    {
+      double point[3];
+      points->GetPoint(i, point);
+      points->SetPoint(i, point[0] * factors[0], point[1] * factors[1], point[2]);
+    }
+    points->Modified();
+  }
+}
+
+void WritePair(const MeshPair& pair, const std::string& targetArray, const OutputFile& file)
+{
+  if (file.GetFormat() == "json")
+  {
+    for (int side = 0; side < 2; ++side)
+    {
+      double bounds[6];
+      pair.Meshes[side]->GetBounds(bounds);
+      if (bounds[4] != 0.0 || bounds[5] != 0.0)
+      {
+        throw Failure(REFUSED,
+          "A triangulation file (.json) holds x and y only, but z is not 0 everywhere in " +
+            pair.Names[side] + ".");
+      }
+    }
+    std::ofstream text(file.GetTemporaryName(), std::ios::binary);
+    WriteTriangulationFile(pair.Metadata, pair.Source(), pair.Target(), text);
+    text.close();
+    if (!text)
+    {
+      throw Failure(FILE_TROUBLE, "Cannot write " + file.GetName() + ": no room for it.");
+    }
+    return;
+  }
+  vtkNew<vtkPolyData> both;
+  both->ShallowCopy(pair.Source());
+  vtkNew<vtkDoubleArray> positions;
+  positions->SetName(targetArray.c_str());
+  positions->SetNumberOfComponents(3);
+  positions->DeepCopy(pair.Target()->GetPoints()->GetData());
+  positions->SetName(targetArray.c_str());
+  both->GetPointData()->AddArray(positions);
+  WriteMesh(both, file);
+}
+
+void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
+{
+  if (file.GetFormat() != "obj" && file.GetFormat() != "off")
+  {
+    WriteData(mesh, file);
+    return;
+  }
+  std::ofstream text(file.GetTemporaryName(), std::ios::binary);
+  if (file.GetFormat() == "obj")
+  {
+    WriteObj(mesh, text);
+  }
+  else
+  {
+    WriteOff(mesh, text);
+  }
+  text.close();
+  if (!text)
+  {
+    throw Failure(FILE_TROUBLE, "Cannot write " + file.GetName() + ": no room for it.");
+  }
+}
+
+} // namespace dhm

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file OutputFile.h
+/// Files that come into being at once and whole, or not at all.
+
+#ifndef dhm_OutputFile_h
+#define dhm_OutputFile_h
+
+#include <string>
+
+namespace dhm
+{
+
+/// A file to be written: somebody writes to GetTemporaryName(), in the same folder, and Commit gives
+/// it its name. What is not committed is removed, on interrupts (SIGINT, SIGTERM, SIGHUP) as well.
+/// "-" is standard output, to which Commit copies.
+class OutputFile
+{
+public:
+  /// @a format is the extension that says what standard output is to hold; other files' names say it
+  /// themselves. Throws Failure if there is a file of that name and it is not to be replaced, or the
+  /// folder does not exist or cannot be written to.
+  OutputFile(const std::string& name, const std::string& format, bool replace);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// What to open.
+  const std::string& GetTemporaryName() const { return this->TemporaryName; }
+  /// What to call it in messages.
+  std::string GetName() const { return this->Name == "-" ? "standard output" : this->Name; }
+  /// The extension in lower case, without the dot.
+  const std::string& GetFormat() const { return this->Format; }
+
+  /// Throws Failure if what was written cannot be brought to the disk or to standard output.
+  void Commit();
+
+private:
+  [[noreturn]] void FailToWrite(int error) const;
+
+  std::string Name;
+  std::string Format;
+  std::string TemporaryName;
+};
+
+} // namespace dhm
+
+#endif

@@ -1,0 +1,359 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "PointTable.h"
+
+#include "Failure.h"
+#include "Numbers.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <istream>
+#include <limits>
+#include <ostream>
+#include <sstream>
+
+namespace dhm
+{
+namespace
+{
+
+std::string ToLower(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+char FindSeparator(const std::string& line)
+{
+  const std::array<char, 3> candidates{ ',', ';', '\t' };
+  const auto count = [&line](char c) { return std::count(line.begin(), line.end(), c); };
+  const char most = *std::max_element(candidates.begin(), candidates.end(),
+    [&count](char a, char b) { return count(a) < count(b); });
+  return count(most) > 0 ? most : ' ';
+}
+
+bool NeedsQuotes(const std::string& field, char separator)
+{
+  return field.find_first_of("\"\n") != std::string::npos || field.find(separator) != std::string::npos ||
+    (separator == ' ' && field.empty());
+}
+
+} // namespace
+
+bool PointTable::IsFormat(const std::string& format)
+{
+  return format == "csv" || format == "txt" || format == "xyz";
+}
+
+PointTable::PointTable(
+  std::istream& file, const std::string& fileName, const std::string& columns)
+{
+  const auto fail = [&fileName](std::size_t line, const std::string& what) {
+    throw Failure(FILE_TROUBLE, fileName + ", line " + std::to_string(line) + ": " + what);
+  };
+  std::size_t number = 0;
+  std::vector<std::size_t> lineOfRow;
+  for (std::string line; std::getline(file, line);)
+  {
+    ++number;
+    if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+    {
+      // A byte order mark, as some programs put it there.
+      line.erase(0, 3);
+    }
+    if (!line.empty() && line.back() == '\r')
+    {
+      line.pop_back();
+    }
+    if (line.find_first_not_of(" \t") == std::string::npos)
+    {
+      continue;
+    }
+    if (line[0] == '#')
+    {
+      this->Comments.push_back(line);
+      continue;
+    }
+    if (this->Rows.empty())
+    {
+      this->Separator = FindSeparator(line);
+    }
+    const std::size_t first = number;
+    Row row;
+    std::string field;
+    bool quoted = false;
+    bool any = false;
+    for (std::size_t i = 0;; ++i)
+    {
+      if (i == line.size())
+      {
+        if (!quoted)
+        {
+          break;
+        }
+        // A field in quotes goes on in the next line.
+        std::string more;
+        if (!std::getline(file, more))
+        {
+          fail(first, "a quotation mark that is never closed.");
+        }
+        ++number;
+        line += "\n" + more;
+      }
+      const char c = line[i];
+      if (quoted)
+      {
+        if (c != '"')
+        {
+          field += c;
+        }
+        else if (i + 1 < line.size() && line[i + 1] == '"')
+        {
+          field += line[++i];
+        }
+        else
+        {
+          quoted = false;
+        }
+      }
+      else if (c == '"')
+      {
+        quoted = any = true;
+      }
+      else if (this->Separator == ' ' ? c == ' ' || c == '\t' : c == this->Separator)
+      {
+        if (this->Separator != ' ' || any)
+        {
+          row.push_back(field);
+        }
+        field.clear();
+        any = false;
+      }
+      else
+      {
+        field += c;
+        any = true;
+      }
+    }
+    if (this->Separator != ' ' || any)
+    {
+      row.push_back(field);
+    }
+    if (!this->Rows.empty() && row.size() != this->Rows[0].size())
+    {
+      fail(first, std::to_string(row.size()) + " columns, but the first line has " +
+          std::to_string(this->Rows[0].size()) + ".");
+    }
+    this->Rows.push_back(row);
+    lineOfRow.push_back(first);
+  }
+  if (this->Rows.empty())
+  {
+    throw Failure(FILE_TROUBLE, fileName + " has no points.");
+  }
+  this->ChooseColumns(columns, fileName);
+
+  const auto coordinate = [this](std::size_t row, std::size_t column) {
+    return ToNumber(this->Rows[row][this->Columns[column]]);
+  };
+  if (this->Names.empty() && !coordinate(0, 0) && !coordinate(0, 1))
+  {
+    this->Names = this->Rows[0];
+  }
+  if (!this->Names.empty())
+  {
+    this->Rows.erase(this->Rows.begin());
+    lineOfRow.erase(lineOfRow.begin());
+  }
+  this->Coordinates.reserve(this->Columns.size() * this->Rows.size());
+  for (std::size_t row = 0; row < this->Rows.size(); ++row)
+  {
+    for (std::size_t k = 0; k < this->Columns.size(); ++k)
+    {
+      const auto value = coordinate(row, k);
+      if (!value)
+      {
+        fail(lineOfRow[row], "expected a coordinate in column " + std::to_string(this->Columns[k] + 1) +
+            ", found \"" + this->Rows[row][this->Columns[k]] + "\".");
+      }
+      this->Coordinates.push_back(*value);
+    }
+  }
+}
+
+bool PointTable::FindNamed(const std::vector<std::string>& names)
+{
+  std::vector<std::size_t> found;
+  for (const std::string& name : names)
+  {
+    const auto place = std::find_if(this->Rows[0].begin(), this->Rows[0].end(),
+      [&name](const std::string& field) { return ToLower(field) == name; });
+    if (place == this->Rows[0].end())
+    {
+      return false;
+    }
+    found.push_back(static_cast<std::size_t>(place - this->Rows[0].begin()));
+  }
+  this->Columns = found;
+  this->Names = this->Rows[0];
+  return true;
+}
+
+void PointTable::ChooseColumns(const std::string& columns, const std::string& fileName)
+{
+  const Row& first = this->Rows[0];
+  if (columns.empty())
+  {
+    if (this->FindNamed({ "x", "y", "z" }) || this->FindNamed({ "x", "y" }) ||
+      this->FindNamed({ "e", "n" }) || this->FindNamed({ "easting", "northing" }))
+    {
+      return;
+    }
+    if (first.size() < 2)
+    {
+      throw Failure(FILE_TROUBLE, fileName + " has only one column: points need two coordinates.");
+    }
+    this->Columns = { 0, 1 };
+    return;
+  }
+  std::istringstream list(columns);
+  for (std::string name; std::getline(list, name, ',');)
+  {
+    const auto named = std::find(first.begin(), first.end(), name);
+    const auto number = ToNumber<std::size_t>(name);
+    if (named != first.end())
+    {
+      this->Columns.push_back(static_cast<std::size_t>(named - first.begin()));
+      this->Names = first;
+    }
+    else if (number && *number >= 1 && *number <= first.size())
+    {
+      this->Columns.push_back(*number - 1);
+    }
+    else
+    {
+      throw Failure(WRONG_USAGE,
+        fileName + " has no column \"" + name + "\" (--columns): its first line has " +
+          std::to_string(first.size()) + " columns.");
+    }
+  }
+  if (this->Columns.size() < 2 || this->Columns.size() > 3)
+  {
+    throw Failure(WRONG_USAGE, "Two or three coordinate columns are needed (--columns).");
+  }
+}
+
+vtkSmartPointer<vtkPolyData> PointTable::ToPoints() const
+{
+  const auto count = static_cast<vtkIdType>(this->Rows.size());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(count);
+  vtkNew<vtkCellArray> vertices;
+  vertices->AllocateExact(count, count);
+  const std::size_t dimension = this->Columns.size();
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const double* point = &this->Coordinates[dimension * static_cast<std::size_t>(i)];
+    points->SetPoint(i, point[0], point[1], dimension == 3 ? point[2] : 0.0);
+    vertices->InsertNextCell(1, &i);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetVerts(vertices);
+  return data;
+}
+
+void PointTable::Update(vtkDataSet* before, vtkDataSet* data)
+{
+  vtkDataArray* mask = data->GetPointData()->GetArray("ValidPointMask");
+  for (std::size_t row = 0; row < this->Rows.size(); ++row)
+  {
+    double point[3];
+    data->GetPoint(static_cast<vtkIdType>(row), point);
+    if (mask && mask->GetTuple1(static_cast<vtkIdType>(row)) == 0.0)
+    {
+      std::fill_n(point, 3, std::numeric_limits<double>::quiet_NaN());
+    }
+    for (std::size_t k = 0; k < this->Columns.size(); ++k)
+    {
+      // What has not changed keeps its digits.
+      double& coordinate = this->Coordinates[row * this->Columns.size() + k];
+      if (coordinate != point[k])
+      {
+        coordinate = point[k];
+        this->Rows[row][this->Columns[k]] = ToText(point[k]);
+      }
+    }
+  }
+  for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetPointData()->GetArray(i);
+    if (!array || !array->GetName() || before->GetPointData()->HasArray(array->GetName()) ||
+      array->GetName() == std::string(vtkDataSetAttributes::GhostArrayName()))
+    {
+      continue;
+    }
+    const int components = array->GetNumberOfComponents();
+    for (int k = 0; k < components; ++k)
+    {
+      if (!this->Names.empty())
+      {
+        this->Names.push_back(
+          array->GetName() + (components > 1 ? "_" + std::to_string(k) : std::string()));
+      }
+      for (std::size_t row = 0; row < this->Rows.size(); ++row)
+      {
+        this->Rows[row].push_back(ToText(array->GetComponent(static_cast<vtkIdType>(row), k)));
+      }
+    }
+  }
+}
+
+void PointTable::Write(std::ostream& file) const
+{
+  const auto write = [this, &file](const Row& row) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+    {
+      if (i > 0)
+      {
+        file << this->Separator;
+      }
+      if (!NeedsQuotes(row[i], this->Separator))
+      {
+        file << row[i];
+        continue;
+      }
+      file << '"';
+      for (const char c : row[i])
+      {
+        file << (c == '"' ? "\"\"" : std::string(1, c));
+      }
+      file << '"';
+    }
+    file << '\n';
+  };
+  for (const std::string& comment : this->Comments)
+  {
+    file << comment << '\n';
+  }
+  if (!this->Names.empty())
+  {
+    write(this->Names);
+  }
+  for (const Row& row : this->Rows)
+  {
+    write(row);
+  }
+}
+
+} // namespace dhm

@@ -1,0 +1,481 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Refinement.h"
+
+#include "Command.h"
+#include "Console.h"
+#include "Failure.h"
+#include "Numbers.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDataArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+namespace dhm
+{
+namespace
+{
+
+using Point = std::array<double, 2>;
+using Barycentric = std::array<double, 3>;
+
+/// A part of one of the pair's triangles.
+struct Part
+{
+  std::array<vtkIdType, 3> Points;
+  /// Barycentric coordinates of the points in the pair's triangle: multiples of powers of 1/2, without
+  /// rounding, so that a point is on an edge exactly if one of them is 0.
+  std::array<Barycentric, 3> Places;
+  vtkIdType Triangle;
+  bool Divided = false;
+};
+
+struct EdgeHash
+{
+  std::size_t operator()(const std::array<vtkIdType, 2>& edge) const
+  {
+    return std::hash<vtkIdType>()(edge[0] * vtkIdType(1000003) + edge[1]);
+  }
+};
+
+double Area(const Point& a, const Point& b, const Point& c)
+{
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+class Refiner
+{
+public:
+  Refiner(const MeshPair& pair, const MapOptions& map)
+    : Pair(pair)
+  {
+    map.ApplyTo(this->Map.Get());
+    this->Map->SetSourceData(pair.Source());
+    this->Map->SetTargetData(pair.Target());
+    this->Map->BlankOutsideOff();
+    for (std::size_t side = 0; side < 2; ++side)
+    {
+      vtkPolyData* mesh = pair.Meshes[side];
+      this->Points[side].resize(static_cast<std::size_t>(mesh->GetNumberOfPoints()));
+      for (std::size_t i = 0; i < this->Points[side].size(); ++i)
+      {
+        double p[3];
+        mesh->GetPoint(static_cast<vtkIdType>(i), p);
+        this->Points[side][i] = { p[0], p[1] };
+      }
+    }
+    const auto cells = vtk::TakeSmartPointer(pair.Source()->GetPolys()->NewIterator());
+    for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+    {
+      vtkIdType count;
+      const vtkIdType* corners;
+      cells->GetCurrentCell(count, corners);
+      this->Triangles.push_back({ corners[0], corners[1], corners[2] });
+      this->Add({ this->Triangles.back(), { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
+        static_cast<vtkIdType>(this->Triangles.size()) - 1 });
+    }
+  }
+
+  vtkIdType GetNumberOfParts() const { return this->NumberOfParts; }
+
+  /// The undivided parts.
+  std::vector<std::size_t> GetParts() const
+  {
+    std::vector<std::size_t> parts;
+    for (std::size_t i = 0; i < this->Parts.size(); ++i)
+    {
+      if (!this->Parts[i].Divided)
+      {
+        parts.push_back(i);
+      }
+    }
+    return parts;
+  }
+
+  /// For each of some parts, how far the linear map of the part is from the map, at the inner points of a
+  /// barycentric grid and those on the part's sides; infinite if the part is turned over.
+  std::vector<double> MeasureDistances(const std::vector<std::size_t>& parts, int divisions)
+  {
+    std::vector<Barycentric> grid;
+    for (int i = 0; i <= divisions; ++i)
+    {
+      for (int j = 0; j <= divisions - i; ++j)
+      {
+        const int k = divisions - i - j;
+        if (i != divisions && j != divisions && k != divisions)
+        {
+          grid.push_back({ static_cast<double>(i) / divisions, static_cast<double>(j) / divisions,
+            static_cast<double>(k) / divisions });
+        }
+      }
+    }
+    const auto within = [&](std::size_t side, const Part& part, const Barycentric& weights) {
+      Point point{ 0.0, 0.0 };
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        const Point& corner = this->Points[side][static_cast<std::size_t>(part.Points[k])];
+        point[0] += weights[k] * corner[0];
+        point[1] += weights[k] * corner[1];
+      }
+      return point;
+    };
+    std::vector<double> distances;
+    // Some at a time: the samples of all would take a lot of memory.
+    constexpr std::size_t atOnce = 20000;
+    for (std::size_t begin = 0; begin < parts.size(); begin += atOnce)
+    {
+      const std::size_t end = std::min(parts.size(), begin + atOnce);
+      std::vector<Point> samples;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        for (const Barycentric& weights : grid)
+        {
+          samples.push_back(within(0, this->Parts[parts[i]], weights));
+        }
+      }
+      const std::vector<Point> images = this->MapPoints(samples);
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const Part& part = this->Parts[parts[i]];
+        double largest = this->IsTurnedOver(part) ? std::numeric_limits<double>::infinity() : 0.0;
+        for (std::size_t k = 0; k < grid.size(); ++k)
+        {
+          const Point& image = images[(i - begin) * grid.size() + k];
+          const Point linear = within(1, part, grid[k]);
+          const double distance = std::hypot(image[0] - linear[0], image[1] - linear[1]);
+          // A sample outside by more than rounding would be a fault of the mesh.
+          largest = std::isnan(distance) ? largest : std::max(largest, distance);
+        }
+        distances.push_back(largest);
+      }
+      this->Samples += static_cast<vtkIdType>(samples.size());
+    }
+    return distances;
+  }
+
+  /// Divides a part, and others first where that is needed to divide them together.
+  void Divide(std::size_t index)
+  {
+    // The path of longest edges that grow from part to part.
+    std::vector<std::size_t> path{ index };
+    while (!this->Parts[index].Divided)
+    {
+      const std::size_t last = path.back();
+      const std::size_t edge = this->LongestEdge(last);
+      const std::size_t neighbour = this->Across(last, edge);
+      if (neighbour == last || this->SameEdge(neighbour, this->LongestEdge(neighbour), last, edge))
+      {
+        this->Halve(last, edge, neighbour);
+        path.pop_back();
+        if (path.empty())
+        {
+          return;
+        }
+        continue;
+      }
+      path.push_back(neighbour);
+    }
+  }
+
+  /// Finds where the points that have been added since the last time go.
+  void MapNewPoints()
+  {
+    std::vector<Point> places;
+    for (const std::size_t point : this->Unmapped)
+    {
+      places.push_back(this->Points[0][point]);
+    }
+    const std::vector<Point> images = this->MapPoints(places);
+    for (std::size_t i = 0; i < images.size(); ++i)
+    {
+      this->Points[1][this->Unmapped[i]] = images[i];
+    }
+    this->Unmapped.clear();
+  }
+
+  vtkIdType Samples = 0;
+
+  std::array<vtkSmartPointer<vtkPolyData>, 2> MakeMeshes() const
+  {
+    vtkNew<vtkCellArray> polygons;
+    for (const std::size_t part : this->GetParts())
+    {
+      polygons->InsertNextCell(3, this->Parts[part].Points.data());
+    }
+    std::array<vtkSmartPointer<vtkPolyData>, 2> meshes;
+    for (std::size_t side = 0; side < 2; ++side)
+    {
+      vtkNew<vtkPoints> points;
+      points->SetDataTypeToDouble();
+      double first[3];
+      this->Pair.Meshes[side]->GetPoint(0, first);
+      for (const Point& point : this->Points[side])
+      {
+        points->InsertNextPoint(point[0], point[1], first[2]);
+      }
+      meshes[side] = vtkSmartPointer<vtkPolyData>::New();
+      meshes[side]->SetPoints(points);
+      meshes[side]->SetPolys(polygons);
+    }
+    return meshes;
+  }
+
+private:
+  /// The two points of an edge, which is opposite a part's point.
+  std::array<vtkIdType, 2> Edge(std::size_t part, std::size_t edge) const
+  {
+    const auto& points = this->Parts[part].Points;
+    const vtkIdType a = points[(edge + 1) % 3];
+    const vtkIdType b = points[(edge + 2) % 3];
+    return { std::min(a, b), std::max(a, b) };
+  }
+
+  bool SameEdge(std::size_t part, std::size_t edge, std::size_t otherPart, std::size_t otherEdge) const
+  {
+    return this->Edge(part, edge) == this->Edge(otherPart, otherEdge);
+  }
+
+  /// Of edges of the same length, the points' numbers decide: for both parts alike.
+  std::size_t LongestEdge(std::size_t part) const
+  {
+    const auto key = [&](std::size_t edge) {
+      const auto ends = this->Edge(part, edge);
+      const Point& a = this->Points[0][static_cast<std::size_t>(ends[0])];
+      const Point& b = this->Points[0][static_cast<std::size_t>(ends[1])];
+      return std::make_tuple(std::hypot(b[0] - a[0], b[1] - a[1]), ends[0], ends[1]);
+    };
+    std::size_t longest = 0;
+    for (const std::size_t edge : { 1, 2 })
+    {
+      longest = key(edge) > key(longest) ? edge : longest;
+    }
+    return longest;
+  }
+
+  /// The part across an edge; the part itself if there is none.
+  std::size_t Across(std::size_t part, std::size_t edge) const
+  {
+    const auto& parts = this->PartsOfEdge.at(this->Edge(part, edge));
+    return parts[0] == part ? parts[1] : parts[0];
+  }
+
+  void Add(const Part& part)
+  {
+    const std::size_t index = this->Parts.size();
+    this->Parts.push_back(part);
+    ++this->NumberOfParts;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+    {
+      const auto found = this->PartsOfEdge.emplace(
+        this->Edge(index, edge), std::array<std::size_t, 2>{ index, index });
+      if (!found.second)
+      {
+        found.first->second[1] = index;
+      }
+    }
+  }
+
+  /// Forgets a part that has been divided, and its edges where it was alone.
+  void Remove(std::size_t index)
+  {
+    this->Parts[index].Divided = true;
+    --this->NumberOfParts;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+    {
+      const auto found = this->PartsOfEdge.find(this->Edge(index, edge));
+      auto& parts = found->second;
+      const std::size_t other = parts[0] == index ? parts[1] : parts[0];
+      if (other == index)
+      {
+        this->PartsOfEdge.erase(found);
+      }
+      else
+      {
+        parts = { other, other };
+      }
+    }
+  }
+
+  void Halve(std::size_t index, std::size_t edge, std::size_t neighbour)
+  {
+    std::size_t neighbourEdge = 0;
+    while (neighbour != index && !this->SameEdge(neighbour, neighbourEdge, index, edge))
+    {
+      ++neighbourEdge;
+    }
+    const auto middle = static_cast<vtkIdType>(this->Points[0].size());
+    const Part part = this->Parts[index];
+    const Barycentric place = Middle(part, edge);
+    const auto& corners = this->Triangles[static_cast<std::size_t>(part.Triangle)];
+    for (std::size_t side = 0; side < 2; ++side)
+    {
+      Point point{ 0.0, 0.0 };
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        const Point& corner = this->Points[side][static_cast<std::size_t>(corners[k])];
+        point[0] += place[k] * corner[0];
+        point[1] += place[k] * corner[1];
+      }
+      this->Points[side].push_back(point);
+    }
+    // Edges of the pair are mapped linearly.
+    if (std::find(place.begin(), place.end(), 0.0) == place.end())
+    {
+      this->Unmapped.push_back(static_cast<std::size_t>(middle));
+    }
+    this->HalvePart(index, edge, middle);
+    if (neighbour != index)
+    {
+      this->HalvePart(neighbour, neighbourEdge, middle);
+    }
+  }
+
+  static Barycentric Middle(const Part& part, std::size_t edge)
+  {
+    const Barycentric& a = part.Places[(edge + 1) % 3];
+    const Barycentric& b = part.Places[(edge + 2) % 3];
+    return { 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]) };
+  }
+
+  void HalvePart(std::size_t index, std::size_t edge, vtkIdType middle)
+  {
+    const Part part = this->Parts[index];
+    const Barycentric place = Middle(part, edge);
+    this->Remove(index);
+    for (const std::size_t end : { (edge + 1) % 3, (edge + 2) % 3 })
+    {
+      Part half = part;
+      half.Points[end] = middle;
+      half.Places[end] = place;
+      this->Add(half);
+    }
+  }
+
+  bool IsTurnedOver(const Part& part) const
+  {
+    const auto area = [this](std::size_t side, const std::array<vtkIdType, 3>& points) {
+      const auto& all = this->Points[side];
+      return Area(all[static_cast<std::size_t>(points[0])], all[static_cast<std::size_t>(points[1])],
+        all[static_cast<std::size_t>(points[2])]);
+    };
+    const auto& triangle = this->Triangles[static_cast<std::size_t>(part.Triangle)];
+    const bool mirrored = (area(0, triangle) > 0.0) != (area(1, triangle) > 0.0);
+    const double product = area(0, part.Points) * area(1, part.Points);
+    return !(mirrored ? product < 0.0 : product > 0.0);
+  }
+
+  std::vector<Point> MapPoints(const std::vector<Point>& points)
+  {
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    places->SetNumberOfPoints(static_cast<vtkIdType>(points.size()));
+    double first[3];
+    this->Pair.Source()->GetPoint(0, first);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      places->SetPoint(static_cast<vtkIdType>(i), points[i][0], points[i][1], first[2]);
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(places);
+    this->Map->SetDataObject(data);
+    Run(this->Map, "", false);
+    auto* output = vtkPolyData::SafeDownCast(this->Map->GetOutputDataObject(0));
+    vtkDataArray* mask = output->GetPointData()->GetArray("ValidPointMask");
+    std::vector<Point> images(points.size());
+    for (std::size_t i = 0; i < images.size(); ++i)
+    {
+      double image[3];
+      output->GetPoint(static_cast<vtkIdType>(i), image);
+      const bool inside = mask->GetTuple1(static_cast<vtkIdType>(i)) != 0.0;
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      images[i] = inside ? Point{ image[0], image[1] } : Point{ none, none };
+    }
+    return images;
+  }
+
+  const MeshPair& Pair;
+  vtkNew<vtkDifferentiableHomeomorphism> Map;
+  std::array<std::vector<Point>, 2> Points;
+  std::vector<std::array<vtkIdType, 3>> Triangles;
+  std::vector<Part> Parts;
+  vtkIdType NumberOfParts = 0;
+  std::unordered_map<std::array<vtkIdType, 2>, std::array<std::size_t, 2>, EdgeHash> PartsOfEdge;
+  std::vector<std::size_t> Unmapped;
+};
+
+} // namespace
+
+Refinement Refine(
+  const MeshPair& pair, const MapOptions& map, double tolerance, vtkIdType mostTriangles)
+{
+  Refiner refiner(pair, map);
+  Refinement result;
+  // Coarse looks while there is much to divide; what they find good enough is looked at closely at the end.
+  constexpr int coarse = 6;
+  constexpr int fine = 20;
+  ProgressBar bar("Refining");
+  std::vector<std::size_t> parts = refiner.GetParts();
+  bool isFine = false;
+  for (;;)
+  {
+    refiner.Samples = 0;
+    const std::vector<double> distances = refiner.MeasureDistances(parts, isFine ? fine : coarse);
+    const double largest =
+      distances.empty() ? 0.0 : *std::max_element(distances.begin(), distances.end());
+    if (largest <= tolerance)
+    {
+      if (isFine)
+      {
+        result.Distance = largest;
+        break;
+      }
+      isFine = true;
+      parts = refiner.GetParts();
+      continue;
+    }
+    const std::vector<std::size_t> old = refiner.GetParts();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+    {
+      if (distances[i] > tolerance)
+      {
+        refiner.Divide(parts[i]);
+      }
+      if (refiner.GetNumberOfParts() > mostTriangles)
+      {
+        throw Failure(REFUSED,
+          "More than " + std::to_string(mostTriangles) +
+            " triangles are needed to be within " + ToText(tolerance) + " everywhere (" + ToText(largest) +
+            " was reached): ask for a larger tolerance, or allow more (--most-triangles).");
+      }
+    }
+    refiner.MapNewPoints();
+    // What has not been divided is as good as it was.
+    parts = refiner.GetParts();
+    if (!isFine)
+    {
+      std::vector<std::size_t> fresh;
+      std::set_difference(
+        parts.begin(), parts.end(), old.begin(), old.end(), std::back_inserter(fresh));
+      parts = fresh;
+    }
+  }
+  result.Samples = refiner.Samples;
+  result.Pair = pair;
+  result.Pair.Meshes = refiner.MakeMeshes();
+  return result;
+}
+
+} // namespace dhm

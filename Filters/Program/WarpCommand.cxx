@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Command.h"
+#include "DataFile.h"
+#include "Failure.h"
+#include "ImageWarp.h"
+#include "InputFile.h"
+#include "OutputFile.h"
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace dhm
+{
+
+void AddWarp(CLI::App& program)
+{
+  struct Options
+  {
+    InputFiles Inputs;
+    OutputOptions Output;
+    MapOptions Map;
+    std::string ImageFormat = "png";
+    std::string Size;
+    std::string Background;
+    bool Inverse = false;
+  };
+  CLI::App* command = program.add_subcommand("warp", "Warp an image from the source's domain to the target's");
+  const auto options = std::make_shared<Options>();
+  options->Inputs.AddTo(*command, "FILES", 1, 1,
+    "SOURCE [TARGET] IMAGE: the pair, in pixels of the image (the first pixel's centre, at the lower left, is "
+    "(0, 0), y runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif .ppm or .vti");
+  options->Output.AddTo(*command, "The warped image: .png .jpg .tif .ppm .vti, or - for standard output", "png");
+  command
+    ->add_option("--image-format", options->ImageFormat,
+      "What the image is if it comes from standard input, as an extension (default: png)")
+    ->type_name("EXTENSION")
+    ->group("Files");
+  options->Map.AddTo(*command);
+  command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")->group("Map");
+  command
+    ->add_option("--size", options->Size, "Size of the result in pixels (default: the image's)")
+    ->type_name("WIDTHxHEIGHT")
+    ->group("Results");
+  command
+    ->add_option("--background", options->Background,
+      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black or #rrggbb")
+    ->type_name("COLOUR")
+    ->group("Results");
+  command->footer("Pixels are interpolated linearly. Each pixel of the result is looked up where the exact inverse "
+                  "says.");
+  command->callback([options] {
+    const std::array<int, 2> size = ReadSize(options->Size);
+    const std::string format =
+      options->Output.Name == "-" ? options->Output.Format : FormatOf(options->Output.Name);
+    if (!IsPicture(format) && format != "vti")
+    {
+      throw Failure(
+        WRONG_USAGE, "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
+    }
+    const bool withoutAlpha = format[0] == 'j' || format[0] == 'p';
+    const Background background = ReadBackground(!options->Background.empty() ? options->Background
+        : withoutAlpha && format != "png"                                   ? "white"
+                                                                            : "transparent");
+    if (!background && withoutAlpha && format != "png")
+    {
+      throw Failure(WRONG_USAGE, "A ." + format + " picture cannot be transparent.");
+    }
+    OutputFile output(options->Output.Name, options->Output.Format, options->Output.Replace);
+    MeshPair pair = options->Inputs.ReadPair(1);
+    const auto image = ReadImage(InputFile(options->Inputs.Files.back(), options->ImageFormat));
+    const auto grid = MakeGrid(image, size);
+    const int* from = image->GetDimensions();
+    const int* to = grid->GetDimensions();
+    const std::array<int, 2> sizes[2] = { { from[0], from[1] }, { to[0], to[1] } };
+    FitToPictures(pair, sizes[options->Inverse], sizes[!options->Inverse]);
+    const auto warped = WarpImage(
+      image, pair.Source(), pair.Target(), grid, options->Inverse, options->Map, "Warping");
+    WriteData(Finish(warped, background), output);
+    output.Commit();
+  });
+}
+
+} // namespace dhm
