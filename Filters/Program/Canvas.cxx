@@ -42,8 +42,8 @@ public:
     }
     else
     {
-      this->Surface = cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(width)), static_cast<int>(std::ceil(height)));
+      this->Surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+        static_cast<int>(std::ceil(width)), static_cast<int>(std::ceil(height)));
     }
     this->Context = cairo_create(this->Surface);
     cairo_set_line_join(this->Context, CAIRO_LINE_JOIN_ROUND);
@@ -156,9 +156,10 @@ void Canvas::DrawFrame(const Area& area, const Color& color)
 void Canvas::DrawLines(vtkPolyData* data, const Color& color, double width)
 {
   this->Internal->SetColor(color);
-  Internals::ForEachCell(data->GetLines(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
-    this->Internal->AddPath(data, count, points, false);
-  });
+  Internals::ForEachCell(
+    data->GetLines(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
+      this->Internal->AddPath(data, count, points, false);
+    });
   this->Internal->Stroke(width);
 }
 
@@ -166,13 +167,14 @@ void Canvas::DrawEdges(vtkPolyData* mesh, const Color& color, double width)
 {
   // Each edge once: twice would look darker where it is not opaque.
   std::vector<std::array<vtkIdType, 2>> edges;
-  Internals::ForEachCell(mesh->GetPolys(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
-    for (vtkIdType k = 0; k < count; ++k)
-    {
-      const vtkIdType next = points[(k + 1) % count];
-      edges.push_back({ std::min(points[k], next), std::max(points[k], next) });
-    }
-  });
+  Internals::ForEachCell(
+    mesh->GetPolys(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
+      for (vtkIdType k = 0; k < count; ++k)
+      {
+        const vtkIdType next = points[(k + 1) % count];
+        edges.push_back({ std::min(points[k], next), std::max(points[k], next) });
+      }
+    });
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   this->Internal->SetColor(color);
@@ -228,7 +230,8 @@ void Canvas::DrawImage(vtkImageData* image)
   const int stride = cairo_image_surface_get_stride(surface);
   for (int y = 0; y < size[1]; ++y)
   {
-    auto* row = reinterpret_cast<std::uint32_t*>(rows + static_cast<std::ptrdiff_t>(stride) * (size[1] - 1 - y));
+    auto* row = reinterpret_cast<std::uint32_t*>(
+      rows + static_cast<std::ptrdiff_t>(stride) * (size[1] - 1 - y));
     for (int x = 0; x < size[0]; ++x)
     {
       const vtkIdType pixel = static_cast<vtkIdType>(y) * size[0] + x;
@@ -288,7 +291,8 @@ void Canvas::Finish()
   if (status != CAIRO_STATUS_SUCCESS)
   {
     throw Failure(FILE_TROUBLE,
-      "Cannot write " + this->Internal->File.GetName() + ": " + cairo_status_to_string(status) + ".");
+      "Cannot write " + this->Internal->File.GetName() + ": " + cairo_status_to_string(status) +
+        ".");
   }
 }
 

@@ -52,8 +52,9 @@ public:
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
-  /// From here on, drawing is done in the coordinates of meshes and images: @a bounds (xmin, xmax, ymin,
-  /// ymax, y upwards) is shown in the middle of @a area, as large as fits, and nothing outside the area.
+  /// From here on, drawing is done in the coordinates of meshes and images: @a bounds (xmin, xmax,
+  /// ymin, ymax, y upwards) is shown in the middle of @a area, as large as fits, and nothing
+  /// outside the area.
   void Enter(const Area& area, const std::array<double, 4>& bounds);
   /// Back to the page's own units.
   void Leave();
@@ -64,7 +65,8 @@ public:
   void DrawLines(vtkPolyData* data, const Color& color, double width);
   void DrawEdges(vtkPolyData* mesh, const Color& color, double width);
   /// Polygons of a mesh: those of which @a isShown says so.
-  void FillCells(vtkPolyData* mesh, const std::function<bool(vtkIdType cell)>& isShown, const Color& color);
+  void FillCells(
+    vtkPolyData* mesh, const std::function<bool(vtkIdType cell)>& isShown, const Color& color);
   /// A dot, its radius in the page's units.
   void DrawDot(double x, double y, double radius, const Color& color);
   /// An image of 1 to 4 components (the brightest of a type being white), at its place.

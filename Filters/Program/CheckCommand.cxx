@@ -90,17 +90,18 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   json["problems"] = Json::array();
   for (const MeshProblem& problem : report.Problems)
   {
-    json["problems"].push_back({ { "kind", NameOf(problem.What) }, { "where", problem.Where },
-      { "count", problem.Count }, { "first_cells", problem.FirstCells }, { "message", Describe(problem) } });
+    json["problems"].push_back(
+      { { "kind", NameOf(problem.What) }, { "where", problem.Where }, { "count", problem.Count },
+        { "first_cells", problem.FirstCells }, { "message", Describe(problem) } });
   }
   const char* const sides[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
   {
     const MeshReport& mesh = report.Meshes[side];
     Json& object = json[sides[side]];
-    object = { { "file", pair.Names[side] }, { "points", mesh.Points }, { "triangles", mesh.Triangles },
-      { "unused_points", mesh.UnusedPoints }, { "duplicate_points", mesh.DuplicatePoints },
-      { "first_duplicates", mesh.FirstDuplicates } };
+    object = { { "file", pair.Names[side] }, { "points", mesh.Points },
+      { "triangles", mesh.Triangles }, { "unused_points", mesh.UnusedPoints },
+      { "duplicate_points", mesh.DuplicatePoints }, { "first_duplicates", mesh.FirstDuplicates } };
     if (report.Measured)
     {
       object["planar"] = mesh.Planar;
@@ -151,7 +152,7 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
 
 void Line(const std::string& name, const std::string& text)
 {
-  std::cout << Format("  %-34s ", name.c_str()) << text << "\n";
+  std::cout << Format("  %-38s ", name.c_str()) << text << "\n";
 }
 
 void Pair(const std::string& name, const std::string& source, const std::string& target)
@@ -172,21 +173,29 @@ void PrintMeshes(const PairReport& report)
   Pair("", "source", "target");
   both("points", [](const MeshReport& mesh) { return std::to_string(mesh.Points); });
   both("triangles", [](const MeshReport& mesh) { return std::to_string(mesh.Triangles); });
-  both("points that no triangle uses", [](const MeshReport& mesh) { return std::to_string(mesh.UnusedPoints); });
+  both("points that no triangle uses",
+    [](const MeshReport& mesh) { return std::to_string(mesh.UnusedPoints); });
   both("duplicate points", [](const MeshReport& mesh) {
     return std::to_string(mesh.DuplicatePoints) +
-      (mesh.DuplicatePoints > 0 ? " (" + ListIds({ mesh.FirstDuplicates.front() }, mesh.DuplicatePoints) + ")"
-                                : std::string());
+      (mesh.DuplicatePoints > 0
+          ? " (" + ListIds({ mesh.FirstDuplicates.front() }, mesh.DuplicatePoints) + ")"
+          : std::string());
   });
   if (!report.Measured)
   {
     return;
   }
-  both("planar", [](const MeshReport& mesh) { return std::string(mesh.Planar ? "yes" : "no, a surface"); });
+  both("planar",
+    [](const MeshReport& mesh) { return std::string(mesh.Planar ? "yes" : "no, a surface"); });
   both("concordant triangles", [](const MeshReport& mesh) {
-    return Format("%.1f %%", 100.0 * (1.0 - static_cast<double>(mesh.DiscordantTriangles.size()) / static_cast<double>(mesh.Triangles)));
+    return Format("%.1f %%",
+      100.0 *
+        (1.0 -
+          static_cast<double>(mesh.DiscordantTriangles.size()) /
+            static_cast<double>(mesh.Triangles)));
   });
-  both("smallest angle, degrees", [](const MeshReport& mesh) { return AtCell("%.3g", mesh.SmallestAngle); });
+  both("smallest angle, degrees",
+    [](const MeshReport& mesh) { return AtCell("%.3g", mesh.SmallestAngle); });
   both("largest area ratio across an edge",
     [](const MeshReport& mesh) { return AtCell("%.4g", mesh.LargestAreaRatio); });
 }
@@ -199,20 +208,21 @@ void PrintMap(const PairReport& report)
   Line("triangles listed in another order", std::to_string(report.ReorderedTriangles));
   Line("components", std::to_string(report.Components));
   Line("boundary loops", std::to_string(report.BoundaryLoops));
-  Line("edges", std::to_string(report.InteriorEdges) + " interior, " + std::to_string(report.BoundaryEdges) +
+  Line("edges",
+    std::to_string(report.InteriorEdges) + " interior, " + std::to_string(report.BoundaryEdges) +
       " on the boundary");
-  Line("lengths change by factors of", AtCell("%.6g", report.SmallestStretch) + " to " +
-      AtCell("%.6g", report.LargestStretch));
+  Line("lengths change by factors of",
+    AtCell("%.6g", report.SmallestStretch) + " to " + AtCell("%.6g", report.LargestStretch));
   Line("worst distortion (ratio of the two)", AtCell("%.6g", report.WorstDistortion));
 
-  std::cout << "\n" << Format("  %-34s ", "");
+  std::cout << "\n" << Format("  %-38s ", "");
   for (const char* name : SystemNames)
   {
     std::cout << Format("%-22s ", name);
   }
   std::cout << "\n";
   const auto row = [&report](const std::string& name, auto&& text) {
-    std::cout << Format("  %-34s ", name.c_str());
+    std::cout << Format("  %-38s ", name.c_str());
     for (const SystemReport& system : report.Systems)
     {
       std::cout << Format("%-22s ", text(system).c_str());
@@ -221,8 +231,10 @@ void PrintMap(const PairReport& report)
   };
   if (report.Systems[0].Samples > 0)
   {
-    row("det J, smallest", [](const SystemReport& system) { return AtCell("%.6g", system.SmallestDeterminant); });
-    row("det J, largest", [](const SystemReport& system) { return AtCell("%.6g", system.LargestDeterminant); });
+    row("det J, smallest",
+      [](const SystemReport& system) { return AtCell("%.6g", system.SmallestDeterminant); });
+    row("det J, largest",
+      [](const SystemReport& system) { return AtCell("%.6g", system.LargestDeterminant); });
     row("points where det J has the wrong sign",
       [](const SystemReport& system) { return std::to_string(system.NotPositive); });
     row("farthest from Linear, target's units",
@@ -230,16 +242,20 @@ void PrintMap(const PairReport& report)
   }
   if (report.Systems[0].ContinuityMeasured)
   {
-    row("edges: differentiable", [](const SystemReport& system) { return std::to_string(system.DifferentiableEdges); });
+    row("edges: differentiable",
+      [](const SystemReport& system) { return std::to_string(system.DifferentiableEdges); });
     row("edges: kinks", [](const SystemReport& system) { return std::to_string(system.Kinks); });
-    row("edges: undecided", [](const SystemReport& system) { return std::to_string(system.UndecidedEdges); });
-    row("largest jump of J, relative", [](const SystemReport& system) { return Format("%.2g", system.LargestJump); });
+    row("edges: undecided",
+      [](const SystemReport& system) { return std::to_string(system.UndecidedEdges); });
+    row("largest jump of J, relative",
+      [](const SystemReport& system) { return Format("%.2g", system.LargestJump); });
   }
   if (report.Systems[0].Samples > 0)
   {
     std::cout << "\n  det J: at " << report.Systems[0].Samples << " points within the triangles.";
   }
-  if (!report.Meshes[0].DiscordantTriangles.empty() || !report.Meshes[1].DiscordantTriangles.empty())
+  if (!report.Meshes[0].DiscordantTriangles.empty() ||
+    !report.Meshes[1].DiscordantTriangles.empty())
   {
     std::cout << "\n  Discordant triangles are Linear's in the column Contour.";
   }
@@ -248,8 +264,9 @@ void PrintMap(const PairReport& report)
 
 void Print(const PairReport& report, const MeshPair& pair)
 {
-  std::cout << pair.Names[0] << (pair.Names[0] == pair.Names[1] ? std::string() : " and " + pair.Names[1])
-            << ": " << (report.Valid ? "a valid pair" : "NOT a valid pair") << "\n";
+  std::cout << pair.Names[0]
+            << (pair.Names[0] == pair.Names[1] ? std::string() : " and " + pair.Names[1]) << ": "
+            << (report.Valid ? "a valid pair" : "NOT a valid pair") << "\n";
   for (const MeshProblem& problem : report.Problems)
   {
     std::cout << "  - " << Describe(problem) << "\n";
@@ -280,22 +297,29 @@ void AddCheck(CLI::App& program)
   options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair");
   command->add_flag("--json", options->Machine, "Write the report as JSON")->group("Results");
   command
-    ->add_flag("--quick", options->Quick, "Look at the meshes only: do not measure determinants and continuity")
+    ->add_flag("--quick", options->Quick,
+      "Look at the meshes only: do not measure determinants and continuity")
     ->group("Results");
-  command->add_option("--picture", options->Picture, "Draw the pair with the offenders marked: .png .svg .pdf")
+  command
+    ->add_option(
+      "--picture", options->Picture, "Draw the pair with the offenders marked: .png .svg .pdf")
     ->type_name("FILE")
     ->group("Results");
-  command->add_flag("-f,--force", options->Replace, "Replace the picture if it exists")->group("Results");
-  command->footer("Exit status: 0 the pair defines a map, 1 it does not.\n"
-                  "Invalid triangles are left out of what is measured. Continuity: at each interior edge, whether "
-                  "the map's derivative is the same on both sides, as measured from the map's values.");
+  command->add_flag("-f,--force", options->Replace, "Replace the picture if it exists")
+    ->group("Results");
+  command->footer(
+    "Exit status: 0 the pair defines a map, 1 it does not.\n"
+    "Invalid triangles are left out of what is measured. Continuity: at each interior edge, "
+    "whether "
+    "the map's derivative is the same on both sides, as measured from the map's values.");
   command->callback([options] {
     std::unique_ptr<OutputFile> picture;
     if (!options->Picture.empty())
     {
       if (!Canvas::IsFormat(FormatOf(options->Picture)))
       {
-        throw Failure(WRONG_USAGE, "Pictures are .png, .svg or .pdf: " + options->Picture + " is none.");
+        throw Failure(
+          WRONG_USAGE, "Pictures are .png, .svg or .pdf: " + options->Picture + " is none.");
       }
       picture = std::make_unique<OutputFile>(options->Picture, "", options->Replace);
     }

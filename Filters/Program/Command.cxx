@@ -5,6 +5,7 @@
 
 #include "Console.h"
 #include "Failure.h"
+#include "ImageWarp.h"
 
 #include "vtkAlgorithm.h"
 
@@ -21,18 +22,21 @@ const char* const SystemNames[3] = { "Linear", "Contour", "Smooth" };
 
 void MapOptions::AddTo(CLI::App& command)
 {
-  static const std::map<std::string, int> systems{ { "linear", vtkDifferentiableHomeomorphism::LINEAR },
+  static const std::map<std::string, int> systems{ { "linear",
+                                                     vtkDifferentiableHomeomorphism::LINEAR },
     { "contour", vtkDifferentiableHomeomorphism::CONTOUR },
     { "smooth", vtkDifferentiableHomeomorphism::SMOOTH } };
   command
     .add_option("-s,--system", this->System,
-      "Coordinate system: smooth (default; twice continuously differentiable), contour (the published "
+      "Coordinate system: smooth (default; twice continuously differentiable), contour (the "
+      "published "
       "construction) or linear (the piecewise linear map)")
     ->transform(CLI::CheckedTransformer(systems, CLI::ignore_case).description(""))
     ->type_name("NAME")
     ->group("Map");
   command
-    .add_flag("--incenter", this->Incenter, "Let Contour's contours start at the incenter, not the centroid")
+    .add_flag("--incenter", this->Incenter,
+      "Let Contour's contours start at the incenter, not the centroid")
     ->group("Map");
   command
     .add_flag("--linear-where-discordant", this->LinearWhereDiscordant,
@@ -44,17 +48,21 @@ void MapOptions::AddTo(CLI::App& command)
     ->group("Map");
   command
     .add_option("--tolerance", this->Tolerance,
-      "How far outside a point may be and still be taken to the nearest point of the domain, as a proportion "
+      "How far outside a point may be and still be taken to the nearest point of the domain, as a "
+      "proportion "
       "of the domain's diagonal (default: rounding only)")
     ->check(CLI::NonNegativeNumber.description(""))
     ->type_name("NUMBER")
     ->group("Map");
 }
 
-void InputFiles::AddTo(CLI::App& command, const std::string& names, int least, int most,
-  const std::string& description)
+void InputFiles::AddTo(
+  CLI::App& command, const std::string& names, int least, int most, const std::string& description)
 {
-  command.add_option(names, this->Files, description)->expected(1 + least, 2 + most)->required()->type_name("");
+  command.add_option(names, this->Files, description)
+    ->expected(1 + least, 2 + most)
+    ->required()
+    ->type_name("");
   command
     .add_option("--target-array", this->Pair.TargetArray,
       "Point array with the target's positions, where one mesh file has both (default: Target)")
@@ -65,28 +73,41 @@ void InputFiles::AddTo(CLI::App& command, const std::string& names, int least, i
       "What standard input (-) holds, as a file name's extension")
     ->type_name("EXTENSION")
     ->group("Files");
+  command
+    .add_option("--working-size", this->WorkingSize,
+      "Of xmorph's meshes that do not fill their pictures: the size of its working picture "
+      "(resulting_size in a "
+      "session's file)")
+    ->type_name("WIDTHxHEIGHT")
+    ->group("Files");
 }
 
 MeshPair InputFiles::ReadPair(std::size_t others) const
 {
+  MeshPairOptions reading = this->Pair;
+  reading.WorkingSize = ReadSize(this->WorkingSize);
   if (std::count(this->Files.begin(), this->Files.end(), "-") > 1)
   {
     throw Failure(WRONG_USAGE, "Only one of the files can come from standard input.");
   }
   const std::vector<std::string> files(
     this->Files.begin(), this->Files.end() - static_cast<std::ptrdiff_t>(others));
-  return ReadMeshPair(files, this->Pair);
+  return ReadMeshPair(files, reading);
 }
 
 void OutputOptions::AddTo(
   CLI::App& command, const std::string& description, const std::string& defaultFormat)
 {
   this->Format = defaultFormat;
-  command.add_option("-o,--output", this->Name, description)->required()->type_name("FILE")->group("Files");
+  command.add_option("-o,--output", this->Name, description)
+    ->required()
+    ->type_name("FILE")
+    ->group("Files");
   command.add_flag("-f,--force", this->Replace, "Replace the output if it exists")->group("Files");
   command
     .add_option("--output-format", this->Format,
-      "What to write to standard output (-), as a file name's extension (default: " + defaultFormat + ")")
+      "What to write to standard output (-), as a file name's extension (default: " +
+        defaultFormat + ")")
     ->type_name("EXTENSION")
     ->group("Files");
 }
@@ -112,13 +133,16 @@ void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings)
 
 std::string NameOptions(std::string message)
 {
-  const std::pair<const char*, const char*> names[] = { { "turn MaskInvalidTriangles on", "use --mask-invalid" },
-    { "MaskInvalidTriangles", "--mask-invalid" }, { "DiscordantTriangles", "--linear-where-discordant" },
+  const std::pair<const char*, const char*> names[] = { { "turn MaskInvalidTriangles on",
+                                                          "use --mask-invalid" },
+    { "MaskInvalidTriangles", "--mask-invalid" },
+    { "DiscordantTriangles", "--linear-where-discordant" },
     { "Triangulate the source (vtkTriangleFilter)", "Triangulate the source" } };
   for (const auto& name : names)
   {
     const std::string setter = name.first;
-    for (std::size_t at = message.find(setter); at != std::string::npos; at = message.find(setter, at))
+    for (std::size_t at = message.find(setter); at != std::string::npos;
+         at = message.find(setter, at))
     {
       message.replace(at, setter.size(), name.second);
       at += std::string(name.second).size();

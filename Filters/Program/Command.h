@@ -25,8 +25,8 @@ namespace dhm
 {
 
 /// @name The subcommands
-/// Each adds itself to the program. When it is called on, it does its work, and throws Failure if it
-/// cannot.
+/// Each adds itself to the program. When it is called on, it does its work, and throws Failure if
+/// it cannot.
 ///@{
 void AddCheck(CLI::App& program);
 void AddMap(CLI::App& program);
@@ -72,6 +72,7 @@ struct InputFiles
 {
   std::vector<std::string> Files;
   MeshPairOptions Pair;
+  std::string WorkingSize;
 
   /// Adds the positional arguments, described as @a names, of which the pair's are one or two and
   /// @a least to @a most follow, and the options for reading them.
@@ -93,15 +94,16 @@ struct OutputOptions
   void AddTo(CLI::App& command, const std::string& description, const std::string& defaultFormat);
 };
 
-/// Runs a filter with a progress bar. Throws Failure with its errors; shows its warnings, if wanted.
+/// Runs a filter with a progress bar. Throws Failure with its errors; shows its warnings, if
+/// wanted.
 void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings = true);
 
 /// A message of the module's classes, with the program's options in the place of their setters.
 std::string NameOptions(std::string message);
 
 /// "1 point is", "2 points are".
-std::string Count(vtkIdType count, const std::string& what, const std::string& one,
-  const std::string& several);
+std::string Count(
+  vtkIdType count, const std::string& what, const std::string& one, const std::string& several);
 
 } // namespace dhm
 

@@ -23,11 +23,12 @@ namespace
 
 bool isQuiet = false;
 
-/// A message without what VTK's macros put around it: "ERROR: In file, line n", then the class and the
-/// address of the object.
+/// A message without what VTK's macros put around it: "ERROR: In file, line n", then the class and
+/// the address of the object.
 std::string Unwrap(const std::string& text)
 {
-  static const std::regex wrapping("^(ERROR|Warning): In [^\\n]*, line [0-9]+\\n[^\\n]*?\\(0x[0-9a-f]+\\): ");
+  static const std::regex wrapping(
+    "^(ERROR|Warning): In [^\\n]*, line [0-9]+\\n[^\\n]*?\\(0x[0-9a-f]+\\): ");
   std::string message = std::regex_replace(text, wrapping, "");
   while (!message.empty() && message.back() == '\n')
   {
@@ -156,8 +157,8 @@ void ProgressBar::Show(double proportion)
   this->ShownPercent = percent;
   constexpr int width = 30;
   const int filled = width * percent / 100;
-  std::cerr << "\r" << this->What << " [" << std::string(filled, '#') << std::string(width - filled, '.')
-            << "] " << percent << " %" << std::flush;
+  std::cerr << "\r" << this->What << " [" << std::string(filled, '#')
+            << std::string(width - filled, '.') << "] " << percent << " %" << std::flush;
 }
 
 } // namespace dhm

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Console.h
-/// What the user sees while the program works. Everything goes to standard error, so that results can
-/// go to standard output.
+/// What the user sees while the program works. Everything goes to standard error, so that results
+/// can go to standard output.
 
 #ifndef dhm_Console_h
 #define dhm_Console_h
@@ -18,8 +18,8 @@ namespace dhm
 /// Keeps VTK's messages from the terminal; see TakeErrors. To be called once.
 void CaptureVtkMessages();
 
-/// The errors that VTK has reported since the last call, without the places in VTK's sources; empty if
-/// there were none.
+/// The errors that VTK has reported since the last call, without the places in VTK's sources; empty
+/// if there were none.
 std::string TakeErrors();
 
 /// The same for warnings.
@@ -37,7 +37,8 @@ void Remark(const std::string& message);
 class ProgressBar
 {
 public:
-  /// @a what is done in @a steps equal steps. Without a name nothing is shown: something larger has a bar.
+  /// @a what is done in @a steps equal steps. Without a name nothing is shown: something larger has
+  /// a bar.
   explicit ProgressBar(std::string what, int steps = 1);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;

@@ -30,8 +30,8 @@ namespace dhm
 namespace
 {
 
-constexpr std::array<const char*, 8> pictureFormats{ "png", "jpg", "jpeg", "tif", "tiff", "pnm", "ppm",
-  "pgm" };
+constexpr std::array<const char*, 8> pictureFormats{ "png", "jpg", "jpeg", "tif", "tiff", "pnm",
+  "ppm", "pgm" };
 constexpr std::array<const char*, 5> xmlFormats{ "vtp", "vtu", "vts", "vti", "vtr" };
 constexpr std::array<const char*, 4> xmlTreeFormats{ "vtm", "vtmb", "vtpd", "vtpc" };
 
@@ -44,7 +44,8 @@ bool IsOneOf(const std::string& format, const Formats& formats)
 [[noreturn]] void FailToRead(const InputFile& file, const std::string& why)
 {
   throw Failure(FILE_TROUBLE,
-    "Cannot read " + file.GetName() + (why.empty() ? " as what its name says (." + file.GetFormat() + ")." : ": " + why));
+    "Cannot read " + file.GetName() +
+      (why.empty() ? " as what its name says (." + file.GetFormat() + ")." : ": " + why));
 }
 
 template <typename Reader>
@@ -74,8 +75,9 @@ void WriteWith(Writer* writer, vtkDataObject* data, const OutputFile& file)
   {
     throw Failure(FILE_TROUBLE,
       "Cannot write " + file.GetName() + ": " +
-        (errors.empty() ? std::string(vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())) + "."
-                        : errors));
+        (errors.empty()
+            ? std::string(vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode())) + "."
+            : errors));
   }
 }
 
@@ -85,7 +87,8 @@ void WritePicture(vtkDataObject* data, const OutputFile& file)
   if (!vtkImageData::SafeDownCast(data))
   {
     throw Failure(WRONG_USAGE,
-      "A picture (." + format + ") cannot hold a " + data->GetClassName() + ": only images are pictures.");
+      "A picture (." + format + ") cannot hold a " + data->GetClassName() +
+        ": only images are pictures.");
   }
   if (format == "png")
   {
@@ -140,7 +143,8 @@ vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file)
   }
   throw Failure(WRONG_USAGE,
     "Cannot read " + file.GetName() +
-      ": the formats of data are .csv, .txt and .xyz (points), .vtp, .vtu, .vts, .vtr, .vti, .vtm, .vtk, and "
+      ": the formats of data are .csv, .txt and .xyz (points), .vtp, .vtu, .vts, .vtr, .vti, .vtm, "
+      ".vtk, and "
       "pictures (.png, .jpg, .tif, .ppm).");
 }
 
@@ -155,8 +159,8 @@ vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file)
     }
     return image;
   }
-  const auto reader = vtk::TakeSmartPointer(
-    vtkImageReader2Factory::CreateImageReader2(file.GetPath().c_str()));
+  const auto reader =
+    vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(file.GetPath().c_str()));
   if (!reader)
   {
     FailToRead(file, "");
@@ -180,7 +184,8 @@ void CheckOutputFormat(const std::string& format)
     throw Failure(WRONG_USAGE,
       (format.empty() ? std::string("The output's name has no extension")
                       : "Cannot write ." + format) +
-        ": the formats are .csv and .txt (if the data came from such a file), .vtp, .vtu, .vts, .vtr, "
+        ": the formats are .csv and .txt (if the data came from such a file), .vtp, .vtu, .vts, "
+        ".vtr, "
         ".vti, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
   }
 }
@@ -207,8 +212,8 @@ void WriteData(vtkDataObject* data, const OutputFile& file)
   if (format != right)
   {
     throw Failure(WRONG_USAGE,
-      "A ." + format + " file cannot hold a " + data->GetClassName() + ": give the output the extension ." +
-        right + ".");
+      "A ." + format + " file cannot hold a " + data->GetClassName() +
+        ": give the output the extension ." + right + ".");
   }
   // VTK before 9.4 cannot read data at a file's end with every version of expat.
   writer->SetDataModeToBinary();

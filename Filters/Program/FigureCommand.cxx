@@ -158,7 +158,8 @@ std::vector<double> ReadCloseUp(const std::string& text)
   }
   if (!text.empty() && (values.size() != 3 || !(values[2] > 0.0)))
   {
-    throw Failure(WRONG_USAGE, "A close-up is X,Y,R: centre and half the side of a square in the target.");
+    throw Failure(
+      WRONG_USAGE, "A close-up is X,Y,R: centre and half the side of a square in the target.");
   }
   return values;
 }
@@ -178,8 +179,8 @@ void Draw(const std::vector<Panel>& panels, bool closeUps, double width, const O
   double tallest = 0.0;
   for (const Panel& panel : panels)
   {
-    tallest = std::max(
-      tallest, (panel.Bounds[3] - panel.Bounds[2]) / (panel.Bounds[1] - panel.Bounds[0]));
+    tallest =
+      std::max(tallest, (panel.Bounds[3] - panel.Bounds[2]) / (panel.Bounds[1] - panel.Bounds[0]));
   }
   const double height = width * std::clamp(tallest, 0.2, 3.0);
   const auto count = static_cast<double>(panels.size());
@@ -256,7 +257,8 @@ void MakeFigure(const Options& options)
     panel.Bounds = BoundsOf(pair.Target());
     const auto carried = MapPoints(pair, map, grid, false);
     vtkDataArray* mask = carried->GetPointData()->GetArray("ValidPointMask");
-    panel.Lines = options.Contours ? CoordinateLines(pair.Target(), map) : Connect(carried->GetPoints(), mask);
+    panel.Lines =
+      options.Contours ? CoordinateLines(pair.Target(), map) : Connect(carried->GetPoints(), mask);
     if (!closeUp.empty())
     {
       panel.CloseUp = SquareAround(closeUp[0], closeUp[1], closeUp[2]);
@@ -269,8 +271,9 @@ void MakeFigure(const Options& options)
       pixels->SetDimensions(3 * size[0] - 2, 3 * size[1] - 2, 1);
       pixels->SetOrigin(image->GetOrigin());
       pixels->SetSpacing(image->GetSpacing()[0] / 3.0, image->GetSpacing()[1] / 3.0, 1.0);
-      panel.Image = Finish(
-        WarpImage(image, pair.Source(), pair.Target(), pixels, false, map, "Warping"), Background());
+      panel.Image =
+        Finish(WarpImage(image, pair.Source(), pair.Target(), pixels, false, map, "Warping"),
+          Background());
     }
     panels.push_back(panel);
     if (!panels[0].Mesh)
@@ -309,7 +312,9 @@ void AddFigure(CLI::App& program)
   options->Map.AddTo(*command);
   command->add_flag("--all-systems", options->AllSystems, "One panel for each of the three systems")
     ->group("Map");
-  command->add_option("--grid", options->GridLines, "Number of grid lines along the longer side, less one (default: 16)")
+  command
+    ->add_option("--grid", options->GridLines,
+      "Number of grid lines along the longer side, less one (default: 16)")
     ->check(CLI::Range(1, 500).description(""))
     ->type_name("NUMBER")
     ->group("Results");
@@ -317,10 +322,13 @@ void AddFigure(CLI::App& program)
     ->add_flag("--contours", options->Contours,
       "Draw each mesh's own triangular coordinates (contours and rings) instead of a grid")
     ->group("Results");
-  command->add_option("--image", options->Image, "Image over the source, to be drawn and warped below")
+  command
+    ->add_option("--image", options->Image, "Image over the source, to be drawn and warped below")
     ->type_name("FILE")
     ->group("Results");
-  command->add_option("--close-up", options->CloseUp, "Add close-ups: centre and half the side of a square in the target")
+  command
+    ->add_option("--close-up", options->CloseUp,
+      "Add close-ups: centre and half the side of a square in the target")
     ->type_name("X,Y,R")
     ->group("Results");
   command->add_option("--width", options->Width, "Width of a panel in pixels (default: 420)")

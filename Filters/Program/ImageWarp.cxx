@@ -26,7 +26,9 @@ namespace
 template <typename Value>
 constexpr double Full()
 {
-  return std::is_floating_point<Value>::value ? 1.0 : static_cast<double>(std::numeric_limits<Value>::max());
+  return std::is_floating_point<Value>::value
+    ? 1.0
+    : static_cast<double>(std::numeric_limits<Value>::max());
 }
 
 template <typename Value>
@@ -36,8 +38,8 @@ Value ToValue(double value)
 }
 
 template <typename Value>
-void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, int components, int colors,
-  bool hasAlpha, const Background& background, Value* to, int newComponents)
+void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, int components,
+  int colors, bool hasAlpha, const Background& background, Value* to, int newComponents)
 {
   for (vtkIdType i = 0; i < count; ++i, from += components, to += newComponents)
   {
@@ -61,7 +63,8 @@ void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, i
       {
         const auto& color = *background;
         const double gray = (color[0] + color[1] + color[2]) / 3.0;
-        to[k] = ToValue<Value>(Full<Value>() * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
+        to[k] =
+          ToValue<Value>(Full<Value>() * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
       }
     }
   }
@@ -72,8 +75,8 @@ void BlendPixels(const Value* first, const Value* second, vtkIdType count, doubl
 {
   for (vtkIdType i = 0; i < count; ++i)
   {
-    result[i] =
-      ToValue<Value>((1.0 - t) * static_cast<double>(first[i]) + t * static_cast<double>(second[i]));
+    result[i] = ToValue<Value>(
+      (1.0 - t) * static_cast<double>(first[i]) + t * static_cast<double>(second[i]));
   }
 }
 
@@ -121,7 +124,8 @@ Background ReadBackground(const std::string& text)
   if (!valid)
   {
     throw Failure(WRONG_USAGE,
-      "\"" + text + "\" is no colour: transparent, white, black, or #rrggbb, such as #ff8000 for orange.");
+      "\"" + text +
+        "\" is no colour: transparent, white, black, or #rrggbb, such as #ff8000 for orange.");
   }
   return color;
 }
@@ -142,7 +146,8 @@ std::array<int, 2> ReadSize(const std::string& text)
       return { *width, *height };
     }
   }
-  throw Failure(WRONG_USAGE, "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, such as 640x480.");
+  throw Failure(
+    WRONG_USAGE, "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, such as 640x480.");
 }
 
 vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int, 2>& size)
@@ -155,8 +160,9 @@ vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int
   return grid;
 }
 
-vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source, vtkPolyData* target,
-  vtkImageData* grid, bool inverse, const MapOptions& map, const std::string& what)
+vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source,
+  vtkPolyData* target, vtkImageData* grid, bool inverse, const MapOptions& map,
+  const std::string& what)
 {
   // Pixels without a name would not be found again.
   const auto named = vtkSmartPointer<vtkImageData>::New();
@@ -176,7 +182,8 @@ vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source
   resample->SetInverse(inverse);
   resample->BlankOutsideOff();
   Run(resample, what);
-  vtkSmartPointer<vtkImageData> result = vtkImageData::SafeDownCast(resample->GetOutputDataObject(0));
+  vtkSmartPointer<vtkImageData> result =
+    vtkImageData::SafeDownCast(resample->GetOutputDataObject(0));
   result->GetPointData()->SetActiveScalars(name.c_str());
   return result;
 }
@@ -185,13 +192,14 @@ vtkSmartPointer<vtkImageData> Blend(vtkImageData* first, vtkImageData* second, d
 {
   vtkDataArray* a = PixelsOf(first);
   vtkDataArray* b = PixelsOf(second);
-  if (a->GetDataType() != b->GetDataType() || a->GetNumberOfComponents() != b->GetNumberOfComponents() ||
+  if (a->GetDataType() != b->GetDataType() ||
+    a->GetNumberOfComponents() != b->GetNumberOfComponents() ||
     a->GetNumberOfTuples() != b->GetNumberOfTuples())
   {
     throw Failure(REFUSED,
       "The two images are not of the same kind: " + std::to_string(a->GetNumberOfComponents()) +
-        " components of " + a->GetDataTypeAsString() + ", and " + std::to_string(b->GetNumberOfComponents()) +
-        " of " + b->GetDataTypeAsString() + ".");
+        " components of " + a->GetDataTypeAsString() + ", and " +
+        std::to_string(b->GetNumberOfComponents()) + " of " + b->GetDataTypeAsString() + ".");
   }
   const auto pixels = vtk::TakeSmartPointer(a->NewInstance());
   pixels->SetName(a->GetName());
@@ -225,8 +233,9 @@ vtkSmartPointer<vtkImageData> Finish(vtkImageData* warped, const Background& bac
   switch (from->GetDataType())
   {
     vtkTemplateMacro(FillPixels(static_cast<const VTK_TT*>(from->GetVoidPointer(0)),
-      static_cast<const unsigned char*>(mask->GetVoidPointer(0)), from->GetNumberOfTuples(), components,
-      colors, hasAlpha, background, static_cast<VTK_TT*>(pixels->GetVoidPointer(0)), newComponents));
+      static_cast<const unsigned char*>(mask->GetVoidPointer(0)), from->GetNumberOfTuples(),
+      components, colors, hasAlpha, background, static_cast<VTK_TT*>(pixels->GetVoidPointer(0)),
+      newComponents));
   }
   vtkSmartPointer<vtkImageData> result = LikeWithout(warped);
   result->GetPointData()->SetScalars(pixels);

@@ -36,11 +36,12 @@ vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int
 
 /// The image over the source's domain, seen on a grid over the target's (the other way round if @a
 /// inverse); its point data are the image's pixels and `ValidPointMask`. Throws Failure.
-vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source, vtkPolyData* target,
-  vtkImageData* grid, bool inverse, const MapOptions& map, const std::string& what);
+vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source,
+  vtkPolyData* target, vtkImageData* grid, bool inverse, const MapOptions& map,
+  const std::string& what);
 
-/// Of two warped images on the same grid: (1 - t) times the first and t times the second, where both
-/// have values. Throws Failure if they are not of the same kind.
+/// Of two warped images on the same grid: (1 - t) times the first and t times the second, where
+/// both have values. Throws Failure if they are not of the same kind.
 vtkSmartPointer<vtkImageData> Blend(vtkImageData* first, vtkImageData* second, double t);
 
 /// Only the pixels, as a picture file takes them: those that `ValidPointMask` leaves out get the

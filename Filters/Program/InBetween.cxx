@@ -16,7 +16,8 @@ namespace dhm
 namespace
 {
 
-/// Twice the area of a triangle on its way: a (1 - t)^2 + b t (1 - t) + c t^2, positive at the start.
+/// Twice the area of a triangle on its way: a (1 - t)^2 + b t (1 - t) + c t^2, positive at the
+/// start.
 struct AreaOnTheWay
 {
   double Start;
@@ -64,9 +65,12 @@ void ForEachTriangle(vtkPolyData* source, vtkPolyData* target, Work&& work)
     vtkIdType count;
     const vtkIdType* corners;
     cells->GetCurrentCell(count, corners);
-    const Vector u[2] = { Side(source, corners[0], corners[1]), Side(target, corners[0], corners[1]) };
-    const Vector v[2] = { Side(source, corners[0], corners[2]), Side(target, corners[0], corners[2]) };
-    AreaOnTheWay area{ Cross(u[0], v[0]), Cross(u[0], v[1]) + Cross(u[1], v[0]), Cross(u[1], v[1]) };
+    const Vector u[2] = { Side(source, corners[0], corners[1]),
+      Side(target, corners[0], corners[1]) };
+    const Vector v[2] = { Side(source, corners[0], corners[2]),
+      Side(target, corners[0], corners[2]) };
+    AreaOnTheWay area{ Cross(u[0], v[0]), Cross(u[0], v[1]) + Cross(u[1], v[0]),
+      Cross(u[1], v[1]) };
     // Files mix their winding.
     if (area.Start < 0.0)
     {
@@ -117,8 +121,8 @@ Folds FindFolds(vtkPolyData* source, vtkPolyData* target)
       ++mirrored;
       return;
     }
-    // The quadratic's least value is between the ends only if Middle is negative and large; with both
-    // ends positive, its discriminant then tells whether there are roots between.
+    // The quadratic's least value is between the ends only if Middle is negative and large; with
+    // both ends positive, its discriminant then tells whether there are roots between.
     const double root = std::sqrt(area.Start) * std::sqrt(area.End);
     if (area.Middle > -2.0 * root)
     {

@@ -13,8 +13,8 @@
 namespace dhm
 {
 
-/// Triangles of a planar pair that are turned over at a time between 0 and 1, though they are not at
-/// its ends. (On surfaces, nothing is turned over.)
+/// Triangles of a planar pair that are turned over at a time between 0 and 1, though they are not
+/// at its ends. (On surfaces, nothing is turned over.)
 struct Folds
 {
   /// Whether source and target are mirror images.
@@ -28,8 +28,8 @@ struct Folds
   double End = 0.0;
 };
 
-/// The mesh whose points have gone the proportion @a t of their way along straight lines. At 0 and 1 the
-/// very points of source and target.
+/// The mesh whose points have gone the proportion @a t of their way along straight lines. At 0 and
+/// 1 the very points of source and target.
 vtkSmartPointer<vtkPolyData> InBetween(vtkPolyData* source, vtkPolyData* target, double t);
 
 /// The area of a triangle is a quadratic function of the time; its roots tell.

@@ -40,7 +40,8 @@ InputFile::InputFile(const std::string& name, const std::string& format)
     const int descriptor = mkstemps(pattern.data(), static_cast<int>(format.size()) + 1);
     if (descriptor < 0)
     {
-      throw Failure(FILE_TROUBLE, "Cannot keep standard input: " + std::string(std::strerror(errno)) + ".");
+      throw Failure(
+        FILE_TROUBLE, "Cannot keep standard input: " + std::string(std::strerror(errno)) + ".");
     }
     close(descriptor);
     this->Path = pattern;

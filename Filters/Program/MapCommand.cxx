@@ -36,10 +36,13 @@ struct DataOptions
   void AddTo(CLI::App& command)
   {
     this->Output.AddTo(command,
-      "Where the result goes: a file of the data's kind (images become .vts), or - for standard output", "csv");
+      "Where the result goes: a file of the data's kind (images become .vts), or - for standard "
+      "output",
+      "csv");
     command
       .add_option("--columns", this->Columns,
-        "Names or numbers (from 1) of the coordinate columns of a point table, separated by commas (default: "
+        "Names or numbers (from 1) of the coordinate columns of a point table, separated by commas "
+        "(default: "
         "x,y,z or x,y or E,N or easting,northing, else the first two)")
       ->type_name("LIST")
       ->group("Files");
@@ -54,11 +57,11 @@ struct DataOptions
       ->group("Files");
   }
 
-  /// Reads the data, lets @a work make other data of it, and writes that. @a work returns the number of
-  /// points outside.
+  /// Reads the data, lets @a work make other data of it, and writes that. @a work returns the
+  /// number of points outside.
   void Process(const std::string& dataName,
-    const std::function<vtkIdType(vtkDataObject* data, vtkSmartPointer<vtkDataObject>& result)>& work)
-    const
+    const std::function<vtkIdType(vtkDataObject* data, vtkSmartPointer<vtkDataObject>& result)>&
+      work) const
   {
     OutputFile output(this->Output.Name, this->Output.Format, this->Output.Replace);
     const InputFile file(dataName, this->DataFormat);
@@ -78,8 +81,8 @@ struct DataOptions
     if (asTable && !table)
     {
       throw Failure(WRONG_USAGE,
-        "Only points that came from a table can be written as one (." + output.GetFormat() + "), but " +
-          file.GetName() + " holds a " + data->GetClassName() + ".");
+        "Only points that came from a table can be written as one (." + output.GetFormat() +
+          "), but " + file.GetName() + " holds a " + data->GetClassName() + ".");
     }
     if (!asTable)
     {
@@ -132,14 +135,17 @@ void AddMap(CLI::App& program)
     bool CarryAllVectors = false;
     bool KeepVectors = false;
   };
-  CLI::App* command = program.add_subcommand("map", "Carry data from the source's domain to the target's");
+  CLI::App* command =
+    program.add_subcommand("map", "Carry data from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "FILES", 1, 1,
-    "SOURCE [TARGET] DATA: the pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu .vts .vtr .vti "
+    "SOURCE [TARGET] DATA: the pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu "
+    ".vts .vtr .vti "
     ".vtm .vtk, or a picture, whose pixels move as points (to warp it, use dhm warp)");
   options->Data.AddTo(*command);
   options->Map.AddTo(*command);
-  command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")->group("Map");
+  command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")
+    ->group("Map");
   command
     ->add_flag("-j,--jacobian", options->Jacobian,
       "Add the map's derivative at each point: Jacobian, 9 numbers row by row")
@@ -149,14 +155,18 @@ void AddMap(CLI::App& program)
       "Add the ratio of areas at each point: JacobianDeterminant")
     ->group("Results");
   command
-    ->add_flag("--triangle-id", options->TriangleId, "Add the number of each point's triangle: TriangleId")
+    ->add_flag(
+      "--triangle-id", options->TriangleId, "Add the number of each point's triangle: TriangleId")
     ->group("Results");
   command
     ->add_flag("--carry-all-vectors", options->CarryAllVectors,
-      "Carry all arrays of 3, 6 and 9 components by the derivative, not only the active vectors, normals and "
+      "Carry all arrays of 3, 6 and 9 components by the derivative, not only the active vectors, "
+      "normals and "
       "tensors")
     ->group("Results");
-  command->add_flag("--keep-vectors", options->KeepVectors, "Leave vectors, normals and tensors as they are")
+  command
+    ->add_flag(
+      "--keep-vectors", options->KeepVectors, "Leave vectors, normals and tensors as they are")
     ->group("Results");
   command->callback([options] {
     const MeshPair pair = options->Inputs.ReadPair(1);
@@ -194,7 +204,8 @@ void AddCoordinates(CLI::App& program)
   const auto options = std::make_shared<Options>();
   command
     ->add_option("FILES", options->Files,
-      "MESH DATA: the triangulation (of a triangulation file the source), and the data: as for dhm map")
+      "MESH DATA: the triangulation (of a triangulation file the source), and the data: as for dhm "
+      "map")
     ->expected(2)
     ->required()
     ->type_name("");
@@ -205,8 +216,9 @@ void AddCoordinates(CLI::App& program)
     ->group("Files");
   options->Data.AddTo(*command);
   options->Map.AddTo(*command);
-  command->footer("The arrays: TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), "
-                  "ContourParameter (c, 0 at the centre, 1 on the edge), ValidPointMask.");
+  command->footer(
+    "The arrays: TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), "
+    "ContourParameter (c, 0 at the centre, 1 on the edge), ValidPointMask.");
   command->callback([options] {
     const auto mesh = ReadMesh(options->Files[0], options->InputFormat);
     options->Data.Process(

@@ -107,7 +107,8 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
   {
     throw Failure(WRONG_USAGE,
       "Cannot read " + file.GetName() +
-        ": the formats of meshes are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, .off, .ply, "
+        ": the formats of meshes are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, "
+        ".off, .ply, "
         ".stl, and .mesh (xmorph).");
   }
   const vtkSmartPointer<vtkDataObject> data = ReadData(file);
@@ -185,11 +186,13 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
   }
   pair.Meshes[0] = ReadMesh(file);
   vtkDataArray* positions = pair.Source()->GetPointData()->GetArray(options.TargetArray.c_str());
-  if (!positions || positions->GetNumberOfComponents() < 2 || positions->GetNumberOfComponents() > 3)
+  if (!positions || positions->GetNumberOfComponents() < 2 ||
+    positions->GetNumberOfComponents() > 3)
   {
     throw Failure(WRONG_USAGE,
       file.GetName() + " has no point array \"" + options.TargetArray +
-        "\" of 2 or 3 components that would be the target's positions: give the target's file, too, or name "
+        "\" of 2 or 3 components that would be the target's positions: give the target's file, "
+        "too, or name "
         "the array (--target-array).");
   }
   vtkNew<vtkPoints> points;
@@ -224,15 +227,28 @@ MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptio
   if (xmorph[0] != xmorph[1])
   {
     throw Failure(WRONG_USAGE,
-      "Either both files are meshes of xmorph (.mesh) or none: they are cut into triangles together.");
+      "Either both files are meshes of xmorph (.mesh) or none: they are cut into triangles "
+      "together.");
   }
   if (xmorph[0])
   {
     pair.FromXmorph = true;
     pair.Meshes = ReadXmorph([&] {
       std::array<XmorphMesh, 2> grids{ ReadXmorphMesh(files[0]), ReadXmorphMesh(files[1]) };
-      TurnUpright(grids[0]);
-      TurnUpright(grids[1]);
+      for (std::size_t side = 0; side < 2; ++side)
+      {
+        auto& extent = pair.XmorphExtents[side];
+        if (options.WorkingSize[0] > 0)
+        {
+          // Tenths of pixels.
+          extent = { 10.0 * (options.WorkingSize[0] - 1), 10.0 * (options.WorkingSize[1] - 1) };
+        }
+        else if (FillsPicture(grids[side]))
+        {
+          extent = GetExtent(grids[side]);
+        }
+        TurnUpright(grids[side], extent[1] > 0.0 ? extent[1] : GetExtent(grids[side])[1]);
+      }
       return CutIntoTriangles(grids[0], grids[1]);
     });
     return pair;
@@ -242,7 +258,8 @@ MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptio
     if (file->GetFormat() == "json")
     {
       throw Failure(WRONG_USAGE,
-        file->GetName() + " is a triangulation file, which has both source and target: give it alone.");
+        file->GetName() +
+          " is a triangulation file, which has both source and target: give it alone.");
     }
   }
   pair.Meshes = { ReadMesh(source), ReadMesh(target) };
@@ -264,7 +281,7 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::st
   {
     return ReadXmorph([&] {
       XmorphMesh mesh = ReadXmorphMesh(fileName);
-      TurnUpright(mesh);
+      TurnUpright(mesh, GetExtent(mesh)[1]);
       return CutIntoTriangles(mesh, mesh)[0];
     });
   }
@@ -281,14 +298,17 @@ void FitToPictures(
   for (int side = 0; side < 2; ++side)
   {
     const auto& size = side == 0 ? sourceSize : targetSize;
-    double bounds[6];
-    pair.Meshes[side]->GetBounds(bounds);
-    if (!(bounds[1] > 0.0 && bounds[3] > 0.0))
+    const auto& extent = pair.XmorphExtents[static_cast<std::size_t>(side)];
+    if (!(extent[0] > 0.0 && extent[1] > 0.0))
     {
-      throw Failure(FILE_TROUBLE, pair.Names[side] + ": the mesh has no extent.");
+      throw Failure(WRONG_USAGE,
+        pair.Names[static_cast<std::size_t>(side)] +
+          " does not fill its picture, and does not say how large that is: give the size of "
+          "xmorph's working "
+          "picture (--working-size; in a session's file, resulting_size).");
     }
-    // Xmorph's units end where the picture does.
-    const double factors[2] = { (size[0] - 1) / bounds[1], (size[1] - 1) / bounds[3] };
+    // Xmorph's units end at the last pixel.
+    const double factors[2] = { (size[0] - 1) / extent[0], (size[1] - 1) / extent[1] };
     vtkPoints* points = pair.Meshes[side]->GetPoints();
     for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
     {

@@ -29,9 +29,12 @@ struct MeshPair
   std::array<std::string, 2> Names;
   /// What a triangulation file (PROJ) said besides; null for other files.
   nlohmann::ordered_json Metadata;
-  /// Whether the meshes came from xmorph: coordinates of no picture in particular; see
+  /// Whether the meshes came from xmorph, whose units are those of no picture in particular; see
   /// FitToPictures.
   bool FromXmorph = false;
+  /// In these units, where the picture ends on the right and at the top, for each mesh; zeros if
+  /// that is not known.
+  std::array<std::array<double, 2>, 2> XmorphExtents{};
 
   vtkPolyData* Source() const { return this->Meshes[0]; }
   vtkPolyData* Target() const { return this->Meshes[1]; }
@@ -44,22 +47,27 @@ struct MeshPairOptions
   std::string TargetArray = "Target";
   /// The extension that says what standard input ("-") holds.
   std::string InputFormat = "json";
+  /// Of xmorph's meshes: the size of the working picture on which they were laid, as the session's
+  /// file says it (resulting_size); zeros if the meshes fill it.
+  std::array<int, 2> WorkingSize{ 0, 0 };
 };
 
-/// Reads a pair from one or two files. One file: a triangulation file (.json), or a mesh with a point
-/// array. Two: .vtp, .vtk, .vtu, .obj, .off, .ply, .stl, or both xmorph's .mesh. Throws Failure.
+/// Reads a pair from one or two files. One file: a triangulation file (.json), or a mesh with a
+/// point array. Two: .vtp, .vtk, .vtu, .obj, .off, .ply, .stl, or both xmorph's .mesh. Throws
+/// Failure.
 MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptions& options);
 
 /// Reads one mesh. Throws Failure.
 vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::string& inputFormat);
 
-/// Moves meshes that came from xmorph from their own units to the pixels of pictures of these sizes,
-/// as VTK counts them (y upwards, the first pixel's centre is at 0); others stay.
-void FitToPictures(MeshPair& pair, const std::array<int, 2>& sourceSize,
-  const std::array<int, 2>& targetSize);
+/// Moves meshes that came from xmorph from their own units to the pixels of pictures of these
+/// sizes, as VTK counts them (y upwards, the first pixel's centre is at 0); others stay. Throws
+/// Failure if the extent of the meshes' pictures is not known.
+void FitToPictures(
+  MeshPair& pair, const std::array<int, 2>& sourceSize, const std::array<int, 2>& targetSize);
 
-/// Writes a pair: json (a triangulation file; planar meshes only), or vtp, vtk and vtu with the target's
-/// positions as the point array @a targetArray. Throws Failure.
+/// Writes a pair: json (a triangulation file; planar meshes only), or vtp, vtk and vtu with the
+/// target's positions as the point array @a targetArray. Throws Failure.
 void WritePair(const MeshPair& pair, const std::string& targetArray, const OutputFile& file);
 
 /// Writes one mesh: obj, off, or one of VTK's formats. Throws Failure.

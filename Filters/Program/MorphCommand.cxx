@@ -84,8 +84,8 @@ void CheckFolds(const MeshPair& pair, int frames)
     return;
   }
   const std::string where = Count(folds.Triangles, "triangle", "is", "are") +
-    " turned over on the way (the first to be so is cell " + std::to_string(folds.FirstCell) + ", from " +
-    ToText(folds.Begin) + " on; the last ends at " + ToText(folds.End) + ")";
+    " turned over on the way (the first to be so is cell " + std::to_string(folds.FirstCell) +
+    ", from " + ToText(folds.Begin) + " on; the last ends at " + ToText(folds.End) + ")";
   for (int frame = 0; frame < frames; ++frame)
   {
     const double t = static_cast<double>(frame) / (frames - 1);
@@ -93,7 +93,8 @@ void CheckFolds(const MeshPair& pair, int frames)
     {
       throw Failure(REFUSED,
         where + ", frame " + std::to_string(frame) + " (at " + ToText(t) +
-          ") among them: points must move so that no triangle is turned over. Put a mesh in between and morph in "
+          ") among them: points must move so that no triangle is turned over. Put a mesh in "
+          "between and morph in "
           "two steps.");
     }
   }
@@ -157,7 +158,8 @@ void Morph(const Options& options)
       {
         if (pictures[side])
         {
-          warped[side] = WarpImage(pictures[side], pair.Meshes[side], between, grid, false, options.Map, "");
+          warped[side] =
+            WarpImage(pictures[side], pair.Meshes[side], between, grid, false, options.Map, "");
         }
       }
       const auto picture = warped[0] && warped[1] ? Blend(warped[0], warped[1], t)
@@ -184,30 +186,40 @@ void Morph(const Options& options)
 
 void AddMorph(CLI::App& program)
 {
-  CLI::App* command = program.add_subcommand(
-    "morph", "Make the frames in between: images or data on their way from the source to the target");
+  CLI::App* command = program.add_subcommand("morph",
+    "Make the frames in between: images or data on their way from the source to the target");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair, as for dhm warp");
   command
-    ->add_option("-o,--output", options->Output, "Name of the frames, with %d or %03d for the number: frame-%03d.png")
+    ->add_option("-o,--output", options->Output,
+      "Name of the frames, with %d or %03d for the number: frame-%03d.png")
     ->required()
     ->type_name("FILES")
     ->group("Files");
-  command->add_flag("-f,--force", options->Replace, "Replace the output if it exists")->group("Files");
+  command->add_flag("-f,--force", options->Replace, "Replace the output if it exists")
+    ->group("Files");
   command->add_option("--source-image", options->SourceImage, "Image over the source")
     ->type_name("FILE")
     ->group("Files");
-  command->add_option("--target-image", options->TargetImage, "Image over the target; with both, one fades into the other")
+  command
+    ->add_option("--target-image", options->TargetImage,
+      "Image over the target; with both, one fades into the other")
     ->type_name("FILE")
     ->group("Files");
-  command->add_option("--data", options->Data, "Data over the source, instead of images (default: the source mesh)")
+  command
+    ->add_option(
+      "--data", options->Data, "Data over the source, instead of images (default: the source mesh)")
     ->type_name("FILE")
     ->group("Files");
-  command->add_option("-n,--frames", options->Frames, "Number of frames, the first and the last included (default: 11)")
+  command
+    ->add_option("-n,--frames", options->Frames,
+      "Number of frames, the first and the last included (default: 11)")
     ->check(CLI::Range(2, 100000).description(""))
     ->type_name("NUMBER")
     ->group("Results");
-  command->add_option("--size", options->Size, "Size of the frames in pixels (default: the source image's)")
+  command
+    ->add_option(
+      "--size", options->Size, "Size of the frames in pixels (default: the source image's)")
     ->type_name("WIDTHxHEIGHT")
     ->group("Results");
   command
@@ -216,8 +228,10 @@ void AddMorph(CLI::App& program)
     ->type_name("COLOUR")
     ->group("Results");
   options->Map.AddTo(*command);
-  command->footer("In frame t, from 0 to 1, each point of the meshes has gone the proportion t of its way along a "
-                  "straight line. If a triangle would be turned over in a frame, nothing is written (status 1).");
+  command->footer(
+    "In frame t, from 0 to 1, each point of the meshes has gone the proportion t of its way along "
+    "a "
+    "straight line. If a triangle would be turned over in a frame, nothing is written (status 1).");
   command->callback([options] { Morph(*options); });
 }
 

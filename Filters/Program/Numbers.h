@@ -28,14 +28,14 @@ inline std::string ToText(double value)
   std::array<char, 400> text;
   // Plain notation where people expect it.
   const double size = std::abs(value);
-  const auto format =
-    size == 0.0 || (size >= 1e-5 && size < 1e16) ? std::chars_format::fixed : std::chars_format::general;
+  const auto format = size == 0.0 || (size >= 1e-5 && size < 1e16) ? std::chars_format::fixed
+                                                                   : std::chars_format::general;
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value, format);
   return { text.data(), result.ptr };
 }
 
-/// The number that a text says, blanks around it and a leading plus sign allowed; nothing if it says
-/// none.
+/// The number that a text says, blanks around it and a leading plus sign allowed; nothing if it
+/// says none.
 template <typename Number = double>
 std::optional<Number> ToNumber(std::string_view text)
 {

@@ -118,8 +118,8 @@ OutputFile::OutputFile(const std::string& name, const std::string& format, bool 
   const int descriptor = mkstemps(pattern.data(), static_cast<int>(ending.size()));
   if (descriptor < 0)
   {
-    throw Failure(
-      FILE_TROUBLE, "Cannot write " + name + ": " + std::strerror(errno) + " (" + folder.string() + ").");
+    throw Failure(FILE_TROUBLE,
+      "Cannot write " + name + ": " + std::strerror(errno) + " (" + folder.string() + ").");
   }
   // As other new files, not only for the owner.
   const mode_t mask = umask(0);
@@ -141,8 +141,8 @@ OutputFile::~OutputFile()
 
 void OutputFile::FailToWrite(int error) const
 {
-  throw Failure(FILE_TROUBLE,
-    "Cannot write " + this->GetName() + ": " + std::strerror(error) + ".");
+  throw Failure(
+    FILE_TROUBLE, "Cannot write " + this->GetName() + ": " + std::strerror(error) + ".");
 }
 
 void OutputFile::Commit()

@@ -12,15 +12,16 @@
 namespace dhm
 {
 
-/// A file to be written: somebody writes to GetTemporaryName(), in the same folder, and Commit gives
-/// it its name. What is not committed is removed, on interrupts (SIGINT, SIGTERM, SIGHUP) as well.
+/// A file to be written: somebody writes to GetTemporaryName(), in the same folder, and Commit
+/// gives it its name. What is not committed is removed, on interrupts (SIGINT, SIGTERM, SIGHUP) as
+/// well.
 /// "-" is standard output, to which Commit copies.
 class OutputFile
 {
 public:
-  /// @a format is the extension that says what standard output is to hold; other files' names say it
-  /// themselves. Throws Failure if there is a file of that name and it is not to be replaced, or the
-  /// folder does not exist or cannot be written to.
+  /// @a format is the extension that says what standard output is to hold; other files' names say
+  /// it themselves. Throws Failure if there is a file of that name and it is not to be replaced, or
+  /// the folder does not exist or cannot be written to.
   OutputFile(const std::string& name, const std::string& format, bool replace);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;

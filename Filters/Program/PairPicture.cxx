@@ -48,7 +48,8 @@ vtkSmartPointer<vtkPolyData> Flatten(vtkPolyData* mesh)
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     mesh->GetPoint(static_cast<vtkIdType>(i), places[i].data());
-    finite[i] = std::all_of(places[i].begin(), places[i].end(), [](double x) { return std::isfinite(x); });
+    finite[i] =
+      std::all_of(places[i].begin(), places[i].end(), [](double x) { return std::isfinite(x); });
     for (std::size_t axis = 0; finite[i] && axis < 3; ++axis)
     {
       low[axis] = std::min(low[axis], places[i][axis]);
@@ -80,9 +81,8 @@ vtkSmartPointer<vtkPolyData> Flatten(vtkPolyData* mesh)
     vtkIdType size;
     const vtkIdType* ids;
     cells->GetCurrentCell(size, ids);
-    const bool shown = std::all_of(ids, ids + size, [&](vtkIdType id) {
-      return id >= 0 && id < count && finite[static_cast<std::size_t>(id)];
-    });
+    const bool shown = std::all_of(ids, ids + size,
+      [&](vtkIdType id) { return id >= 0 && id < count && finite[static_cast<std::size_t>(id)]; });
     polygons->InsertNextCell(shown ? size : 0, ids);
   }
   auto flat = vtkSmartPointer<vtkPolyData>::New();
@@ -130,12 +130,12 @@ void DrawPair(const MeshPair& pair, const PairReport& report, const OutputFile& 
     canvas.Write(side == 0 ? "Source" : "Target", area.Left + 0.5 * panel, title - 12.0, 17.0);
     canvas.Enter(area, bounds[side]);
     vtkPolyData* mesh = meshes[side];
-    canvas.FillCells(mesh,
-      [&](vtkIdType cell) { return Contains(report.Meshes[side].DiscordantTriangles, cell); },
+    canvas.FillCells(
+      mesh, [&](vtkIdType cell) { return Contains(report.Meshes[side].DiscordantTriangles, cell); },
       discordantColor);
     canvas.DrawEdges(mesh, edgeColor, 0.7);
-    canvas.FillCells(mesh, [&](vtkIdType cell) { return Contains(report.InvalidTriangles, cell); },
-      invalidColor);
+    canvas.FillCells(
+      mesh, [&](vtkIdType cell) { return Contains(report.InvalidTriangles, cell); }, invalidColor);
     for (const vtkIdType point : report.Meshes[side].FirstDuplicates)
     {
       double p[3];

@@ -19,14 +19,15 @@ class OutputFile;
 struct MeshPair;
 struct PairReport;
 
-/// A mesh, however broken, as it can be drawn: seen along the axis in which it is thinnest, with cells
-/// that have points that do not exist or are not finite as cells without points.
+/// A mesh, however broken, as it can be drawn: seen along the axis in which it is thinnest, with
+/// cells that have points that do not exist or are not finite as cells without points.
 vtkSmartPointer<vtkPolyData> Flatten(vtkPolyData* mesh);
 
 /// The rectangle around a flattened mesh, with a margin.
 std::array<double, 4> BoundsOf(vtkPolyData* flat);
 
-/// Both meshes side by side; triangles that are invalid and discordant ones, and duplicate points, marked.
+/// Both meshes side by side; triangles that are invalid and discordant ones, and duplicate points,
+/// marked.
 void DrawPair(const MeshPair& pair, const PairReport& report, const OutputFile& file);
 
 } // namespace dhm

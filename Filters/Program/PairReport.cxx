@@ -91,8 +91,8 @@ void CountPoints(vtkPolyData* mesh, MeshReport& report)
                   return std::any_of(p.begin(), p.end(), [](double x) { return std::isnan(x); });
                 }),
     order.end());
-  std::stable_sort(order.begin(), order.end(),
-    [&place](vtkIdType a, vtkIdType b) { return place(a) < place(b); });
+  std::stable_sort(
+    order.begin(), order.end(), [&place](vtkIdType a, vtkIdType b) { return place(a) < place(b); });
   std::vector<vtkIdType> duplicates;
   for (std::size_t i = 1; i < order.size(); ++i)
   {
@@ -113,8 +113,8 @@ vtkIdType CountReordered(vtkPolyData* source, vtkPolyData* target)
   const auto a = vtk::TakeSmartPointer(source->GetPolys()->NewIterator());
   const auto b = vtk::TakeSmartPointer(target->GetPolys()->NewIterator());
   vtkIdType reordered = 0;
-  for (a->GoToFirstCell(), b->GoToFirstCell(); !a->IsDoneWithTraversal() && !b->IsDoneWithTraversal();
-       a->GoToNextCell(), b->GoToNextCell())
+  for (a->GoToFirstCell(), b->GoToFirstCell();
+       !a->IsDoneWithTraversal() && !b->IsDoneWithTraversal(); a->GoToNextCell(), b->GoToNextCell())
   {
     vtkIdType counts[2];
     const vtkIdType* points[2];
@@ -163,7 +163,8 @@ void CountConnections(const Triangulation& triangulation, PairReport& report)
         }
       }
     }
-    report.MendedWindings += std::min(otherwise, static_cast<vtkIdType>(reached.size()) - otherwise);
+    report.MendedWindings +=
+      std::min(otherwise, static_cast<vtkIdType>(reached.size()) - otherwise);
   }
 }
 
@@ -255,7 +256,8 @@ FlatTriangle Flatten(vtkPolyData* mesh, const Triangulation::Corners& corners)
   Vector normal;
   vtkMath::Cross(u.data(), v.data(), normal.data());
   const double length = vtkMath::Norm(u.data());
-  return { length, vtkMath::Dot(u.data(), v.data()) / length, vtkMath::Norm(normal.data()) / length };
+  return { length, vtkMath::Dot(u.data(), v.data()) / length,
+    vtkMath::Norm(normal.data()) / length };
 }
 
 void MeasureShapes(const MeshPair& pair, const Triangulation& triangulation, PairReport& report)
@@ -324,7 +326,8 @@ void MeasureTriangles(vtkPolyData* mesh, const Triangulation& triangulation, Mes
   }
 }
 
-/// Points evenly spread within the triangles, a number of them for each, and never more than about two million.
+/// Points evenly spread within the triangles, a number of them for each, and never more than about
+/// two million.
 struct Samples
 {
   vtkNew<vtkPolyData> Points;
@@ -374,8 +377,8 @@ void MakeSamples(vtkPolyData* mesh, const Triangulation& triangulation, Samples&
   samples.Points->SetPoints(points);
 }
 
-void MeasureSystems(const MeshPair& pair, const Triangulation& triangulation, const CheckExtent& extent,
-  PairReport& report)
+void MeasureSystems(const MeshPair& pair, const Triangulation& triangulation,
+  const CheckExtent& extent, PairReport& report)
 {
   MapOptions options;
   options.LinearWhereDiscordant = true;
@@ -423,7 +426,8 @@ void MeasureSystems(const MeshPair& pair, const Triangulation& triangulation, co
         double b[3];
         output->GetPoint(i, a);
         linear->GetPoint(i, b);
-        TakeLarger(result.DistanceFromLinear, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)), cell);
+        TakeLarger(
+          result.DistanceFromLinear, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)), cell);
       }
     }
     if (extent.Continuity)

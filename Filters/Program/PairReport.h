@@ -53,8 +53,8 @@ struct SystemReport
   /// Of the ratio of areas, over the sampled points.
   Extreme SmallestDeterminant;
   Extreme LargestDeterminant;
-  /// Points at which the determinant was found, and those of them where it is not positive (with the
-  /// sign of a mirrored pair reversed).
+  /// Points at which the determinant was found, and those of them where it is not positive (with
+  /// the sign of a mirrored pair reversed).
   vtkIdType Samples = 0;
   vtkIdType NotPositive = 0;
   /// How far from Linear's a point's image is, in the target's units, at most, over the sampled
@@ -74,8 +74,8 @@ struct PairReport
   bool Valid = false;
   /// All kinds of defects, each with the first offenders.
   homeomorphism::MeshProblems Problems;
-  /// Cell ids of all triangles that are invalid, ascending, if the rest makes a pair; else of those that
-  /// the problems name.
+  /// Cell ids of all triangles that are invalid, ascending, if the rest makes a pair; else of those
+  /// that the problems name.
   std::vector<vtkIdType> InvalidTriangles;
   std::array<MeshReport, 2> Meshes;
   /// Whether the target is a mirror image.
@@ -88,8 +88,8 @@ struct PairReport
   vtkIdType InteriorEdges = 0;
   vtkIdType BoundaryEdges = 0;
   vtkIdType BoundaryLoops = 0;
-  /// Of the linear map of a triangle onto its counterpart: the largest and the smallest factor by which it
-  /// changes lengths, and the largest ratio of the two.
+  /// Of the linear map of a triangle onto its counterpart: the largest and the smallest factor by
+  /// which it changes lengths, and the largest ratio of the two.
   Extreme LargestStretch;
   Extreme SmallestStretch;
   Extreme WorstDistortion;

@@ -36,15 +36,15 @@ char FindSeparator(const std::string& line)
 {
   const std::array<char, 3> candidates{ ',', ';', '\t' };
   const auto count = [&line](char c) { return std::count(line.begin(), line.end(), c); };
-  const char most = *std::max_element(candidates.begin(), candidates.end(),
-    [&count](char a, char b) { return count(a) < count(b); });
+  const char most = *std::max_element(
+    candidates.begin(), candidates.end(), [&count](char a, char b) { return count(a) < count(b); });
   return count(most) > 0 ? most : ' ';
 }
 
 bool NeedsQuotes(const std::string& field, char separator)
 {
-  return field.find_first_of("\"\n") != std::string::npos || field.find(separator) != std::string::npos ||
-    (separator == ' ' && field.empty());
+  return field.find_first_of("\"\n") != std::string::npos ||
+    field.find(separator) != std::string::npos || (separator == ' ' && field.empty());
 }
 
 } // namespace
@@ -54,8 +54,7 @@ bool PointTable::IsFormat(const std::string& format)
   return format == "csv" || format == "txt" || format == "xyz";
 }
 
-PointTable::PointTable(
-  std::istream& file, const std::string& fileName, const std::string& columns)
+PointTable::PointTable(std::istream& file, const std::string& fileName, const std::string& columns)
 {
   const auto fail = [&fileName](std::size_t line, const std::string& what) {
     throw Failure(FILE_TROUBLE, fileName + ", line " + std::to_string(line) + ": " + what);
@@ -150,7 +149,8 @@ PointTable::PointTable(
     }
     if (!this->Rows.empty() && row.size() != this->Rows[0].size())
     {
-      fail(first, std::to_string(row.size()) + " columns, but the first line has " +
+      fail(first,
+        std::to_string(row.size()) + " columns, but the first line has " +
           std::to_string(this->Rows[0].size()) + ".");
     }
     this->Rows.push_back(row);
@@ -182,8 +182,9 @@ PointTable::PointTable(
       const auto value = coordinate(row, k);
       if (!value)
       {
-        fail(lineOfRow[row], "expected a coordinate in column " + std::to_string(this->Columns[k] + 1) +
-            ", found \"" + this->Rows[row][this->Columns[k]] + "\".");
+        fail(lineOfRow[row],
+          "expected a coordinate in column " + std::to_string(this->Columns[k] + 1) + ", found \"" +
+            this->Rows[row][this->Columns[k]] + "\".");
       }
       this->Coordinates.push_back(*value);
     }

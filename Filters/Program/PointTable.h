@@ -25,19 +25,20 @@ public:
   /// Whether the format is one of point tables (csv, txt, xyz).
   static bool IsFormat(const std::string& format);
 
-  /// Reads a table. The separator is the one of comma, semicolon and tab that the first line has most of,
-  /// else blanks. Fields may be in double quotes; lines that begin with # are kept at the top. The first line
-  /// has the columns' names if its coordinates are no numbers. @a columns are the names or numbers (from 1)
-  /// of two or three coordinate columns, separated by commas; empty: those named x, y (and z), else E, N,
-  /// or easting, northing, whatever the case, else the first two. Throws Failure, naming file and line.
+  /// Reads a table. The separator is the one of comma, semicolon and tab that the first line has
+  /// most of, else blanks. Fields may be in double quotes; lines that begin with # are kept at the
+  /// top. The first line has the columns' names if its coordinates are no numbers. @a columns are
+  /// the names or numbers (from 1) of two or three coordinate columns, separated by commas; empty:
+  /// those named x, y (and z), else E, N, or easting, northing, whatever the case, else the first
+  /// two. Throws Failure, naming file and line.
   PointTable(std::istream& file, const std::string& fileName, const std::string& columns);
 
   /// The points as vertices, in double precision; z is 0 if there is none.
   vtkSmartPointer<vtkPolyData> ToPoints() const;
 
-  /// Takes the coordinates from @a data, and adds those of its point arrays as columns that @a before does
-  /// not have. Coordinates of points that `ValidPointMask` leaves out become nan. z stays if there is no
-  /// column for it.
+  /// Takes the coordinates from @a data, and adds those of its point arrays as columns that @a
+  /// before does not have. Coordinates of points that `ValidPointMask` leaves out become nan. z
+  /// stays if there is no column for it.
   void Update(vtkDataSet* before, vtkDataSet* data);
 
   void Write(std::ostream& file) const;

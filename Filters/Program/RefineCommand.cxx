@@ -11,6 +11,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 
 namespace dhm
@@ -80,8 +82,8 @@ void AddRefine(CLI::App& program)
     "Make a finer pair whose piecewise linear map is close to the Smooth map, for PROJ and others");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair, in a plane");
-  options->Output.AddTo(
-    *command, "The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output");
+  options->Output.AddTo(*command,
+    "The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output");
   command
     ->add_option("-t,--within", options->Tolerance,
       "How far from the map the piecewise linear map may be anywhere, in the target's units")
@@ -90,7 +92,8 @@ void AddRefine(CLI::App& program)
     ->type_name("DISTANCE")
     ->group("Results");
   command
-    ->add_option("--most-triangles", options->MostTriangles, "Give up beyond this number (default: 2000000)")
+    ->add_option(
+      "--most-triangles", options->MostTriangles, "Give up beyond this number (default: 2000000)")
     ->check(CLI::PositiveNumber.description(""))
     ->type_name("NUMBER")
     ->group("Results");
@@ -109,10 +112,19 @@ void AddRefine(CLI::App& program)
     options->Output.Describe(refined.Pair);
     // Whoever finds the file must see that it is not the published one.
     auto& description = refined.Pair.Metadata["description"];
-    description = (description.is_string() ? description.get<std::string>() + ". " : std::string()) +
-      "Refined by dhm: its piecewise linear map is within " + ToText(options->Tolerance) + " of the " +
-      SystemNames[options->Map.System] + " map of the original triangulation";
+    description =
+      (description.is_string() ? description.get<std::string>() + ". " : std::string()) +
+      "Refined by dhm: its piecewise linear map is within " + ToText(options->Tolerance) +
+      " of the " + SystemNames[options->Map.System] + " map of the original triangulation";
     WritePair(refined.Pair, options->Output.TargetArray, output);
+    // PROJ 9.1 reads no larger ones.
+    constexpr std::uintmax_t mostBytes = 10 * 1024 * 1024;
+    if (output.GetFormat() == "json" &&
+      std::filesystem::file_size(output.GetTemporaryName()) > mostBytes)
+    {
+      Warn("PROJ reads no triangulation files of more than 10 MiB, which this is: ask for a larger "
+           "distance.");
+    }
     output.Commit();
   });
 }
@@ -129,9 +141,11 @@ void AddConvert(CLI::App& program)
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair");
   options->Output.AddTo(*command,
-    "The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a point array; with "
+    "The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a "
+    "point array; with "
     "--target-output the source alone: .vtp .vtk .obj .off");
-  command->add_option("--target-output", options->TargetOutput, "Write the target to a file of its own")
+  command
+    ->add_option("--target-output", options->TargetOutput, "Write the target to a file of its own")
     ->type_name("FILE")
     ->group("Files");
   command
@@ -165,8 +179,9 @@ void AddConvert(CLI::App& program)
     else if (output.GetFormat() == "obj" || output.GetFormat() == "off")
     {
       throw Failure(WRONG_USAGE,
-        "A ." + output.GetFormat() + " file cannot hold both meshes: name another for the target "
-        "(--target-output).");
+        "A ." + output.GetFormat() +
+          " file cannot hold both meshes: name another for the target "
+          "(--target-output).");
     }
     WritePair(pair, options->Output.TargetArray, output);
     output.Commit();

@@ -36,8 +36,8 @@ using Barycentric = std::array<double, 3>;
 struct Part
 {
   std::array<vtkIdType, 3> Points;
-  /// Barycentric coordinates of the points in the pair's triangle: multiples of powers of 1/2, without
-  /// rounding, so that a point is on an edge exactly if one of them is 0.
+  /// Barycentric coordinates of the points in the pair's triangle: multiples of powers of 1/2,
+  /// without rounding, so that a point is on an edge exactly if one of them is 0.
   std::array<Barycentric, 3> Places;
   vtkIdType Triangle;
   bool Divided = false;
@@ -50,6 +50,10 @@ struct EdgeHash
     return std::hash<vtkIdType>()(edge[0] * vtkIdType(1000003) + edge[1]);
   }
 };
+
+/// Triangles that are lower than this, over their longest edge, are not made still longer: the
+/// slightest bend would turn needles over.
+constexpr double needle = 0.03;
 
 double Area(const Point& a, const Point& b, const Point& c)
 {
@@ -105,9 +109,17 @@ public:
     return parts;
   }
 
-  /// For each of some parts, how far the linear map of the part is from the map, at the inner points of a
-  /// barycentric grid and those on the part's sides; infinite if the part is turned over.
-  std::vector<double> MeasureDistances(const std::vector<std::size_t>& parts, int divisions)
+  /// How far the linear map of a part is from the map.
+  struct Distance
+  {
+    /// At the inner points of the part and of its edges; infinite if the part is turned over.
+    double Largest = 0.0;
+    /// At the inner points of each edge.
+    std::array<double, 3> OfEdges{ 0.0, 0.0, 0.0 };
+  };
+
+  /// Measures some parts at the points of a barycentric grid.
+  std::vector<Distance> MeasureDistances(const std::vector<std::size_t>& parts, int divisions)
   {
     std::vector<Barycentric> grid;
     for (int i = 0; i <= divisions; ++i)
@@ -132,13 +144,14 @@ public:
       }
       return point;
     };
-    std::vector<double> distances;
+    std::vector<Distance> distances;
     // Some at a time: the samples of all would take a lot of memory.
-    constexpr std::size_t atOnce = 20000;
+    constexpr std::size_t atOnce = 2000;
+    std::vector<Point> samples;
     for (std::size_t begin = 0; begin < parts.size(); begin += atOnce)
     {
       const std::size_t end = std::min(parts.size(), begin + atOnce);
-      std::vector<Point> samples;
+      samples.clear();
       for (std::size_t i = begin; i < end; ++i)
       {
         for (const Barycentric& weights : grid)
@@ -150,43 +163,62 @@ public:
       for (std::size_t i = begin; i < end; ++i)
       {
         const Part& part = this->Parts[parts[i]];
-        double largest = this->IsTurnedOver(part) ? std::numeric_limits<double>::infinity() : 0.0;
+        Distance result;
         for (std::size_t k = 0; k < grid.size(); ++k)
         {
           const Point& image = images[(i - begin) * grid.size() + k];
           const Point linear = within(1, part, grid[k]);
           const double distance = std::hypot(image[0] - linear[0], image[1] - linear[1]);
-          // A sample outside by more than rounding would be a fault of the mesh.
-          largest = std::isnan(distance) ? largest : std::max(largest, distance);
+          if (std::isnan(distance))
+          {
+            continue;
+          }
+          result.Largest = std::max(result.Largest, distance);
+          for (std::size_t edge = 0; edge < 3; ++edge)
+          {
+            if (grid[k][edge] == 0.0)
+            {
+              result.OfEdges[edge] = std::max(result.OfEdges[edge], distance);
+            }
+          }
         }
-        distances.push_back(largest);
+        if (this->IsTurnedOver(part))
+        {
+          result.Largest = std::numeric_limits<double>::infinity();
+        }
+        distances.push_back(result);
       }
       this->Samples += static_cast<vtkIdType>(samples.size());
     }
     return distances;
   }
 
-  /// Divides a part, and others first where that is needed to divide them together.
-  void Divide(std::size_t index)
+  bool IsDivided(std::size_t index) const { return this->Parts[index].Divided; }
+
+  /// Halves edges of a part that is too far from the map: those that are too far themselves or, if
+  /// none is, the farthest; if it is turned over, its longest.
+  void Divide(std::size_t index, const Distance& distance, double tolerance)
   {
-    // The path of longest edges that grow from part to part.
-    std::vector<std::size_t> path{ index };
-    while (!this->Parts[index].Divided)
+    std::size_t worst = 0;
+    for (const std::size_t edge : { 1, 2 })
     {
-      const std::size_t last = path.back();
-      const std::size_t edge = this->LongestEdge(last);
-      const std::size_t neighbour = this->Across(last, edge);
-      if (neighbour == last || this->SameEdge(neighbour, this->LongestEdge(neighbour), last, edge))
+      worst = distance.OfEdges[edge] > distance.OfEdges[worst] ? edge : worst;
+    }
+    if (std::isinf(distance.Largest) || distance.OfEdges[worst] == 0.0)
+    {
+      worst = this->LongestEdge(index);
+    }
+    std::array<std::array<vtkIdType, 2>, 3> edges;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+    {
+      edges[edge] = this->Edge(index, edge);
+    }
+    for (std::size_t edge = 0; edge < 3; ++edge)
+    {
+      if (edge == worst || distance.OfEdges[edge] > tolerance)
       {
-        this->Halve(last, edge, neighbour);
-        path.pop_back();
-        if (path.empty())
-        {
-          return;
-        }
-        continue;
+        this->HalveWithCare(edges[edge]);
       }
-      path.push_back(neighbour);
     }
   }
 
@@ -213,7 +245,16 @@ public:
     vtkNew<vtkCellArray> polygons;
     for (const std::size_t part : this->GetParts())
     {
-      polygons->InsertNextCell(3, this->Parts[part].Points.data());
+      // All wound alike, anticlockwise in the source.
+      std::array<vtkIdType, 3> ids = this->Parts[part].Points;
+      const auto corner = [this, &ids](std::size_t k) {
+        return this->Points[0][static_cast<std::size_t>(ids[k])];
+      };
+      if (Area(corner(0), corner(1), corner(2)) < 0.0)
+      {
+        std::swap(ids[1], ids[2]);
+      }
+      polygons->InsertNextCell(3, ids.data());
     }
     std::array<vtkSmartPointer<vtkPolyData>, 2> meshes;
     for (std::size_t side = 0; side < 2; ++side)
@@ -243,9 +284,11 @@ private:
     return { std::min(a, b), std::max(a, b) };
   }
 
-  bool SameEdge(std::size_t part, std::size_t edge, std::size_t otherPart, std::size_t otherEdge) const
+  double Length(const std::array<vtkIdType, 2>& ends) const
   {
-    return this->Edge(part, edge) == this->Edge(otherPart, otherEdge);
+    const Point& a = this->Points[0][static_cast<std::size_t>(ends[0])];
+    const Point& b = this->Points[0][static_cast<std::size_t>(ends[1])];
+    return std::hypot(b[0] - a[0], b[1] - a[1]);
   }
 
   /// Of edges of the same length, the points' numbers decide: for both parts alike.
@@ -253,9 +296,7 @@ private:
   {
     const auto key = [&](std::size_t edge) {
       const auto ends = this->Edge(part, edge);
-      const Point& a = this->Points[0][static_cast<std::size_t>(ends[0])];
-      const Point& b = this->Points[0][static_cast<std::size_t>(ends[1])];
-      return std::make_tuple(std::hypot(b[0] - a[0], b[1] - a[1]), ends[0], ends[1]);
+      return std::make_tuple(this->Length(ends), ends[0], ends[1]);
     };
     std::size_t longest = 0;
     for (const std::size_t edge : { 1, 2 })
@@ -263,13 +304,6 @@ private:
       longest = key(edge) > key(longest) ? edge : longest;
     }
     return longest;
-  }
-
-  /// The part across an edge; the part itself if there is none.
-  std::size_t Across(std::size_t part, std::size_t edge) const
-  {
-    const auto& parts = this->PartsOfEdge.at(this->Edge(part, edge));
-    return parts[0] == part ? parts[1] : parts[0];
   }
 
   void Add(const Part& part)
@@ -309,16 +343,54 @@ private:
     }
   }
 
-  void Halve(std::size_t index, std::size_t edge, std::size_t neighbour)
+  /// Halves an edge, unless that has been done; where a part that has it is a needle, the needle's
+  /// longest edge first.
+  void HalveWithCare(const std::array<vtkIdType, 2>& ends)
   {
-    std::size_t neighbourEdge = 0;
-    while (neighbour != index && !this->SameEdge(neighbour, neighbourEdge, index, edge))
+    for (auto found = this->PartsOfEdge.find(ends); found != this->PartsOfEdge.end();
+         found = this->PartsOfEdge.find(ends))
     {
-      ++neighbourEdge;
+      std::array<vtkIdType, 2> first = ends;
+      for (const std::size_t part : found->second)
+      {
+        const auto longest = this->Edge(part, this->LongestEdge(part));
+        if (this->Length(longest) > this->Length(first) && this->IsNeedle(part))
+        {
+          first = longest;
+        }
+      }
+      if (first == ends)
+      {
+        this->Halve(ends);
+        return;
+      }
+      // The way to ever longer edges ends.
+      this->HalveWithCare(first);
     }
+  }
+
+  bool IsNeedle(std::size_t index) const
+  {
+    const auto& points = this->Parts[index].Points;
+    const auto corner = [this, &points](std::size_t k) {
+      return this->Points[0][static_cast<std::size_t>(points[k])];
+    };
+    const double length = this->Length(this->Edge(index, this->LongestEdge(index)));
+    return std::abs(Area(corner(0), corner(1), corner(2))) < needle * length * length;
+  }
+
+  /// Halves an edge, and the parts on both sides of it, unless that has been done.
+  void Halve(const std::array<vtkIdType, 2>& ends)
+  {
+    const auto found = this->PartsOfEdge.find(ends);
+    if (found == this->PartsOfEdge.end())
+    {
+      return;
+    }
+    const std::array<std::size_t, 2> parts = found->second;
     const auto middle = static_cast<vtkIdType>(this->Points[0].size());
-    const Part part = this->Parts[index];
-    const Barycentric place = Middle(part, edge);
+    const Part part = this->Parts[parts[0]];
+    const Barycentric place = Middle(part, this->FindEdge(parts[0], ends));
     const auto& corners = this->Triangles[static_cast<std::size_t>(part.Triangle)];
     for (std::size_t side = 0; side < 2; ++side)
     {
@@ -336,11 +408,21 @@ private:
     {
       this->Unmapped.push_back(static_cast<std::size_t>(middle));
     }
-    this->HalvePart(index, edge, middle);
-    if (neighbour != index)
+    this->HalvePart(parts[0], ends, middle);
+    if (parts[1] != parts[0])
     {
-      this->HalvePart(neighbour, neighbourEdge, middle);
+      this->HalvePart(parts[1], ends, middle);
     }
+  }
+
+  std::size_t FindEdge(std::size_t part, const std::array<vtkIdType, 2>& ends) const
+  {
+    std::size_t edge = 0;
+    while (this->Edge(part, edge) != ends)
+    {
+      ++edge;
+    }
+    return edge;
   }
 
   static Barycentric Middle(const Part& part, std::size_t edge)
@@ -350,9 +432,10 @@ private:
     return { 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]) };
   }
 
-  void HalvePart(std::size_t index, std::size_t edge, vtkIdType middle)
+  void HalvePart(std::size_t index, const std::array<vtkIdType, 2>& ends, vtkIdType middle)
   {
     const Part part = this->Parts[index];
+    const std::size_t edge = this->FindEdge(index, ends);
     const Barycentric place = Middle(part, edge);
     this->Remove(index);
     for (const std::size_t end : { (edge + 1) % 3, (edge + 2) % 3 })
@@ -368,8 +451,8 @@ private:
   {
     const auto area = [this](std::size_t side, const std::array<vtkIdType, 3>& points) {
       const auto& all = this->Points[side];
-      return Area(all[static_cast<std::size_t>(points[0])], all[static_cast<std::size_t>(points[1])],
-        all[static_cast<std::size_t>(points[2])]);
+      return Area(all[static_cast<std::size_t>(points[0])],
+        all[static_cast<std::size_t>(points[1])], all[static_cast<std::size_t>(points[2])]);
     };
     const auto& triangle = this->Triangles[static_cast<std::size_t>(part.Triangle)];
     const bool mirrored = (area(0, triangle) > 0.0) != (area(1, triangle) > 0.0);
@@ -423,53 +506,57 @@ Refinement Refine(
 {
   Refiner refiner(pair, map);
   Refinement result;
-  // Coarse looks while there is much to divide; what they find good enough is looked at closely at the end.
-  constexpr int coarse = 6;
-  constexpr int fine = 20;
+  // Looks grow closer: what one finds near enough is looked at by the next. The first two leave a
+  // margin for what is farther between their points.
+  constexpr std::array<int, 3> divisions{ 6, 20, 33 };
+  const std::array<double, 3> limits{ 0.8 * tolerance, 0.8 * tolerance, tolerance };
   ProgressBar bar("Refining");
   std::vector<std::size_t> parts = refiner.GetParts();
-  bool isFine = false;
-  for (;;)
+  for (std::size_t look = 0; look < divisions.size();)
   {
     refiner.Samples = 0;
-    const std::vector<double> distances = refiner.MeasureDistances(parts, isFine ? fine : coarse);
-    const double largest =
-      distances.empty() ? 0.0 : *std::max_element(distances.begin(), distances.end());
-    if (largest <= tolerance)
+    const auto distances = refiner.MeasureDistances(parts, divisions[look]);
+    double largest = 0.0;
+    for (const auto& distance : distances)
     {
-      if (isFine)
-      {
-        result.Distance = largest;
-        break;
-      }
-      isFine = true;
+      largest = std::max(largest, distance.Largest);
+    }
+    if (largest <= limits[look])
+    {
+      ++look;
+      result.Distance = largest;
       parts = refiner.GetParts();
       continue;
     }
     const std::vector<std::size_t> old = refiner.GetParts();
     for (std::size_t i = 0; i < parts.size(); ++i)
     {
-      if (distances[i] > tolerance)
+      if (distances[i].Largest > limits[look] && !refiner.IsDivided(parts[i]))
       {
-        refiner.Divide(parts[i]);
+        refiner.Divide(parts[i], distances[i], limits[look]);
       }
       if (refiner.GetNumberOfParts() > mostTriangles)
       {
         throw Failure(REFUSED,
-          "More than " + std::to_string(mostTriangles) +
-            " triangles are needed to be within " + ToText(tolerance) + " everywhere (" + ToText(largest) +
-            " was reached): ask for a larger tolerance, or allow more (--most-triangles).");
+          "More than " + std::to_string(mostTriangles) + " triangles are needed to be within " +
+            ToText(tolerance) + " everywhere (" + ToText(largest) +
+            " was reached): ask for a larger distance, or allow more (--most-triangles).");
       }
     }
     refiner.MapNewPoints();
-    // What has not been divided is as good as it was.
     parts = refiner.GetParts();
-    if (!isFine)
+    if (look == 0)
     {
+      // What has not been divided is as good as it was.
       std::vector<std::size_t> fresh;
       std::set_difference(
         parts.begin(), parts.end(), old.begin(), old.end(), std::back_inserter(fresh));
       parts = fresh;
+    }
+    else
+    {
+      // So few have been divided that all are looked at again, to have a number for all.
+      look = 1;
     }
   }
   result.Samples = refiner.Samples;

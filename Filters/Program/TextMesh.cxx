@@ -57,8 +57,8 @@ public:
     if (!this->Next())
     {
       throw Failure(FILE_TROUBLE,
-        this->FileName + " ends after line " + std::to_string(this->Number) + ": expected " + expected +
-          ".");
+        this->FileName + " ends after line " + std::to_string(this->Number) + ": expected " +
+          expected + ".");
     }
   }
 
@@ -161,7 +161,8 @@ vtkSmartPointer<vtkPolyData> ReadObj(std::istream& file, const std::string& file
   }
   if (points->GetNumberOfPoints() == 0)
   {
-    throw Failure(FILE_TROUBLE, fileName + " has no points (lines \"v x y z\"): it is no OBJ mesh.");
+    throw Failure(
+      FILE_TROUBLE, fileName + " has no points (lines \"v x y z\"): it is no OBJ mesh.");
   }
   return MakeMesh(points, polygons);
 }
@@ -208,8 +209,8 @@ vtkSmartPointer<vtkPolyData> ReadOff(std::istream& file, const std::string& file
       const auto id = ToNumber<vtkIdType>(lines.Words[k]);
       if (!id || *id < 0 || *id >= *pointCount)
       {
-        lines.Fail("numbers of points, 0 to " + std::to_string(*pointCount - 1) + ", instead of \"" +
-          lines.Words[k] + "\"");
+        lines.Fail("numbers of points, 0 to " + std::to_string(*pointCount - 1) +
+          ", instead of \"" + lines.Words[k] + "\"");
       }
       polygons->InsertCellPoint(*id);
     }

@@ -18,8 +18,8 @@ namespace dhm
 {
 
 /// @name Reading
-/// The file's name is for messages. They throw Failure, naming file and line, if the text is no such
-/// mesh.
+/// The file's name is for messages. They throw Failure, naming file and line, if the text is no
+/// such mesh.
 ///@{
 vtkSmartPointer<vtkPolyData> ReadObj(std::istream& file, const std::string& fileName);
 vtkSmartPointer<vtkPolyData> ReadOff(std::istream& file, const std::string& fileName);

@@ -34,10 +34,12 @@ public:
   {
     const auto rows = document.find(member);
     const auto names = document.find(columns);
-    if (rows == document.end() || !rows->is_array() || names == document.end() || !names->is_array())
+    if (rows == document.end() || !rows->is_array() || names == document.end() ||
+      !names->is_array())
     {
       throw Failure(FILE_TROUBLE,
-        fileName + " has no arrays \"" + member + "\" and \"" + columns + "\": it is no triangulation file.");
+        fileName + " has no arrays \"" + member + "\" and \"" + columns +
+          "\": it is no triangulation file.");
     }
     this->Rows = &*rows;
     for (const Json& name : *names)
@@ -77,7 +79,8 @@ public:
     if (!value.is_number_integer() || value.get<std::int64_t>() < 0 ||
       value.get<std::uint64_t>() >= count)
     {
-      this->Fail(row, "the number of a vertex, 0 to " + std::to_string(count) + " less 1, as \"" +
+      this->Fail(row,
+        "the number of a vertex, 0 to " + std::to_string(count) + " less 1, as \"" +
           this->Columns[column] + "\"");
     }
     return value.get<vtkIdType>();
@@ -151,8 +154,8 @@ TriangulationFile ReadTriangulationFile(std::istream& file, const std::string& f
   }
   if (!Contains(document, "transformed_components", "horizontal"))
   {
-    throw Failure(
-      FILE_TROUBLE, fileName + " does not shift horizontal coordinates (\"transformed_components\").");
+    throw Failure(FILE_TROUBLE,
+      fileName + " does not shift horizontal coordinates (\"transformed_components\").");
   }
   result.ShiftsHeights = Contains(document, "transformed_components", "vertical");
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TriangulationFile.h
-/// PROJ's triangulation files (JSON, "tinshift"), the format in which national coordinate shifts are
-/// published: https://proj.org/en/stable/specifications/triangulation.html
+/// PROJ's triangulation files (JSON, "tinshift"), the format in which national coordinate shifts
+/// are published: https://proj.org/en/stable/specifications/triangulation.html
 
 #ifndef dhm_TriangulationFile_h
 #define dhm_TriangulationFile_h

@@ -27,29 +27,36 @@ void AddWarp(CLI::App& program)
     std::string Background;
     bool Inverse = false;
   };
-  CLI::App* command = program.add_subcommand("warp", "Warp an image from the source's domain to the target's");
+  CLI::App* command =
+    program.add_subcommand("warp", "Warp an image from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "FILES", 1, 1,
-    "SOURCE [TARGET] IMAGE: the pair, in pixels of the image (the first pixel's centre, at the lower left, is "
-    "(0, 0), y runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif .ppm or .vti");
-  options->Output.AddTo(*command, "The warped image: .png .jpg .tif .ppm .vti, or - for standard output", "png");
+    "SOURCE [TARGET] IMAGE: the pair, in pixels of the image (the first pixel's centre, at the "
+    "lower left, is "
+    "(0, 0), y runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif "
+    ".ppm or .vti");
+  options->Output.AddTo(
+    *command, "The warped image: .png .jpg .tif .ppm .vti, or - for standard output", "png");
   command
     ->add_option("--image-format", options->ImageFormat,
       "What the image is if it comes from standard input, as an extension (default: png)")
     ->type_name("EXTENSION")
     ->group("Files");
   options->Map.AddTo(*command);
-  command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")->group("Map");
+  command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")
+    ->group("Map");
   command
     ->add_option("--size", options->Size, "Size of the result in pixels (default: the image's)")
     ->type_name("WIDTHxHEIGHT")
     ->group("Results");
   command
     ->add_option("--background", options->Background,
-      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black or #rrggbb")
+      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
+      "or #rrggbb")
     ->type_name("COLOUR")
     ->group("Results");
-  command->footer("Pixels are interpolated linearly. Each pixel of the result is looked up where the exact inverse "
+  command->footer("Pixels are interpolated linearly. Each pixel of the result is looked up where "
+                  "the exact inverse "
                   "says.");
   command->callback([options] {
     const std::array<int, 2> size = ReadSize(options->Size);
@@ -57,13 +64,13 @@ void AddWarp(CLI::App& program)
       options->Output.Name == "-" ? options->Output.Format : FormatOf(options->Output.Name);
     if (!IsPicture(format) && format != "vti")
     {
-      throw Failure(
-        WRONG_USAGE, "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
+      throw Failure(WRONG_USAGE,
+        "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
     }
     const bool withoutAlpha = format[0] == 'j' || format[0] == 'p';
     const Background background = ReadBackground(!options->Background.empty() ? options->Background
-        : withoutAlpha && format != "png"                                   ? "white"
-                                                                            : "transparent");
+        : withoutAlpha && format != "png"                                     ? "white"
+                                                                              : "transparent");
     if (!background && withoutAlpha && format != "png")
     {
       throw Failure(WRONG_USAGE, "A ." + format + " picture cannot be transparent.");

@@ -70,13 +70,37 @@ XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName)
   return mesh;
 }
 
-void TurnUpright(XmorphMesh& mesh)
+std::array<double, 2> GetExtent(const XmorphMesh& mesh)
 {
-  double bottom = 0.0;
+  std::array<double, 2> extent{ 0.0, 0.0 };
   for (const auto& point : mesh.Points)
   {
-    bottom = std::max(bottom, point[1]);
+    extent = { std::max(extent[0], point[0]), std::max(extent[1], point[1]) };
   }
+  return extent;
+}
+
+bool FillsPicture(const XmorphMesh& mesh)
+{
+  const std::array<double, 2> extent = GetExtent(mesh);
+  const auto is = [&mesh](int column, int row, int axis, double value) {
+    return mesh.Points[static_cast<std::size_t>(row * mesh.Columns + column)]
+                      [static_cast<std::size_t>(axis)] == value;
+  };
+  bool fills = true;
+  for (int column = 0; column < mesh.Columns; ++column)
+  {
+    fills = fills && is(column, 0, 1, 0.0) && is(column, mesh.Rows - 1, 1, extent[1]);
+  }
+  for (int row = 0; row < mesh.Rows; ++row)
+  {
+    fills = fills && is(0, row, 0, 0.0) && is(mesh.Columns - 1, row, 0, extent[0]);
+  }
+  return fills;
+}
+
+void TurnUpright(XmorphMesh& mesh, double bottom)
+{
   for (auto& point : mesh.Points)
   {
     point[1] = bottom - point[1];
@@ -85,13 +109,7 @@ void TurnUpright(XmorphMesh& mesh)
 
 void FitToPicture(XmorphMesh& mesh, int width, int height)
 {
-  double right = 0.0;
-  double bottom = 0.0;
-  for (const auto& point : mesh.Points)
-  {
-    right = std::max(right, point[0]);
-    bottom = std::max(bottom, point[1]);
-  }
+  const auto [right, bottom] = GetExtent(mesh);
   if (!(right > 0.0 && bottom > 0.0))
   {
     throw std::runtime_error(

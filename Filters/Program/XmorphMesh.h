@@ -31,8 +31,16 @@ XmorphMesh ReadXmorphMesh(const std::string& fileName);
 /// The same from an open file; the name is for messages.
 XmorphMesh ReadXmorphMesh(std::istream& file, const std::string& fileName);
 
-/// Turns the mesh's own units, in which y runs downwards, so that it runs upwards.
-void TurnUpright(XmorphMesh& mesh);
+/// Whether the mesh's rim runs along the borders of the picture: whether it is a rectangle from 0
+/// to the last column and row.
+bool FillsPicture(const XmorphMesh& mesh);
+
+/// The right end and the bottom of the picture in the mesh's own units: of a mesh that fills it,
+/// its largest coordinates.
+std::array<double, 2> GetExtent(const XmorphMesh& mesh);
+
+/// Lets y, which runs downwards from the picture's top, run upwards from @a bottom.
+void TurnUpright(XmorphMesh& mesh, double bottom);
 
 /// Moves the points from the mesh's own units, which end at its last column and row, to the pixels
 /// of a picture of this size as VTK counts them, y upwards. Throws std::runtime_error if the mesh

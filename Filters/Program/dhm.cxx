@@ -18,21 +18,23 @@ int main(int argc, char* argv[])
   using namespace dhm;
   CaptureVtkMessages();
 
-  CLI::App program(
-    "Carries data from one triangulated domain onto another that has the same triangles, one to one and "
-    "smoothly, with an exact inverse.",
+  CLI::App program("Carries data from one triangulated domain onto another that has the same "
+                   "triangles, one to one and "
+                   "smoothly, with an exact inverse.",
     "dhm");
   program.require_subcommand(1);
   program.fallthrough();
   program.set_version_flag("--version", "dhm " DHM_VERSION);
   program.add_flag_callback(
     "-q,--quiet", [] { SetQuiet(true); }, "Say nothing but errors");
-  program.footer("A pair of meshes is one file that has both (PROJ's triangulation files, or a mesh with the "
-                 "target's positions as a point array) or two files, SOURCE and TARGET. Meshes: .vtp .vtk .vtu "
-                 ".obj .off .ply .stl, xmorph's .mesh. - is standard input or output.\n"
-                 "Exit status: 0 done (check: yes), 1 the meshes are refused (check: no), 2 wrong usage, 3 a file "
-                 "cannot be read or written.\n"
-                 "dhm COMMAND --help says more about a command.");
+  program.footer(
+    "A pair of meshes is one file that has both (PROJ's triangulation files, or a mesh with the "
+    "target's positions as a point array) or two files, SOURCE and TARGET. Meshes: .vtp .vtk .vtu "
+    ".obj .off .ply .stl, xmorph's .mesh. - is standard input or output.\n"
+    "Exit status: 0 done (check: yes), 1 the meshes are refused (check: no), 2 wrong usage, 3 a "
+    "file "
+    "cannot be read or written.\n"
+    "dhm COMMAND --help says more about a command.");
   AddCheck(program);
   AddMap(program);
   AddWarp(program);
