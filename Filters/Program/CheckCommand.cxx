@@ -150,14 +150,16 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
 
 // --- For people
 
-void Line(const std::string& name, const std::string& text)
+/// One line of the report, in columns.
+void Row(const std::string& name, const std::vector<std::string>& columns)
 {
-  std::cout << Format("  %-38s ", name.c_str()) << text << "\n";
-}
-
-void Pair(const std::string& name, const std::string& source, const std::string& target)
-{
-  Line(name, Format("%-22s %-22s", source.c_str(), target.c_str()));
+  std::string line = Format("  %-38s ", name.c_str());
+  for (const std::string& column : columns)
+  {
+    line += Format("%-22s ", column.c_str());
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  std::cout << line << "\n";
 }
 
 std::string AtCell(const char* format, const Extreme& extreme)
@@ -168,9 +170,9 @@ std::string AtCell(const char* format, const Extreme& extreme)
 void PrintMeshes(const PairReport& report)
 {
   const auto both = [&report](const std::string& name, auto&& text) {
-    Pair(name, text(report.Meshes[0]), text(report.Meshes[1]));
+    Row(name, { text(report.Meshes[0]), text(report.Meshes[1]) });
   };
-  Pair("", "source", "target");
+  Row("", { "source", "target" });
   both("points", [](const MeshReport& mesh) { return std::to_string(mesh.Points); });
   both("triangles", [](const MeshReport& mesh) { return std::to_string(mesh.Triangles); });
   both("points that no triangle uses",
@@ -203,31 +205,28 @@ void PrintMeshes(const PairReport& report)
 void PrintMap(const PairReport& report)
 {
   std::cout << "\n";
-  Line("mirrored", report.Mirrored ? "yes" : "no");
-  Line("windings mended", std::to_string(report.MendedWindings));
-  Line("triangles listed in another order", std::to_string(report.ReorderedTriangles));
-  Line("components", std::to_string(report.Components));
-  Line("boundary loops", std::to_string(report.BoundaryLoops));
-  Line("edges",
-    std::to_string(report.InteriorEdges) + " interior, " + std::to_string(report.BoundaryEdges) +
-      " on the boundary");
-  Line("lengths change by factors of",
-    AtCell("%.6g", report.SmallestStretch) + " to " + AtCell("%.6g", report.LargestStretch));
-  Line("worst distortion (ratio of the two)", AtCell("%.6g", report.WorstDistortion));
+  Row("mirrored", { report.Mirrored ? "yes" : "no" });
+  Row("windings mended", { std::to_string(report.MendedWindings) });
+  Row("triangles listed in another order", { std::to_string(report.ReorderedTriangles) });
+  Row("components", { std::to_string(report.Components) });
+  Row("boundary loops", { std::to_string(report.BoundaryLoops) });
+  Row("edges",
+    { std::to_string(report.InteriorEdges) + " interior, " + std::to_string(report.BoundaryEdges) +
+      " on the boundary" });
+  Row("lengths change by factors of",
+    { AtCell("%.6g", report.SmallestStretch) + " to " + AtCell("%.6g", report.LargestStretch) });
+  Row("worst distortion (ratio of the two)", { AtCell("%.6g", report.WorstDistortion) });
 
-  std::cout << "\n" << Format("  %-38s ", "");
-  for (const char* name : SystemNames)
+  // What was not measured has no columns.
+  const bool hasColumns = report.Systems[0].Samples > 0 || report.Systems[0].ContinuityMeasured;
+  if (!hasColumns)
   {
-    std::cout << Format("%-22s ", name);
+    return;
   }
   std::cout << "\n";
+  Row("", { SystemNames[0], SystemNames[1], SystemNames[2] });
   const auto row = [&report](const std::string& name, auto&& text) {
-    std::cout << Format("  %-38s ", name.c_str());
-    for (const SystemReport& system : report.Systems)
-    {
-      std::cout << Format("%-22s ", text(system).c_str());
-    }
-    std::cout << "\n";
+    Row(name, { text(report.Systems[0]), text(report.Systems[1]), text(report.Systems[2]) });
   };
   if (report.Systems[0].Samples > 0)
   {
@@ -294,7 +293,7 @@ void AddCheck(CLI::App& program)
   CLI::App* command =
     program.add_subcommand("check", "Tell whether two meshes define a map, and what it is like");
   const auto options = std::make_shared<Options>();
-  options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair");
+  options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair");
   command->add_flag("--json", options->Machine, "Write the report as JSON")->group("Results");
   command
     ->add_flag("--quick", options->Quick,

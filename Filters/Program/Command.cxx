@@ -57,12 +57,12 @@ void MapOptions::AddTo(CLI::App& command)
 }
 
 void InputFiles::AddTo(
-  CLI::App& command, const std::string& names, int least, int most, const std::string& description)
+  CLI::App& command, const std::string& names, int others, const std::string& description)
 {
-  command.add_option(names, this->Files, description)
-    ->expected(1 + least, 2 + most)
+  command.add_option("FILES", this->Files, description)
+    ->expected(1 + others, 2 + others)
     ->required()
-    ->type_name("");
+    ->type_name(names);
   command
     .add_option("--target-array", this->Pair.TargetArray,
       "Point array with the target's positions, where one mesh file has both (default: Target)")

@@ -66,18 +66,17 @@ struct MapOptions
   }
 };
 
-/// The files that a command reads: one or two of a pair of meshes, then @a others. Which is which
-/// follows from their number: a pair takes one file exactly if there is one too few.
+/// The files that a command reads: one or two of a pair of meshes, then others. Which is which
+/// follows from their number.
 struct InputFiles
 {
   std::vector<std::string> Files;
   MeshPairOptions Pair;
   std::string WorkingSize;
 
-  /// Adds the positional arguments, described as @a names, of which the pair's are one or two and
-  /// @a least to @a most follow, and the options for reading them.
-  void AddTo(CLI::App& command, const std::string& names, int least, int most,
-    const std::string& description);
+  /// Adds the positional arguments, called @a names in texts, and the options for reading them.
+  void AddTo(
+    CLI::App& command, const std::string& names, int others, const std::string& description);
 
   /// The pair, if the last @a others files are not its.
   MeshPair ReadPair(std::size_t others) const;

@@ -169,13 +169,32 @@ std::array<double, 4> SquareAround(double x, double y, double r)
   return { x - r, x + r, y - r, y + r };
 }
 
+/// From 0 to 1, of the colour components of all pixels.
+double MeanBrightness(vtkImageData* image)
+{
+  vtkDataArray* pixels = image->GetPointData()->GetScalars();
+  const int colors = pixels->GetNumberOfComponents() >= 3 ? 3 : 1;
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < pixels->GetNumberOfTuples(); ++i)
+  {
+    for (int k = 0; k < colors; ++k)
+    {
+      sum += pixels->GetComponent(i, k);
+    }
+  }
+  const bool isFloating = pixels->GetDataType() == VTK_FLOAT || pixels->GetDataType() == VTK_DOUBLE;
+  const double full = isFloating ? 1.0 : pixels->GetDataTypeMax();
+  return sum / (full * colors * static_cast<double>(pixels->GetNumberOfTuples()));
+}
+
 void Draw(const std::vector<Panel>& panels, bool closeUps, double width, const OutputFile& file)
 {
   constexpr double gap = 6.0;
   constexpr double title = 30.0;
-  const bool onImage = panels.front().Image != nullptr;
-  const Color lineColor = onImage ? Color{ 1.0, 0.85, 0.1, 1.0 } : Color{ 0.75, 0.1, 0.15, 1.0 };
-  const Color meshColor = onImage ? Color{ 0.1, 0.2, 0.6, 0.5 } : Color{ 0.2, 0.3, 0.45, 0.45 };
+  // What stands out from what lies below.
+  const bool onDark = panels.front().Image && MeanBrightness(panels.front().Image) < 0.5;
+  const Color lineColor = onDark ? Color{ 1.0, 0.85, 0.1, 1.0 } : Color{ 0.75, 0.1, 0.15, 1.0 };
+  const Color meshColor = onDark ? Color{ 0.1, 0.2, 0.6, 0.5 } : Color{ 0.2, 0.3, 0.45, 0.45 };
   double tallest = 0.0;
   for (const Panel& panel : panels)
   {
@@ -307,7 +326,7 @@ void AddFigure(CLI::App& program)
   CLI::App* command = program.add_subcommand(
     "figure", "Draw a grid, or the contours, on the source and carried onto the target");
   const auto options = std::make_shared<Options>();
-  options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair, in a plane");
+  options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair, in a plane");
   options->Output.AddTo(*command, "The figure: .png .svg .pdf, or - for standard output", "png");
   options->Map.AddTo(*command);
   command->add_flag("--all-systems", options->AllSystems, "One panel for each of the three systems")

@@ -138,8 +138,8 @@ void AddMap(CLI::App& program)
   CLI::App* command =
     program.add_subcommand("map", "Carry data from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
-  options->Inputs.AddTo(*command, "FILES", 1, 1,
-    "SOURCE [TARGET] DATA: the pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu "
+  options->Inputs.AddTo(*command, "SOURCE [TARGET] DATA", 1,
+    "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu "
     ".vts .vtr .vti "
     ".vtm .vtk, or a picture, whose pixels move as points (to warp it, use dhm warp)");
   options->Data.AddTo(*command);
@@ -204,11 +204,11 @@ void AddCoordinates(CLI::App& program)
   const auto options = std::make_shared<Options>();
   command
     ->add_option("FILES", options->Files,
-      "MESH DATA: the triangulation (of a triangulation file the source), and the data: as for dhm "
+      "The triangulation (of a triangulation file the source), and the data: as for dhm "
       "map")
     ->expected(2)
     ->required()
-    ->type_name("");
+    ->type_name("MESH DATA");
   command
     ->add_option("--input-format", options->InputFormat,
       "What the mesh is if it comes from standard input, as an extension")

@@ -189,7 +189,7 @@ void AddMorph(CLI::App& program)
   CLI::App* command = program.add_subcommand("morph",
     "Make the frames in between: images or data on their way from the source to the target");
   const auto options = std::make_shared<Options>();
-  options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair, as for dhm warp");
+  options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair, as for dhm warp");
   command
     ->add_option("-o,--output", options->Output,
       "Name of the frames, with %d or %03d for the number: frame-%03d.png")

@@ -81,7 +81,7 @@ void AddRefine(CLI::App& program)
   CLI::App* command = program.add_subcommand("refine",
     "Make a finer pair whose piecewise linear map is close to the Smooth map, for PROJ and others");
   const auto options = std::make_shared<Options>();
-  options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair, in a plane");
+  options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair, in a plane");
   options->Output.AddTo(*command,
     "The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output");
   command
@@ -139,7 +139,7 @@ void AddConvert(CLI::App& program)
   };
   CLI::App* command = program.add_subcommand("convert", "Write a pair in another format");
   const auto options = std::make_shared<Options>();
-  options->Inputs.AddTo(*command, "FILES", 0, 0, "SOURCE [TARGET]: the pair");
+  options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair");
   options->Output.AddTo(*command,
     "The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a "
     "point array; with "

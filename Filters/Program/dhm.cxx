@@ -6,6 +6,7 @@
 #include "Command.h"
 #include "Console.h"
 #include "Failure.h"
+#include "Help.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,6 +23,7 @@ int main(int argc, char* argv[])
                    "triangles, one to one and "
                    "smoothly, with an exact inverse.",
     "dhm");
+  PrepareHelp(program);
   program.require_subcommand(1);
   program.fallthrough();
   program.set_version_flag("--version", "dhm " DHM_VERSION);
@@ -29,11 +31,16 @@ int main(int argc, char* argv[])
     "-q,--quiet", [] { SetQuiet(true); }, "Say nothing but errors");
   program.footer(
     "A pair of meshes is one file that has both (PROJ's triangulation files, or a mesh with the "
-    "target's positions as a point array) or two files, SOURCE and TARGET. Meshes: .vtp .vtk .vtu "
-    ".obj .off .ply .stl, xmorph's .mesh. - is standard input or output.\n"
+    "target's positions as a point array) or two files, SOURCE and TARGET. Meshes: .json .vtp .vtk "
+    ".vtu .obj .off .ply .stl, xmorph's .mesh. - is standard input or output.\n"
     "Exit status: 0 done (check: yes), 1 the meshes are refused (check: no), 2 wrong usage, 3 a "
     "file "
     "cannot be read or written.\n"
+    "Examples:\n"
+    "dhm check shift.json\n"
+    "dhm map shift.json points.csv -o shifted.csv\n"
+    "dhm map --inverse before.vtp after.vtp measured.vtp -o back.vtp\n"
+    "dhm warp here.obj there.obj photo.png -o warped.png\n"
     "dhm COMMAND --help says more about a command.");
   AddCheck(program);
   AddMap(program);
@@ -43,6 +50,14 @@ int main(int argc, char* argv[])
   AddCoordinates(program);
   AddRefine(program);
   AddConvert(program);
+  // For the build, which makes the manual page.
+  program
+    .add_flag_callback("--manual-page",
+      [&program] {
+        std::cout << ManualPage(program);
+        throw CLI::Success();
+      })
+    ->group("");
 
   try
   {
