@@ -16,6 +16,7 @@
 #include "vtkJPEGWriter.h"
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
+#include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkXMLDataObjectWriter.h"
 #include "vtkXMLGenericDataObjectReader.h"
@@ -24,6 +25,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <initializer_list>
 #include <new>
 
 #include <fcntl.h>
@@ -41,10 +43,10 @@ constexpr std::array<const char*, 8> pictureFormats{ "png", "jpg", "jpeg", "tif"
 constexpr std::array<const char*, 5> xmlFormats{ "vtp", "vtu", "vts", "vti", "vtr" };
 constexpr std::array<const char*, 4> xmlTreeFormats{ "vtm", "vtmb", "vtpd", "vtpc" };
 
-template <typename Formats>
-bool IsOneOf(const std::string& format, const Formats& formats)
+template <typename Value, typename Values>
+bool IsOneOf(const Value& value, const Values& values)
 {
-  return std::find(formats.begin(), formats.end(), format) != formats.end();
+  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 [[noreturn]] void FailToRead(const InputFile& file, const std::string& why)
@@ -154,6 +156,21 @@ void WriteBytes(Writer* writer, vtkDataObject* data, const OutputFile& file)
       static_cast<std::size_t>(bytes->GetNumberOfValues()) });
 }
 
+/// Throws Failure if the pixels are not of these types and numbers of components.
+void RequirePixels(vtkImageData* image, const OutputFile& file, std::initializer_list<int> types,
+  std::initializer_list<int> numbers)
+{
+  vtkDataArray* pixels = image->GetPointData()->GetScalars();
+  const int components = pixels ? pixels->GetNumberOfComponents() : 0;
+  if (!pixels || !IsOneOf(pixels->GetDataType(), types) || !IsOneOf(components, numbers))
+  {
+    throw Failure(REFUSED,
+      "A ." + file.GetFormat() + " picture cannot hold " + std::to_string(components) +
+        " components of " + (pixels ? pixels->GetDataTypeAsString() : "none") +
+        ": write a .vti or .tif.");
+  }
+}
+
 void WritePicture(vtkDataObject* data, const OutputFile& file)
 {
   const std::string& format = file.GetFormat();
@@ -164,8 +181,15 @@ void WritePicture(vtkDataObject* data, const OutputFile& file)
       "A picture (." + format + ") cannot hold a " + data->GetClassName() +
         ": only images are pictures.");
   }
+  if (image->GetDimensions()[2] != 1)
+  {
+    throw Failure(REFUSED,
+      "A picture (." + format + ") has one layer, not " +
+        std::to_string(image->GetDimensions()[2]) + ": write a .vti.");
+  }
   if (format == "png")
   {
+    RequirePixels(image, file, { VTK_UNSIGNED_CHAR, VTK_UNSIGNED_SHORT }, { 1, 2, 3, 4 });
     WriteBytes(vtkNew<vtkPNGWriter>().Get(), data, file);
   }
   else if (format == "tif" || format == "tiff")
@@ -174,6 +198,7 @@ void WritePicture(vtkDataObject* data, const OutputFile& file)
   }
   else if (format == "jpg" || format == "jpeg")
   {
+    RequirePixels(image, file, { VTK_UNSIGNED_CHAR }, { 1, 3 });
     vtkNew<vtkJPEGWriter> writer;
     writer->SetQuality(95);
     WriteBytes(writer.Get(), data, file);

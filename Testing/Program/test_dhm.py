@@ -886,6 +886,35 @@ class Warp(ProgramTest):
         self.assertEqual(self.path("deep.png").read_bytes()[24], 16)
         self.refuse(REFUSED, "warp", "pair.json", "deep.pgm", "-o", "new.pgm", says=("8 bits", ".png"))
 
+    def test_pixels_that_a_picture_cannot_hold(self):
+        write_json(self.path("pair.json"), self.pair)
+        def write_vti(name, layers):
+            values = " ".join(str(k / 7) for k in range(24 * layers))
+            extent = f"0 5 0 3 0 {layers - 1}"
+            self.path(name).write_text(
+                f'<?xml version="1.0"?>\n<VTKFile type="ImageData" version="0.1"><ImageData WholeExtent='
+                f'"{extent}" Origin="0 0 0" Spacing="1 1 1"><Piece Extent="{extent}"><PointData Scalars="s">'
+                f'<DataArray type="Float32" Name="s" format="ascii">{values}</DataArray></PointData></Piece>'
+                "</ImageData></VTKFile>")
+        write_vti("float.vti", 1)
+        write_vti("volume.vti", 2)
+        for extension in ("png", "jpg", "ppm"):
+            self.refuse(REFUSED, "warp", "pair.json", "float.vti", "-o", f"new.{extension}",
+                        says=(f".{extension}", "float", ".vti"))
+        for extension in ("png", "jpg", "ppm", "tif"):
+            self.refuse(REFUSED, "warp", "pair.json", "volume.vti", "-o", f"new.{extension}",
+                        says=("one layer", ".vti"))
+        # Of elevations, say.
+        write_json(self.path("same.json"), self.pair._replace(target=self.pair.source))
+        options = ("--background", "black", "same.json")
+        self.run_dhm("warp", *options, "float.vti", "-o", "a.tif")
+        self.run_dhm("warp", *options, "a.tif", "-o", "b.tif")
+        self.assertEqual(self.path("a.tif").read_bytes(), self.path("b.tif").read_bytes())
+        values = numpy.frombuffer(self.path("a.tif").read_bytes()[-96:], "=f4").reshape(4, 6)[::-1]
+        self.assert_near(values.ravel(), numpy.arange(24) / 7, 1e-6)
+        self.path("deep.pgm").write_bytes(b"P5 2 2 65535\n" + bytes(8))
+        self.refuse(REFUSED, "warp", "pair.json", "deep.pgm", "-o", "new.jpg", says=(".jpg", "short"))
+
     def test_wrong_colours_sizes_and_names(self):
         write_json(self.path("pair.json"), self.pair)
         def refuse(*options, output="new.png", says):
