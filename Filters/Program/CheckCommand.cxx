@@ -263,9 +263,8 @@ void PrintMap(const PairReport& report)
 
 void Print(const PairReport& report, const MeshPair& pair)
 {
-  std::cout << pair.Names[0]
-            << (pair.Names[0] == pair.Names[1] ? std::string() : " and " + pair.Names[1]) << ": "
-            << (report.Valid ? "a valid pair" : "NOT a valid pair") << "\n";
+  std::cout << pair.GetName() << ": " << (report.Valid ? "a valid pair" : "NOT a valid pair")
+            << "\n";
   for (const MeshProblem& problem : report.Problems)
   {
     std::cout << "  - " << Describe(problem) << "\n";
@@ -346,7 +345,7 @@ void AddCheck(CLI::App& program)
     if (!report.Valid)
     {
       // The report has said why.
-      throw Failure(REFUSED, "not a valid pair.");
+      throw Failure(REFUSED, pair.GetName() + ": not a valid pair.");
     }
   });
 }

@@ -10,6 +10,7 @@
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairPicture.h"
+#include "PairReport.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -240,6 +241,7 @@ void MakeFigure(const Options& options)
     throw Failure(WRONG_USAGE, "Figures are .png, .svg or .pdf: " + output.GetName() + " is none.");
   }
   MeshPair pair = options.Inputs.ReadPair(0);
+  RequireMap(pair, options.Map.MaskInvalid);
   vtkSmartPointer<vtkImageData> image;
   if (!options.Image.empty())
   {

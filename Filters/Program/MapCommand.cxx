@@ -192,7 +192,7 @@ void AddMap(CLI::App& program)
         map->SetComputeTriangleId(options->TriangleId);
         map->SetCarryAllVectors(options->CarryAllVectors);
         map->SetCarryVectors(!options->KeepVectors);
-        Run(map, "Mapping");
+        WorkWith(pair, [&] { Run(map, "Mapping"); });
         result = map->GetOutputDataObject(0);
         return map->GetNumberOfOutsidePoints();
       });
@@ -237,7 +237,14 @@ void AddCoordinates(CLI::App& program)
         coordinates->SetInputDataObject(0, mesh);
         coordinates->SetDataObject(data);
         coordinates->GenerateLinesOff();
-        Run(coordinates, "Finding coordinates");
+        try
+        {
+          Run(coordinates, "Finding coordinates");
+        }
+        catch (const Failure& failure)
+        {
+          throw Failure(failure.GetStatus(), options->Files[0] + ": " + failure.what());
+        }
         result = coordinates->GetOutputDataObject(0);
         return coordinates->GetNumberOfOutsidePoints();
       });

@@ -7,6 +7,8 @@
 #ifndef dhm_MeshPair_h
 #define dhm_MeshPair_h
 
+#include "Failure.h"
+
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
@@ -36,9 +38,34 @@ struct MeshPair
   /// that is not known.
   std::array<std::array<double, 2>, 2> XmorphExtents{};
 
+  /// What to call the pair in messages: its files.
+  std::string GetName() const
+  {
+    return this->Names[0] == this->Names[1] ? this->Names[0]
+                                            : this->Names[0] + " and " + this->Names[1];
+  }
+
   vtkPolyData* Source() const { return this->Meshes[0]; }
   vtkPolyData* Target() const { return this->Meshes[1]; }
 };
+
+/// Does work with a pair. Of what is refused meanwhile, the message gets the names of the files.
+template <typename Work>
+auto WorkWith(const MeshPair& pair, Work&& work)
+{
+  try
+  {
+    return work();
+  }
+  catch (const Failure& failure)
+  {
+    if (failure.GetStatus() != REFUSED)
+    {
+      throw;
+    }
+    throw Failure(REFUSED, pair.GetName() + ": " + failure.what());
+  }
+}
 
 /// How pairs are read.
 struct MeshPairOptions

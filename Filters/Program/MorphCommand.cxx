@@ -156,7 +156,7 @@ void Morph(const Options& options)
     data = ReadData(InputFile(options.Data, "vtp"));
   }
   RequireMap(pair, options.Map.MaskInvalid);
-  CheckFolds(pair, options.Frames);
+  WorkWith(pair, [&] { CheckFolds(pair, options.Frames); });
 
   ProgressBar bar("Morphing", options.Frames);
   for (int frame = 0; frame < options.Frames; ++frame)

@@ -520,7 +520,7 @@ void RequireMap(const MeshPair& pair, bool maskInvalid)
         text += (text.empty() ? "" : "\n") + Describe(problem);
       }
     }
-    throw Failure(REFUSED, text);
+    throw Failure(REFUSED, pair.GetName() + ": " + text);
   }
 }
 

@@ -69,8 +69,10 @@ void AddWarp(CLI::App& program)
     const int* to = grid->GetDimensions();
     const std::array<int, 2> sizes[2] = { { from[0], from[1] }, { to[0], to[1] } };
     FitToPictures(pair, sizes[options->Inverse], sizes[!options->Inverse]);
-    const auto warped = WarpImage(
-      image, pair.Source(), pair.Target(), grid, options->Inverse, options->Map, "Warping");
+    const auto warped = WorkWith(pair, [&] {
+      return WarpImage(
+        image, pair.Source(), pair.Target(), grid, options->Inverse, options->Map, "Warping");
+    });
     WriteData(Finish(warped, background), output);
     output.Commit();
   });

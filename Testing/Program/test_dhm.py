@@ -518,7 +518,7 @@ class Map(ProgramTest):
         write_json(self.path("folded.json"), Pair(pair.source, target, pair.triangles))
         write_csv(self.path("points.csv"), self.points)
         result = self.refuse(REFUSED, "map", "folded.json", "points.csv", "-o", "new.csv",
-                             says=("flipped", "--mask-invalid"))
+                             says=("folded.json: ", "flipped", "--mask-invalid"))
         self.assertNotIn("MaskInvalid", result.err)
         table = self.map_points(["folded.json"], self.points, "--mask-invalid")
         valid = table["ValidPointMask"] == 1
@@ -601,7 +601,8 @@ class Coordinates(ProgramTest):
         self.refuse(REFUSED, "coordinates", "--require-inside", "mesh.off", "points.csv", "-o", "new.csv",
                     says="outside")
         write_off(self.path("flat.off"), numpy.array([[0, 0], [1, 1], [2, 2]]), numpy.array([[0, 1, 2]]))
-        self.refuse(REFUSED, "coordinates", "flat.off", "points.csv", "-o", "new.csv", says="area")
+        self.refuse(REFUSED, "coordinates", "flat.off", "points.csv", "-o", "new.csv",
+                    says=("flat.off: ", "area"))
         self.refuse(WRONG_USAGE, "coordinates", "mesh.off", "-o", "new.csv")
         self.refuse(FILE_TROUBLE, "coordinates", "none.off", "points.csv", "-o", "new.csv", says="none.off")
 
@@ -753,7 +754,7 @@ class Check(ProgramTest):
                             ["convert", "a.off", name, "-o", "new.json"],
                             ["morph", "a.off", name, "-o", "new%d.vtp"],
                             ["figure", "a.off", name, "-o", "new.png"]):
-                self.assertTrue(self.refuse(REFUSED, *command).err)
+                self.refuse(REFUSED, *command, says=f"a.off and {name}: ")
 
     def test_a_report_for_people(self):
         write_json(self.path("pair.json"), make_annulus())
@@ -1005,7 +1006,7 @@ class Morph(ProgramTest):
         turned = self.pair._replace(target=[23, 17] - self.pair.source)
         write_json(self.path("turned.json"), turned)
         self.refuse(REFUSED, "morph", "turned.json", "-n", "3", "-o", "new%d.vtp",
-                    says=("24 triangles are turned over", "frame 1", "0.5"))
+                    says=("turned.json: ", "24 triangles are turned over", "frame 1", "0.5"))
         # At none of the frames.
         result = self.run_dhm("morph", "turned.json", "-n", "2", "-o", "two%d.vtp")
         self.assertIn("at none of the frames", result.err)
