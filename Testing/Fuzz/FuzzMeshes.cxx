@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Makes meshes and data of any bytes and sends points through all classes. Whatever the bytes,
+// Makes meshes and data of any bytes and sends points through all classes, or, in FuzzMaps, from raw
+// arrays to mapped points without VTK's pipeline, which is ten times faster. Whatever the bytes,
 // nothing may crash, hang or say that it mapped what it did not: a point inside has an image, and
 // that of the inverse. With FUZZ_SHOW in the environment, prints the meshes that the bytes stand
 // for.
@@ -181,14 +182,6 @@ struct Setting
   bool Inverse;
 };
 
-/// Whether the derivative is promised to be a number: not that of the contours from the incenter of
-/// needles.
-bool HasDerivative(const Setting& setting)
-{
-  return setting.System != vtkDifferentiableHomeomorphism::CONTOUR ||
-    setting.Center != vtkDifferentiableHomeomorphism::INCENTER;
-}
-
 template <typename Algorithm>
 void Configure(Algorithm* algorithm, const Setting& setting)
 {
@@ -240,7 +233,7 @@ void MapDirectly(
     {
       Fail("an image that is not finite");
     }
-    if (HasDerivative(setting) && std::isnan(jacobian.Determinant))
+    if (std::isnan(jacobian.Determinant))
     {
       Fail("a determinant that is not a number");
     }
@@ -301,7 +294,7 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
       {
         Fail("an image that is not finite");
       }
-      if (HasDerivative(setting) && std::isnan(determinant->GetComponent(i, 0)))
+      if (std::isnan(determinant->GetComponent(i, 0)))
       {
         Fail("a determinant that is not a number");
       }
@@ -366,7 +359,11 @@ extern "C" int LLVMFuzzerInitialize(int*, char***)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size)
 {
   Input input(bytes, size);
-  const int way = input.Below(16);
+#ifdef FUZZ_MAPS_ONLY
+  const int way = -1;
+#else
+  const int way = input.Below(8);
+#endif
   const bool mapsTheMesh = input.Chance(4);
   Setting setting;
   setting.System = input.Below(3);
