@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Makes meshes and data of any bytes and sends points through all classes, or, in FuzzMaps, from raw
-// arrays to mapped points without VTK's pipeline, which is ten times faster. Whatever the bytes,
-// nothing may crash, hang or say that it mapped what it did not: a point inside has an image, and
-// that of the inverse. With FUZZ_SHOW in the environment, prints the meshes that the bytes stand
-// for.
+// Makes meshes and data of any bytes and sends points through all classes, or, in FuzzMaps, from
+// raw arrays to mapped points without VTK's pipeline, which is ten times faster. Whatever the
+// bytes, nothing may crash, hang or say that it mapped what it did not: a point inside has an
+// image, and that of the inverse. With FUZZ_SHOW in the environment, prints the meshes that the
+// bytes stand for.
 
 #include "FuzzInput.h"
 
