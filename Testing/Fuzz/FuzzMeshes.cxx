@@ -34,11 +34,13 @@
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <memory>
 
 namespace
 {
@@ -199,18 +201,36 @@ void Configure(Algorithm* algorithm, const Setting& setting)
   algorithm->SetDiscordantTriangles(setting.ByLinear ? 1 : 0);
 }
 
+constexpr double HalfUlp = 0.5 * std::numeric_limits<double>::epsilon();
+
+std::shared_ptr<const homeomorphism::Homeomorphism> MakeMap(vtkPolyData* source,
+  vtkPolyData* target, const Setting& setting, homeomorphism::MeshProblems& problems)
+{
+  homeomorphism::HomeomorphismOptions options;
+  options.System = static_cast<homeomorphism::CoordinateSystem>(setting.System);
+  options.Center = static_cast<homeomorphism::CenterPoint>(setting.Center);
+  options.MaskInvalidTriangles = setting.Mask;
+  options.DiscordantByLinear = setting.ByLinear;
+  return homeomorphism::Homeomorphism::Make(source, target, options, problems);
+}
+
+/// Whether rounding an image may move it out of the domain: not if it is in the mesh, but if it is
+/// as far beside a plane that is parallel to no axes.
+bool IsFarBeside(
+  const homeomorphism::Homeomorphism& map, homeomorphism::Side side, const double image[3])
+{
+  const double largest = std::max({ std::abs(image[0]), std::abs(image[1]), std::abs(image[2]) });
+  const double scale = map.GetPair().GetEmbedding(side).GetScale();
+  return 4.0 * HalfUlp * largest * scale > map.GetReach(side, 0.0, HalfUlp);
+}
+
 /// The floor below the filters, which is far faster.
 void MapDirectly(
   vtkPolyData* source, vtkPolyData* target, vtkPoints* points, const Setting& setting, bool tame)
 {
   using namespace homeomorphism;
-  HomeomorphismOptions options;
-  options.System = static_cast<CoordinateSystem>(setting.System);
-  options.Center = static_cast<CenterPoint>(setting.Center);
-  options.MaskInvalidTriangles = setting.Mask;
-  options.DiscordantByLinear = setting.ByLinear;
   MeshProblems problems;
-  const auto map = Homeomorphism::Make(source, target, options, problems);
+  const auto map = MakeMap(source, target, setting, problems);
   if (!map)
   {
     if (!IsRefused(problems))
@@ -220,12 +240,11 @@ void MapDirectly(
     return;
   }
   const Side from = setting.Inverse ? Side::Target : Side::Source;
-  constexpr double halfUlp = 0.5 * std::numeric_limits<double>::epsilon();
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
     double point[3];
     points->GetPoint(i, point);
-    const Location place = map->Locate(from, point, map->GetReach(from, 0.0, halfUlp), -1);
+    const Location place = map->Locate(from, point, map->GetReach(from, 0.0, HalfUlp), -1);
     if (place.Triangle < 0)
     {
       continue;
@@ -245,8 +264,9 @@ void MapDirectly(
     {
       Fail("a determinant that is not a number");
     }
-    if (map->Locate(Opposite(from), image, map->GetReach(Opposite(from), 0.0, halfUlp), -1)
-          .Triangle < 0)
+    if (!IsFarBeside(*map, Opposite(from), image) &&
+      map->Locate(Opposite(from), image, map->GetReach(Opposite(from), 0.0, HalfUlp), -1).Triangle <
+        0)
     {
       Fail("an image outside the other domain");
     }
@@ -280,6 +300,12 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
     {
       Fail("no mask or no determinant");
     }
+    homeomorphism::MeshProblems problems;
+    const auto map = MakeMap(meshes[0], meshes[1], setting, problems);
+    if (!map)
+    {
+      Fail("meshes taken once and refused then");
+    }
     vtkNew<vtkDifferentiableHomeomorphism> back;
     back->SetSourceData(meshes[0]);
     back->SetTargetData(meshes[1]);
@@ -306,7 +332,8 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
       {
         Fail("a determinant that is not a number");
       }
-      if (!returnedValid || !returnedValid->GetValue(i))
+      const auto to = setting.Inverse ? homeomorphism::Side::Source : homeomorphism::Side::Target;
+      if (!IsFarBeside(*map, to, image) && !(returnedValid && returnedValid->GetValue(i)))
       {
         Fail("an image outside the other domain");
       }
