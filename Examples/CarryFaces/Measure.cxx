@@ -59,16 +59,15 @@ vtkSmartPointer<vtkPolyData> PointsBesideEdges(vtkPolyData* mesh)
   mesh->BuildLinks();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
+  vtkNew<vtkIdList> corners;
   vtkNew<vtkIdList> neighbors;
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
-    vtkIdType count;
-    const vtkIdType* corners;
-    mesh->GetCellPoints(cell, count, corners);
+    mesh->GetCellPoints(cell, corners);
     for (int k = 0; k < 3; ++k)
     {
-      const vtkIdType start = corners[k];
-      const vtkIdType end = corners[(k + 1) % 3];
+      const vtkIdType start = corners->GetId(k);
+      const vtkIdType end = corners->GetId((k + 1) % 3);
       mesh->GetCellEdgeNeighbors(cell, start, end, neighbors);
       if (neighbors->GetNumberOfIds() != 1 || neighbors->GetId(0) < cell)
       {
