@@ -182,9 +182,9 @@ Curve Interpolate(const Curve& points, bool closed)
         0.5 * (2.0 - 5.0 * t * t + 3.0 * t * t * t), 0.5 * (t + 4.0 * t * t - 3.0 * t * t * t),
         0.5 * (-t * t + t * t * t) };
       Point sum{ 0.0, 0.0 };
-      for (std::size_t k = 0; k < weights.size(); ++k)
+      for (std::size_t j = 0; j < weights.size(); ++j)
       {
-        sum = Add(sum, at(i + static_cast<int>(k) - 1), weights[k]);
+        sum = Add(sum, at(i + static_cast<int>(j) - 1), weights[j]);
       }
       curve.push_back(sum);
     }
