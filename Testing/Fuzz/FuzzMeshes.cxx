@@ -62,6 +62,7 @@ vtkSmartPointer<vtkPoints> AnyPoints(Input& input, int count)
     const double y = input.Number();
     points->InsertNextPoint(x, y, inPlane ? 0.0 : input.Number());
   }
+  points->Squeeze();
   return points;
 }
 
@@ -84,6 +85,9 @@ vtkSmartPointer<vtkCellArray> RawCells(Input& input, int count, int points)
     const auto end = static_cast<int>(connectivity->GetNumberOfValues());
     offsets->InsertNextValue(sound ? end : input.Byte() - 8);
   }
+  // Memory ends where the values do, so that reading one more is noticed.
+  offsets->Squeeze();
+  connectivity->Squeeze();
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
   return cells;
@@ -106,6 +110,7 @@ vtkSmartPointer<vtkCellArray> AnyCells(Input& input, int points)
         cells->InsertNextCell({ a, c + 1, c });
       }
     }
+    cells->Squeeze();
     return cells;
   }
   const int count = input.Below(MostCells + 1);
@@ -436,6 +441,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   {
     vectors->InsertNextTuple3(1.0, input.Number(), -1.0);
   }
+  vectors->Squeeze();
   cloud->GetPointData()->SetVectors(vectors);
   if (input.Chance(4))
   {
