@@ -234,7 +234,7 @@ vtkJacobianContinuity::vtkJacobianContinuity()
 
 vtkJacobianContinuity::~vtkJacobianContinuity()
 {
-  this->SetTransform(nullptr);
+  this->vtkJacobianContinuity::SetTransform(nullptr);
 }
 
 void vtkJacobianContinuity::SetTransform(vtkAbstractTransform* transform)
