@@ -8,6 +8,7 @@
 #define homeomorphism_ChartedTriangulation_h
 
 #include "Embedding.h"
+#include "LargeArray.h"
 #include "Triangulation.h"
 
 #include "Kernel/ContourChart.h"
@@ -90,8 +91,8 @@ private:
   const Embedding& Geometry;
   CoordinateSystem System;
   std::vector<std::uint8_t> CarriedByLinear;
-  std::vector<ContourChart> ContourCharts;
-  std::vector<SmoothStrips> Strips;
+  LargeArray<ContourChart> ContourCharts;
+  LargeArray<SmoothStrips> Strips;
 };
 
 } // namespace homeomorphism

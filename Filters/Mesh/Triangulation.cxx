@@ -6,91 +6,85 @@
 #include "Kernel/Geometry.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace homeomorphism
 {
 
-void Triangulation::SetTriangles(std::vector<Corners> triangles, vtkIdType firstCell)
+void Triangulation::SetTriangles(LargeArray<Corners> triangles, vtkIdType firstCell)
 {
   this->Triangles = std::move(triangles);
   this->FirstCell = firstCell;
   this->Masked.assign(this->Triangles.size(), 0);
-  this->Adjacency.assign(this->Triangles.size(), { -1, -1, -1 });
 }
 
 std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints)
 {
-  struct HalfEdge
-  {
-    std::int32_t GreaterPoint;
-    std::int32_t TriangleAndEdge; // triangle * 4 + edge
-  };
   // Half edges are put into one bucket for each point, the lesser of their two; those with the same
-  // greater point in a bucket then are the same edge.
-  const auto lesserPoint = [this](TriangleIndex triangle, int edge) {
-    const Corners& corners = this->Triangles[triangle];
-    return std::min(corners[NextCorner(edge)], corners[PreviousCorner(edge)]);
-  };
-  std::vector<std::int64_t> bucketEnd(static_cast<std::size_t>(numberOfPoints) + 1, 0);
+  // greater point in a bucket then are the same edge. A half edge is one number, for sorting: the
+  // greater point, then triangle * 8 + edge * 2 + whether it runs from the lesser to the greater.
+  constexpr int bits = 31;
+  static_assert(MaximumTriangles * 8 <= (vtkIdType(1) << bits), "The codes of half edges");
   const TriangleIndex count = this->GetNumberOfTriangles();
+  LargeArray<std::int32_t> bucketEnd(static_cast<std::size_t>(numberOfPoints) + 1, 0);
+  this->Adjacency = LargeArray<std::array<std::int32_t, 3>>(this->Triangles.size(), { -1, -1, -1 });
   for (TriangleIndex t = 0; t < count; ++t)
   {
-    this->Adjacency[t] = { -1, -1, -1 };
+    const Corners& corners = this->Triangles[t];
     for (int k = 0; k < 3 && !this->Masked[t]; ++k)
     {
-      ++bucketEnd[lesserPoint(t, k) + 1];
+      ++bucketEnd[std::min(corners[NextCorner(k)], corners[PreviousCorner(k)]) + 1];
     }
   }
   for (vtkIdType i = 0; i < numberOfPoints; ++i)
   {
     bucketEnd[i + 1] += bucketEnd[i];
   }
-  std::vector<HalfEdge> halfEdges(bucketEnd[numberOfPoints]);
+  LargeArray<std::uint64_t> halfEdges(bucketEnd[numberOfPoints]);
   // Filling moves the start of each bucket, kept in bucketEnd, to its end.
   for (TriangleIndex t = 0; t < count; ++t)
   {
+    const Corners& corners = this->Triangles[t];
     for (int k = 0; k < 3 && !this->Masked[t]; ++k)
     {
-      const Corners& corners = this->Triangles[t];
-      const std::int32_t greater = std::max(corners[NextCorner(k)], corners[PreviousCorner(k)]);
-      halfEdges[bucketEnd[lesserPoint(t, k)]++] = { greater, t * 4 + k };
+      const std::int32_t start = corners[NextCorner(k)];
+      const std::int32_t end = corners[PreviousCorner(k)];
+      const auto greater = static_cast<std::uint64_t>(std::max(start, end));
+      halfEdges[bucketEnd[std::min(start, end)]++] =
+        (greater << bits) + static_cast<std::uint64_t>(t * 8 + k * 2 + (start < end ? 1 : 0));
     }
   }
 
+  const auto codeOf = [](std::uint64_t halfEdge) {
+    return static_cast<std::int32_t>(halfEdge & ((std::uint64_t(1) << bits) - 1));
+  };
+  this->MixedWinding = false;
   std::vector<TriangleIndex> crowded;
-  std::int64_t begin = 0;
+  std::uint64_t* begin = halfEdges.begin();
   for (vtkIdType i = 0; i < numberOfPoints; ++i)
   {
-    const std::int64_t end = bucketEnd[i];
-    std::sort(
-      halfEdges.begin() + begin, halfEdges.begin() + end, [](const HalfEdge& a, const HalfEdge& b) {
-        return a.GreaterPoint != b.GreaterPoint ? a.GreaterPoint < b.GreaterPoint
-                                                : a.TriangleAndEdge < b.TriangleAndEdge;
-      });
-    for (std::int64_t first = begin; first < end;)
+    std::uint64_t* const end = halfEdges.begin() + bucketEnd[i];
+    std::sort(begin, end);
+    for (const std::uint64_t* first = begin; first < end;)
     {
-      std::int64_t last = first + 1;
-      while (last < end && halfEdges[last].GreaterPoint == halfEdges[first].GreaterPoint)
+      const std::uint64_t* last = first + 1;
+      while (last < end && *last >> bits == *first >> bits)
       {
         ++last;
       }
       if (last - first == 2)
       {
-        const std::int32_t a = halfEdges[first].TriangleAndEdge;
-        const std::int32_t b = halfEdges[first + 1].TriangleAndEdge;
-        const auto start = [this](std::int32_t code) {
-          return this->Triangles[code >> 2][NextCorner(code & 3)];
-        };
-        const std::int32_t same = start(a) == start(b) ? 1 : 0;
-        this->Adjacency[a >> 2][a & 3] = (b >> 2) * 8 + (b & 3) * 2 + same;
-        this->Adjacency[b >> 2][b & 3] = (a >> 2) * 8 + (a & 3) * 2 + same;
+        const std::int32_t a = codeOf(first[0]);
+        const std::int32_t b = codeOf(first[1]);
+        const std::int32_t same = (a & 1) == (b & 1) ? 1 : 0;
+        this->Adjacency[a >> 3][(a >> 1) & 3] = (b & ~1) + same;
+        this->Adjacency[b >> 3][(b >> 1) & 3] = (a & ~1) + same;
+        this->MixedWinding = this->MixedWinding || same != 0;
       }
       else if (last - first > 2)
       {
-        for (std::int64_t i2 = first; i2 < last; ++i2)
-        {
-          crowded.push_back(halfEdges[i2].TriangleAndEdge >> 2);
-        }
+        std::transform(first, last, std::back_inserter(crowded),
+          [&codeOf](std::uint64_t halfEdge) { return codeOf(halfEdge) >> 3; });
       }
       first = last;
     }
@@ -103,6 +97,10 @@ std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints
 
 std::vector<TriangleIndex> Triangulation::FindNotOrientable() const
 {
+  if (!this->MixedWinding)
+  {
+    return {};
+  }
   const TriangleIndex count = this->GetNumberOfTriangles();
   constexpr std::int8_t unknown = 0;
   std::vector<std::int8_t> winding(count, unknown);

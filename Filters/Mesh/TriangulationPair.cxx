@@ -101,11 +101,11 @@ private:
 
   void ReadTopology()
   {
-    std::vector<Triangulation::Corners> triangles =
+    LargeArray<Triangulation::Corners> triangles =
       ReadTriangles(this->Meshes[0], this->Names[0], this->Problems);
     if (this->Meshes[1])
     {
-      const std::vector<Triangulation::Corners> others =
+      const LargeArray<Triangulation::Corners> others =
         ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
       if (!IsRefused(this->Problems))
       {
