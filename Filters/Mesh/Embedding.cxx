@@ -6,6 +6,7 @@
 #include "Kernel/EdgeLanes.h"
 #include "Kernel/ExactSign.h"
 
+#include "vtkDoubleArray.h"
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkType.h"
@@ -70,6 +71,39 @@ EdgeView PlaneView(const Vector2& start, const Vector2& end, const Vector2& oppo
 
 } // namespace
 
+/// The points of a mesh times a power of two, read where they are.
+class Embedding::MeshPoints
+{
+public:
+  explicit MeshPoints(vtkPoints* points)
+    : Points(points)
+  {
+    auto* doubles = vtkArrayDownCast<vtkDoubleArray>(points->GetData());
+    this->Doubles = doubles ? doubles->GetPointer(0) : nullptr;
+  }
+
+  void SetScale(double scale) { this->Scale = scale; }
+
+  Vector3 operator[](vtkIdType i) const
+  {
+    Vector3 p;
+    if (this->Doubles)
+    {
+      std::copy_n(this->Doubles + 3 * i, 3, p.begin());
+    }
+    else
+    {
+      this->Points->GetPoint(i, p.data());
+    }
+    return Scaled(p, this->Scale);
+  }
+
+private:
+  vtkPoints* Points;
+  const double* Doubles;
+  double Scale = 1.0;
+};
+
 Embedding::Embedding(
   vtkPoints* points, const Triangulation& triangulation, const Embedding* companion)
 {
@@ -88,42 +122,43 @@ Embedding::Embedding(
 
   // A point with a coordinate that is not finite counts neither for the scale nor for the plane;
   // the triangles that use it are found by IsFinite.
-  LargeArray<Vector3> positions(count);
+  MeshPoints positions(points);
   double largest = 0.0;
+  Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
+  Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
   for (vtkIdType i = 0; i < count; ++i)
   {
-    points->GetPoint(i, positions[i].data());
     if (!used[i])
     {
       continue;
     }
-    const Vector3& p = positions[i];
+    const Vector3 p = positions[i];
     if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
     {
       used[i] = 0;
       this->Finite = false;
       continue;
     }
-    largest = std::max({ largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      least[axis] = std::min(least[axis], p[axis]);
+      greatest[axis] = std::max(greatest[axis], p[axis]);
+    }
+  }
+  for (int axis = 0; axis < 3 && least[0] <= greatest[0]; ++axis)
+  {
+    largest = std::max({ largest, std::abs(least[axis]), std::abs(greatest[axis]) });
   }
   if (largest > 0.0)
   {
     this->InverseScale = PowerOfTwoNear(largest);
     this->Scale = 1.0 / this->InverseScale;
   }
-  Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
-  Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    positions[i] = Scaled(positions[i], this->Scale);
-    for (int axis = 0; axis < 3 && used[i]; ++axis)
-    {
-      least[axis] = std::min(least[axis], positions[i][axis]);
-      greatest[axis] = std::max(greatest[axis], positions[i][axis]);
-    }
-  }
+  positions.SetScale(this->Scale);
   this->LargestCoordinate = largest * this->Scale;
-  this->Diagonal = largest > 0.0 ? Length(Difference(greatest, least)) : 0.0;
+  this->Diagonal = largest > 0.0
+    ? Length(Difference(Scaled(greatest, this->Scale), Scaled(least, this->Scale)))
+    : 0.0;
 
   this->FindPlane(positions, used, companion);
   if (this->Planar)
@@ -131,7 +166,7 @@ Embedding::Embedding(
     this->PlanePoints = LargeArray<Vector2>(count);
     for (vtkIdType i = 0; i < count; ++i)
     {
-      const Vector3& p = positions[i];
+      const Vector3 p = positions[i];
       const Vector3 working = this->AxisParallel
         ? Vector3{ p[this->AxisOrder[0]], p[this->AxisOrder[1]], p[this->AxisOrder[2]] }
         : this->ToTiltedPlane(p);
@@ -150,7 +185,11 @@ Embedding::Embedding(
   }
   if (!this->AxisParallel)
   {
-    this->SpacePoints = std::move(positions);
+    this->SpacePoints = LargeArray<Vector3>(count);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      this->SpacePoints[i] = positions[i];
+    }
   }
 }
 
@@ -168,8 +207,8 @@ void Embedding::FindOrientations(const Triangulation& triangulation)
   });
 }
 
-void Embedding::FindPlane(const LargeArray<Vector3>& points, const std::vector<std::uint8_t>& used,
-  const Embedding* companion)
+void Embedding::FindPlane(
+  const MeshPoints& points, const std::vector<std::uint8_t>& used, const Embedding* companion)
 {
   const auto isTurnedAway = [companion](const Vector3& normal) {
     // Not for planes that are at right angles to rounding, where either side is as good.
@@ -183,13 +222,13 @@ void Embedding::FindPlane(const LargeArray<Vector3>& points, const std::vector<s
     this->PlaneAxes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
     return;
   }
-  const Vector3& origin = points[first - used.begin()];
+  const Vector3 origin = points[first - used.begin()];
 
   // Parallel to two axes? z first, so that a mesh in a line counts as drawn in the xy plane.
   for (const int normalAxis : { 2, 1, 0 })
   {
     bool constant = true;
-    for (std::size_t i = 0; i < points.size() && constant; ++i)
+    for (std::size_t i = 0; i < used.size() && constant; ++i)
     {
       constant = !used[i] || points[i][normalAxis] == origin[normalAxis];
     }
@@ -218,7 +257,7 @@ void Embedding::FindPlane(const LargeArray<Vector3>& points, const std::vector<s
   // line.
   Vector3 along{};
   double farthest = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
     const Vector3 d = Difference(points[i], origin);
     if (used[i] && Length(d) > farthest)
@@ -229,7 +268,7 @@ void Embedding::FindPlane(const LargeArray<Vector3>& points, const std::vector<s
   }
   Vector3 normal{};
   double widest = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
     const Vector3 c = Cross3(along, Difference(points[i], origin));
     if (used[i] && Length(c) > widest)
@@ -245,7 +284,7 @@ void Embedding::FindPlane(const LargeArray<Vector3>& points, const std::vector<s
   {
     return;
   }
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
     if (used[i] && std::abs(Dot3(normal, Difference(points[i], origin))) > spread)
     {

@@ -253,8 +253,9 @@ private:
   Vector3 FromTiltedPlane(const Vector3& working) const;
   /// The corner opposite the longest edge; the first of equals.
   int FindApex(const Triangulation::Corners& corners) const;
-  void FindPlane(const LargeArray<Vector3>& points, const std::vector<std::uint8_t>& used,
-    const Embedding* companion);
+  class MeshPoints;
+  void FindPlane(
+    const MeshPoints& points, const std::vector<std::uint8_t>& used, const Embedding* companion);
   void FindOrientations(const Triangulation& triangulation);
   void ComputePlaneFrames(
     const Triangulation& triangulation, TriangleIndex begin, TriangleIndex end);

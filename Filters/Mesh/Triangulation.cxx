@@ -7,68 +7,77 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace homeomorphism
 {
 
-void Triangulation::SetTriangles(LargeArray<Corners> triangles, vtkIdType firstCell)
+void Triangulation::SetTriangles(
+  LargeArray<Corners> triangles, vtkIdType firstCell, LargeArray<Corners> scratch)
 {
   this->Triangles = std::move(triangles);
+  this->Adjacency = std::move(scratch);
   this->FirstCell = firstCell;
   this->Masked.assign(this->Triangles.size(), 0);
 }
 
 std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints)
 {
-  // Half edges are put into one bucket for each point, the lesser of their two; those with the same
-  // greater point in a bucket then are the same edge. A half edge is one number, for sorting: the
-  // greater point, then triangle * 8 + edge * 2 + whether it runs from the lesser to the greater.
-  constexpr int bits = 31;
-  static_assert(MaximumTriangles * 8 <= (vtkIdType(1) << bits), "The codes of half edges");
+  // Half edges are put into one list for each point, the lesser of their two; those with the same
+  // greater point in a list then are the same edge. A half edge's code is triangle * 8 + edge * 2 +
+  // whether it runs from the lesser to the greater point; what is to become its adjacency has the
+  // code of the next in its list meanwhile.
   const TriangleIndex count = this->GetNumberOfTriangles();
-  LargeArray<std::int32_t> bucketEnd(static_cast<std::size_t>(numberOfPoints) + 1, 0);
-  this->Adjacency = LargeArray<std::array<std::int32_t, 3>>(this->Triangles.size(), { -1, -1, -1 });
+  if (this->Adjacency.size() != this->Triangles.size())
+  {
+    this->Adjacency = LargeArray<Corners>(this->Triangles.size());
+  }
+  LargeArray<std::int32_t> lists(static_cast<std::size_t>(numberOfPoints), -1);
   for (TriangleIndex t = 0; t < count; ++t)
   {
     const Corners& corners = this->Triangles[t];
-    for (int k = 0; k < 3 && !this->Masked[t]; ++k)
+    for (int k = 0; k < 3; ++k)
     {
-      ++bucketEnd[std::min(corners[NextCorner(k)], corners[PreviousCorner(k)]) + 1];
-    }
-  }
-  for (vtkIdType i = 0; i < numberOfPoints; ++i)
-  {
-    bucketEnd[i + 1] += bucketEnd[i];
-  }
-  LargeArray<std::uint64_t> halfEdges(bucketEnd[numberOfPoints]);
-  // Filling moves the start of each bucket, kept in bucketEnd, to its end.
-  for (TriangleIndex t = 0; t < count; ++t)
-  {
-    const Corners& corners = this->Triangles[t];
-    for (int k = 0; k < 3 && !this->Masked[t]; ++k)
-    {
-      const std::int32_t start = corners[NextCorner(k)];
-      const std::int32_t end = corners[PreviousCorner(k)];
-      const auto greater = static_cast<std::uint64_t>(std::max(start, end));
-      halfEdges[bucketEnd[std::min(start, end)]++] =
-        (greater << bits) + static_cast<std::uint64_t>(t * 8 + k * 2 + (start < end ? 1 : 0));
+      this->Adjacency[t][k] = -1;
+      if (!this->Masked[t])
+      {
+        const std::int32_t start = corners[NextCorner(k)];
+        const std::int32_t end = corners[PreviousCorner(k)];
+        std::int32_t& list = lists[std::min(start, end)];
+        this->Adjacency[t][k] = list;
+        list = t * 8 + k * 2 + (start < end ? 1 : 0);
+      }
     }
   }
 
+  this->MixedWinding = false;
+  std::vector<TriangleIndex> crowded;
+  // The half edges of a point: the greater point above the code, so that sorting brings those of an
+  // edge together, in the order of their triangles.
+  constexpr int bits = 31;
+  static_assert(MaximumTriangles * 8 <= (vtkIdType(1) << bits), "The codes of half edges");
+  std::vector<std::uint64_t> halfEdges;
   const auto codeOf = [](std::uint64_t halfEdge) {
     return static_cast<std::int32_t>(halfEdge & ((std::uint64_t(1) << bits) - 1));
   };
-  this->MixedWinding = false;
-  std::vector<TriangleIndex> crowded;
-  std::uint64_t* begin = halfEdges.begin();
-  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  for (const std::int32_t list : lists)
   {
-    std::uint64_t* const end = halfEdges.begin() + bucketEnd[i];
-    std::sort(begin, end);
-    for (const std::uint64_t* first = begin; first < end;)
+    halfEdges.clear();
+    for (std::int32_t code = list; code >= 0;)
     {
-      const std::uint64_t* last = first + 1;
-      while (last < end && *last >> bits == *first >> bits)
+      const TriangleIndex t = code >> 3;
+      const int k = (code >> 1) & 3;
+      const Corners& corners = this->Triangles[t];
+      const auto greater =
+        static_cast<std::uint64_t>(std::max(corners[NextCorner(k)], corners[PreviousCorner(k)]));
+      halfEdges.push_back((greater << bits) + static_cast<std::uint64_t>(code));
+      code = std::exchange(this->Adjacency[t][k], -1);
+    }
+    std::sort(halfEdges.begin(), halfEdges.end());
+    for (auto first = halfEdges.begin(); first != halfEdges.end();)
+    {
+      auto last = first + 1;
+      while (last != halfEdges.end() && *last >> bits == *first >> bits)
       {
         ++last;
       }
@@ -88,7 +97,6 @@ std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints
       }
       first = last;
     }
-    begin = end;
   }
   std::sort(crowded.begin(), crowded.end());
   crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());

@@ -80,8 +80,10 @@ public:
   /// Asks for what GetAcross will need, without waiting for it.
   void PrefetchAcross(TriangleIndex triangle) const { Prefetch(&this->Adjacency[triangle]); }
 
-  /// What lies across the edges is not known until FindAdjacency.
-  void SetTriangles(LargeArray<Corners> triangles, vtkIdType firstCell);
+  /// What lies across the edges is not known until FindAdjacency. @a scratch is an array of the
+  /// same size that is no longer needed, whose memory can be used again.
+  void SetTriangles(
+    LargeArray<Corners> triangles, vtkIdType firstCell, LargeArray<Corners> scratch = {});
   void Mask(TriangleIndex triangle) { this->Masked[triangle] = 1; }
 
   /// Finds what lies across each edge. Linear in the number of triangles. Masked triangles take no
@@ -100,7 +102,7 @@ private:
   LargeArray<Corners> Triangles;
   std::vector<std::uint8_t> Masked;
   // Neighbour, its edge and the direction in one number: triangle * 8 + edge * 2 + same direction.
-  LargeArray<std::array<std::int32_t, 3>> Adjacency;
+  LargeArray<Corners> Adjacency;
   bool MixedWinding = false;
   vtkIdType FirstCell = 0;
 };
