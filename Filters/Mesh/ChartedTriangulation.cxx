@@ -190,20 +190,18 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   std::vector<std::uint8_t> carriedByLinear)
   : Geometry(embedding)
   , System(system)
+  , Center(center)
   , CarriedByLinear(std::move(carriedByLinear))
 {
   if (system == CoordinateSystem::Contour)
   {
     const TriangleIndex count = triangulation.GetNumberOfTriangles();
-    this->ContourCharts = LargeArray<ContourChart>(count);
+    this->ContourViews = LargeArray<EdgeViews>(count);
     vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
       for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
       {
-        // That of a masked triangle has no meaning.
-        this->ContourCharts[t] = triangulation.IsMasked(t)
-          ? ContourChart::Equilateral()
-          : ContourChart(
-              embedding.GetShape(t), embedding.GetViews(triangulation.GetCorners(t)), center);
+        this->ContourViews[t] =
+          triangulation.IsMasked(t) ? EdgeViews{} : embedding.GetViews(triangulation.GetCorners(t));
       }
     });
   }

@@ -30,7 +30,8 @@ std::array<Neighbor, 3> UnfoldNeighbors(
 std::vector<TriangleIndex> FindDiscordant(
   const Triangulation& triangulation, const Embedding& embedding);
 
-/// Charts of all triangles of one embedding. Immutable; any number of threads may use it.
+/// Charts of all triangles of one embedding, made as they are asked for from what is expensive to
+/// find. Immutable; any number of threads may use it.
 class ChartedTriangulation
 {
 public:
@@ -55,9 +56,10 @@ public:
   {
     return LinearChart(this->Geometry.GetShape(triangle));
   }
-  const ContourChart& GetContourChart(TriangleIndex triangle) const
+  ContourChart GetContourChart(TriangleIndex triangle) const
   {
-    return this->ContourCharts[triangle];
+    return ContourChart(
+      this->Geometry.GetShape(triangle), this->ContourViews[triangle], this->Center);
   }
   SmoothChart GetSmoothChart(TriangleIndex triangle) const
   {
@@ -90,8 +92,10 @@ public:
 private:
   const Embedding& Geometry;
   CoordinateSystem System;
+  CenterPoint Center;
   std::vector<std::uint8_t> CarriedByLinear;
-  LargeArray<ContourChart> ContourCharts;
+  // A third of the charts' size, from which they are quickly made.
+  LargeArray<EdgeViews> ContourViews;
   LargeArray<SmoothStrips> Strips;
 };
 
