@@ -265,9 +265,13 @@ void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const 
   {
     const bool is0 = lanes.Corner[i] == 0;
     const bool is1 = lanes.Corner[i] == 1;
-    first[i] = is0 ? lanes.L[0][i] : (is1 ? lanes.L[2][i] : lanes.L[1][i]);
-    second[i] = is0 ? lanes.L[1][i] : (is1 ? lanes.L[0][i] : lanes.L[2][i]);
-    third[i] = is0 ? lanes.L[2][i] : (is1 ? lanes.L[1][i] : lanes.L[0][i]);
+    // Read whatever the corner is: to read or not to read takes longer.
+    const double k = lanes.L[0][i];
+    const double next = lanes.L[1][i];
+    const double previous = lanes.L[2][i];
+    first[i] = is0 ? k : (is1 ? previous : next);
+    second[i] = is0 ? next : (is1 ? k : previous);
+    third[i] = is0 ? previous : (is1 ? next : k);
   }
 }
 
