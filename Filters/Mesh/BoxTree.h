@@ -206,7 +206,7 @@ private:
       scale[axis] = length > 0.0 ? std::ldexp(1.0, bits) * (1.0 - 1e-9) / length : 0.0;
       scale[axis] = std::isfinite(scale[axis]) ? scale[axis] : 0.0;
     }
-    std::vector<Entry> entries(this->Triangles.size());
+    LargeArray<Entry> entries(this->Triangles.size());
     for (std::size_t i = 0; i < entries.size(); ++i)
     {
       const BoxType box = boxOf(this->Triangles[i]);
@@ -221,7 +221,7 @@ private:
     // Digit by digit, from the least significant one.
     constexpr int digitBits = 11;
     constexpr std::size_t digits = std::size_t(1) << digitBits;
-    std::vector<Entry> sorted(entries.size());
+    LargeArray<Entry> sorted(entries.size());
     for (int shift = 0; shift < Dimension * bits; shift += digitBits)
     {
       std::array<std::size_t, digits + 1> start{};
@@ -237,7 +237,7 @@ private:
       {
         sorted[start[(entry.Code >> shift) & (digits - 1)]++] = entry;
       }
-      entries.swap(sorted);
+      std::swap(entries, sorted);
     }
     for (std::size_t i = 0; i < entries.size(); ++i)
     {

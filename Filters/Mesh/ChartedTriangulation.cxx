@@ -35,10 +35,16 @@ public:
 
   void Add(TriangleIndex triangle, int edge, const AcrossEdge& across)
   {
-    this->Turned[this->Count] = !across.SameDirection;
-    this->First.Add(this->Topology, this->Geometry, triangle, edge, this->Count);
-    this->Second.Add(this->Topology, this->Geometry, across.Triangle, across.Edge, this->Count);
-    ++this->Count;
+    const int i = this->Count++;
+    const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
+    const Triangulation::Corners& others = this->Topology.GetCorners(across.Triangle);
+    const Vector2& start = this->Geometry.GetPlanePoint(corners[NextCorner(edge)]);
+    const Vector2& end = this->Geometry.GetPlanePoint(corners[PreviousCorner(edge)]);
+    this->First.Set(i, triangle, edge, start, end, this->Geometry.GetPlanePoint(corners[edge]));
+    const bool turned = !across.SameDirection;
+    this->Turned[i] = turned;
+    this->Second.Set(i, across.Triangle, across.Edge, turned ? end : start, turned ? start : end,
+      this->Geometry.GetPlanePoint(others[across.Edge]));
     if (this->Count == EdgeLanes)
     {
       this->Finish();
@@ -69,15 +75,14 @@ private:
     /// What they are to the triangles on the other side.
     ViewLanes Unfolded;
 
-    void Add(const Triangulation& triangulation, const Embedding& embedding, TriangleIndex triangle,
-      int edge, int i)
+    void Set(int i, TriangleIndex triangle, int edge, const Vector2& start, const Vector2& end,
+      const Vector2& opposite)
     {
-      const Triangulation::Corners& corners = triangulation.GetCorners(triangle);
       this->Triangles[i] = triangle;
       this->Edges[i] = edge;
-      this->Starts.Set(i, embedding.GetPlanePoint(corners[NextCorner(edge)]));
-      this->Ends.Set(i, embedding.GetPlanePoint(corners[PreviousCorner(edge)]));
-      this->Opposites.Set(i, embedding.GetPlanePoint(corners[edge]));
+      this->Starts.Set(i, start);
+      this->Ends.Set(i, end);
+      this->Opposites.Set(i, opposite);
     }
 
     void Look(const bool* turned, int count)

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -48,8 +49,13 @@ public:
     std::fill(this->begin(), this->end(), value);
   }
 
-  /// A copy, for meshes written down element by element.
+  /// Copies, for meshes written down element by element.
   LargeArray(const std::vector<T>& elements)
+    : LargeArray(elements.size())
+  {
+    std::copy(elements.begin(), elements.end(), this->begin());
+  }
+  LargeArray(std::initializer_list<T> elements)
     : LargeArray(elements.size())
   {
     std::copy(elements.begin(), elements.end(), this->begin());
