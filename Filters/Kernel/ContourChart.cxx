@@ -309,8 +309,11 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
 
 ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
   : Unit(PowerOfTwoNear(shape.Base))
-  , Shape{ shape.Base / Unit, shape.ApexX / Unit, shape.Height / Unit, shape.Apex }
 {
+  // Powers of two: to multiply by the reciprocal rounds no more than to divide.
+  const double overUnit = 1.0 / this->Unit;
+  this->Shape = { shape.Base * overUnit, shape.ApexX * overUnit, shape.Height * overUnit,
+    shape.Apex };
   if (center == CenterPoint::Centroid)
   {
     this->CenterWeights = { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 };
@@ -330,8 +333,7 @@ ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, C
   }
   for (int k = 0; k < 3; ++k)
   {
-    const EdgeView view{ views[k].Length / this->Unit, views[k].Foot,
-      views[k].Height / this->Unit };
+    const EdgeView view{ views[k].Length * overUnit, views[k].Foot, views[k].Height * overUnit };
     Edge& edge = this->Edges[k];
     edge.Start = this->Shape.Corner(NextCorner(k));
     edge.Length = view.Length;
