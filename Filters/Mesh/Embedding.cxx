@@ -502,7 +502,7 @@ void Embedding::ComputePlaneFrames(
     frame.ApexX = shape.ApexX;
     frame.Height = shape.Height;
     frame.Apex = shape.Apex;
-    frame.Side = this->Orientations[t];
+    frame.Side = this->GetOrientation(t);
   }
 }
 

@@ -50,7 +50,7 @@ public:
   }
 
   /// Copies, for meshes written down element by element.
-  LargeArray(const std::vector<T>& elements)
+  LargeArray(const std::vector<T>& elements) // NOLINT(google-explicit-constructor)
     : LargeArray(elements.size())
   {
     std::copy(elements.begin(), elements.end(), this->begin());
