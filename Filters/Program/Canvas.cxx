@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <cairo-pdf.h>
@@ -31,14 +32,13 @@ public:
   Internals(double width, double height, const OutputFile& file)
     : File(file)
   {
-    const std::string& name = file.GetTemporaryName();
     if (file.GetFormat() == "svg")
     {
-      this->Surface = cairo_svg_surface_create(name.c_str(), width, height);
+      this->Surface = cairo_svg_surface_create_for_stream(&Internals::Keep, this, width, height);
     }
     else if (file.GetFormat() == "pdf")
     {
-      this->Surface = cairo_pdf_surface_create(name.c_str(), width, height);
+      this->Surface = cairo_pdf_surface_create_for_stream(&Internals::Keep, this, width, height);
     }
     else
     {
@@ -105,7 +105,15 @@ public:
     }
   }
 
+  /// Cairo's own files are closed without a look at whether all could be written.
+  static cairo_status_t Keep(void* self, const unsigned char* bytes, unsigned int count)
+  {
+    static_cast<Internals*>(self)->Bytes.append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  }
+
   const OutputFile& File;
+  std::string Bytes;
   cairo_surface_t* Surface;
   cairo_t* Context;
 };
@@ -281,7 +289,7 @@ void Canvas::Finish()
   cairo_status_t status = cairo_status(this->Internal->Context);
   if (status == CAIRO_STATUS_SUCCESS && this->Internal->File.GetFormat() == "png")
   {
-    status = cairo_surface_write_to_png(surface, this->Internal->File.GetTemporaryName().c_str());
+    status = cairo_surface_write_to_png_stream(surface, &Internals::Keep, this->Internal.get());
   }
   cairo_surface_finish(surface);
   if (status == CAIRO_STATUS_SUCCESS)
@@ -294,6 +302,7 @@ void Canvas::Finish()
       "Cannot write " + this->Internal->File.GetName() + ": " + cairo_status_to_string(status) +
         ".");
   }
+  this->Internal->File.Write(this->Internal->Bytes);
 }
 
 } // namespace dhm

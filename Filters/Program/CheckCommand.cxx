@@ -328,7 +328,7 @@ void AddCheck(CLI::App& program)
     const PairReport report = CheckPair(pair, extent);
     if (options->Machine)
     {
-      std::cout << ToJson(report, pair).dump(2) << "\n";
+      std::cout << ToJson(report, pair).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     }
     else
     {

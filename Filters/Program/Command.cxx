@@ -6,32 +6,75 @@
 #include "Console.h"
 #include "Failure.h"
 #include "ImageWarp.h"
+#include "Numbers.h"
+#include "OutputFile.h"
 
 #include "vtkAlgorithm.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <functional>
 #include <utility>
 
 namespace dhm
 {
 
+namespace
+{
+
+CLI::Validator NumberWhich(const std::string& expected, const std::function<bool(double)>& isRight)
+{
+  const auto check = [expected, isRight](const std::string& text) {
+    const auto number = ToNumber(text);
+    return number && std::isfinite(*number) && isRight(*number)
+      ? std::string()
+      : "expected " + expected + ", found \"" + text + "\"";
+  };
+  return CLI::Validator(check, "");
+}
+
+int ReadSystem(const std::string& name)
+{
+  for (int system = 0; system < 3; ++system)
+  {
+    if (CLI::detail::to_lower(SystemNames[system]) == CLI::detail::to_lower(name))
+    {
+      return system;
+    }
+  }
+  throw CLI::ValidationError(
+    "--system", "expected smooth, contour or linear, found \"" + name + "\"");
+}
+
+} // namespace
+
+CLI::Validator PositiveNumber()
+{
+  return NumberWhich("a number greater than 0", [](double number) { return number > 0.0; });
+}
+
+CLI::Validator NonNegativeNumber()
+{
+  return NumberWhich("a number not less than 0", [](double number) { return number >= 0.0; });
+}
+
+CLI::Validator NumberFrom(double least, double largest)
+{
+  return NumberWhich("a number from " + ToText(least) + " to " + ToText(largest),
+    [least, largest](double number) { return number >= least && number <= largest; });
+}
+
 const char* const SystemNames[3] = { "Linear", "Contour", "Smooth" };
 
 void MapOptions::AddTo(CLI::App& command)
 {
-  static const std::map<std::string, int> systems{ { "linear",
-                                                     vtkDifferentiableHomeomorphism::LINEAR },
-    { "contour", vtkDifferentiableHomeomorphism::CONTOUR },
-    { "smooth", vtkDifferentiableHomeomorphism::SMOOTH } };
   command
-    .add_option("-s,--system", this->System,
+    .add_option_function<std::string>(
+      "-s,--system", [this](const std::string& name) { this->System = ReadSystem(name); },
       "Coordinate system: smooth (default; twice continuously differentiable), contour (the "
-      "published "
-      "construction) or linear (the piecewise linear map)")
-    ->transform(CLI::CheckedTransformer(systems, CLI::ignore_case).description(""))
+      "published construction) or linear (the piecewise linear map)")
     ->type_name("NAME")
     ->group("Map");
   command
@@ -51,7 +94,7 @@ void MapOptions::AddTo(CLI::App& command)
       "How far outside a point may be and still be taken to the nearest point of the domain, as a "
       "proportion "
       "of the domain's diagonal (default: rounding only)")
-    ->check(CLI::NonNegativeNumber.description(""))
+    ->check(NonNegativeNumber())
     ->type_name("NUMBER")
     ->group("Map");
 }

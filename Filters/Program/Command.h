@@ -19,6 +19,7 @@ class vtkAlgorithm;
 namespace CLI
 {
 class App;
+class Validator;
 }
 
 namespace dhm
@@ -96,6 +97,14 @@ struct OutputOptions
 /// Runs a filter with a progress bar. Throws Failure with its errors; shows its warnings, if
 /// wanted.
 void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings = true);
+
+/// @name Checks of numbers on the command line
+/// What is no finite number in the range is wrong usage. (CLI11's own take nan for one.)
+///@{
+CLI::Validator PositiveNumber();
+CLI::Validator NonNegativeNumber();
+CLI::Validator NumberFrom(double least, double largest);
+///@}
 
 /// A message of the module's classes, with the program's options in the place of their setters.
 std::string NameOptions(std::string message);

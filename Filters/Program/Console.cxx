@@ -3,8 +3,8 @@
 
 #include "Console.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkCallbackCommand.h"
+#include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
@@ -28,7 +28,7 @@ bool isQuiet = false;
 std::string Unwrap(const std::string& text)
 {
   static const std::regex wrapping(
-    "^(ERROR|Warning): In [^\\n]*, line [0-9]+\\n[^\\n]*?\\(0x[0-9a-f]+\\): ");
+    "^(ERROR|Warning|Generic Warning): In [^\\n]*, line [0-9]+\\n([^\\n]*?\\(0x[0-9a-f]+\\): )?");
   std::string message = std::regex_replace(text, wrapping, "");
   while (!message.empty() && message.back() == '\n')
   {
@@ -76,6 +76,8 @@ MessageKeeper* Keeper()
 void CaptureVtkMessages()
 {
   vtkOutputWindow::SetInstance(Keeper());
+  // It would show them at once, with times and addresses, besides.
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
 }
 
 std::string TakeErrors()
@@ -93,11 +95,53 @@ void SetQuiet(bool quiet)
   isQuiet = quiet;
 }
 
+std::string Printable(const std::string& text)
+{
+  std::string printable;
+  for (std::size_t i = 0; i < text.size();)
+  {
+    const auto byte = [&text](std::size_t k) {
+      return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
+    };
+    const unsigned int first = byte(i);
+    std::size_t length = first < 0x80u  ? 1u
+      : first >= 0xC2u && first < 0xE0u ? 2u
+      : first >= 0xE0u && first < 0xF0u ? 3u
+      : first >= 0xF0u && first < 0xF5u ? 4u
+                                        : 0u;
+    for (std::size_t k = 1; k < length; ++k)
+    {
+      length = byte(i + k) >= 0x80u && byte(i + k) < 0xC0u ? length : 0u;
+    }
+    const bool control =
+      length == 1 && first != '\n' && first != '\t' && (first < ' ' || first == 127u);
+    if (length == 0 || control)
+    {
+      constexpr char digits[] = "0123456789abcdef";
+      printable += "\\x";
+      printable += digits[first / 16u];
+      printable += digits[first % 16u];
+      ++i;
+    }
+    else
+    {
+      printable.append(text, i, length);
+      i += length;
+    }
+  }
+  return printable;
+}
+
+void Complain(const std::string& message)
+{
+  std::cerr << "dhm: " << Printable(message) << std::endl;
+}
+
 void Warn(const std::string& message)
 {
   if (!isQuiet)
   {
-    std::cerr << "dhm: warning: " << message << std::endl;
+    Complain("warning: " + message);
   }
 }
 
@@ -105,7 +149,7 @@ void Remark(const std::string& message)
 {
   if (!isQuiet)
   {
-    std::cerr << "dhm: " << message << std::endl;
+    Complain(message);
   }
 }
 
@@ -119,6 +163,10 @@ ProgressBar::ProgressBar(std::string what, int steps)
 
 ProgressBar::~ProgressBar()
 {
+  if (this->Followed)
+  {
+    this->Followed->RemoveObserver(this->Observer);
+  }
   if (this->Visible)
   {
     // Back to the line's beginning, and erase it.
@@ -133,7 +181,8 @@ void ProgressBar::Follow(vtkAlgorithm* algorithm)
   follower->SetCallback([](vtkObject*, unsigned long, void* bar, void* progress) {
     static_cast<ProgressBar*>(bar)->Show(*static_cast<double*>(progress));
   });
-  algorithm->AddObserver(vtkCommand::ProgressEvent, follower);
+  this->Observer = algorithm->AddObserver(vtkCommand::ProgressEvent, follower);
+  this->Followed = algorithm;
 }
 
 void ProgressBar::Advance()

@@ -8,9 +8,10 @@
 #ifndef dhm_Console_h
 #define dhm_Console_h
 
-#include <string>
+#include "vtkAlgorithm.h"
+#include "vtkSmartPointer.h"
 
-class vtkAlgorithm;
+#include <string>
 
 namespace dhm
 {
@@ -28,6 +29,13 @@ std::string TakeWarnings();
 /// Whether warnings, progress and remarks are kept back.
 void SetQuiet(bool quiet);
 
+/// Text without what would confuse a terminal: control characters and bytes that are no UTF-8 (of
+/// damaged files that messages quote) as \\x...
+std::string Printable(const std::string& text);
+
+/// An error message.
+void Complain(const std::string& message);
+
 void Warn(const std::string& message);
 
 /// Something worth knowing that is no warning.
@@ -44,7 +52,8 @@ public:
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Shows what @a algorithm says of its progress, as a part of the current step.
+  /// Shows what @a algorithm says of its progress, as a part of the current step. To be called
+  /// once.
   void Follow(vtkAlgorithm* algorithm);
 
   /// The current step is done.
@@ -59,6 +68,8 @@ private:
   int Done = 0;
   int ShownPercent = -1;
   bool Visible;
+  vtkSmartPointer<vtkAlgorithm> Followed;
+  unsigned long Observer = 0;
 };
 
 } // namespace dhm

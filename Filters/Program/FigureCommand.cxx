@@ -22,6 +22,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <sstream>
 
@@ -150,8 +151,9 @@ std::vector<double> ReadCloseUp(const std::string& text)
   for (std::string word; std::getline(list, word, ',');)
   {
     const auto value = ToNumber(word);
-    if (!value)
+    if (!value || !std::isfinite(*value))
     {
+      values.clear();
       break;
     }
     values.push_back(*value);
@@ -334,7 +336,7 @@ void AddFigure(CLI::App& program)
   command
     ->add_option("--grid", options->GridLines,
       "Number of grid lines along the longer side, less one (default: 16)")
-    ->check(CLI::Range(1, 500).description(""))
+    ->check(NumberFrom(1, 500))
     ->type_name("NUMBER")
     ->group("Results");
   command
@@ -351,7 +353,7 @@ void AddFigure(CLI::App& program)
     ->type_name("X,Y,R")
     ->group("Results");
   command->add_option("--width", options->Width, "Width of a panel in pixels (default: 420)")
-    ->check(CLI::Range(50.0, 5000.0).description(""))
+    ->check(NumberFrom(50, 5000))
     ->type_name("NUMBER")
     ->group("Results");
   command->callback([options] { MakeFigure(*options); });

@@ -196,4 +196,38 @@ std::string ManualPage(const CLI::App& program)
   return page.str();
 }
 
+std::string DescribeUsageError(const CLI::App& program, const CLI::ParseError& error)
+{
+  const auto called = program.get_subcommands();
+  std::string what = error.what();
+  const auto left = program.remaining();
+  if (called.empty() && !left.empty() && left[0].compare(0, 1, "-") != 0)
+  {
+    what = "There is no command \"" + left[0] + "\"; the commands are";
+    for (const CLI::App* command : program.get_subcommands({}))
+    {
+      what += " " + command->get_name();
+    }
+  }
+  else if (called.empty() && !left.empty())
+  {
+    what = "There is no option " + left[0];
+  }
+  else if (called.empty())
+  {
+    what = "What is to be done? Name a command";
+  }
+  // The files are called in messages as they are in the help.
+  const std::string files = "FILES";
+  if (!called.empty() && what.compare(0, files.size(), files) == 0)
+  {
+    what.replace(0, files.size(), called[0]->get_option(files)->get_type_name());
+  }
+  if (what.back() != '.')
+  {
+    what += '.';
+  }
+  return what + " See dhm " + (called.empty() ? "" : called[0]->get_name() + " ") + "--help.";
+}
+
 } // namespace dhm

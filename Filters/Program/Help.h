@@ -12,6 +12,7 @@
 namespace CLI
 {
 class App;
+class ParseError;
 }
 
 namespace dhm
@@ -23,6 +24,9 @@ void PrepareHelp(CLI::App& program);
 
 /// The manual page, in the language of troff (man(7)).
 std::string ManualPage(const CLI::App& program);
+
+/// What is wrong with the command line, and where more is said.
+std::string DescribeUsageError(const CLI::App& program, const CLI::ParseError& error);
 
 } // namespace dhm
 

@@ -4,6 +4,7 @@
 #include "ImageWarp.h"
 
 #include "Command.h"
+#include "DataFile.h"
 #include "Failure.h"
 #include "Numbers.h"
 
@@ -128,6 +129,26 @@ Background ReadBackground(const std::string& text)
         "\" is no colour: transparent, white, black, or #rrggbb, such as #ff8000 for orange.");
   }
   return color;
+}
+
+Background ReadBackgroundFor(const std::string& format, const std::string& text)
+{
+  if (!IsPicture(format) && format != "vti")
+  {
+    throw Failure(WRONG_USAGE,
+      "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
+  }
+  const bool opaque = format[0] == 'j' || (format[0] == 'p' && format != "png");
+  const Background background = ReadBackground(!text.empty() ? text
+      : opaque                                               ? "white"
+                                                             : "transparent");
+  if (!background && opaque)
+  {
+    throw Failure(WRONG_USAGE,
+      "A ." + format +
+        " picture cannot be transparent: give it another --background, or write a .png.");
+  }
+  return background;
 }
 
 std::array<int, 2> ReadSize(const std::string& text)

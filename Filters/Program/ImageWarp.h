@@ -28,6 +28,10 @@ using Background = std::optional<std::array<double, 3>>;
 /// Understands "transparent", "white", "black" and "#rrggbb". Throws Failure.
 Background ReadBackground(const std::string& text);
 
+/// The background of an image in a file of this format; white or transparent, as it can be, for an
+/// empty text. Throws Failure if the format is none of images, or cannot be transparent.
+Background ReadBackgroundFor(const std::string& format, const std::string& text);
+
 /// Understands WIDTHxHEIGHT, both from 1 to 100000; two zeros for an empty text. Throws Failure.
 std::array<int, 2> ReadSize(const std::string& text);
 

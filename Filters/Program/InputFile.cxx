@@ -8,13 +8,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-
-#include <unistd.h>
+#include <system_error>
 
 namespace dhm
 {
@@ -35,18 +33,18 @@ InputFile::InputFile(const std::string& name, const std::string& format)
 {
   if (name == "-")
   {
-    std::string pattern =
-      (std::filesystem::temp_directory_path() / ("dhm-XXXXXX." + format)).string();
-    const int descriptor = mkstemps(pattern.data(), static_cast<int>(format.size()) + 1);
-    if (descriptor < 0)
+    try
     {
-      throw Failure(
-        FILE_TROUBLE, "Cannot keep standard input: " + std::string(std::strerror(errno)) + ".");
+      this->Temporary.emplace(
+        (std::filesystem::temp_directory_path() / "dhm-").string(), "." + format);
     }
-    close(descriptor);
-    this->Path = pattern;
-    this->Temporary = true;
-    std::ofstream copy(pattern, std::ios::binary);
+    catch (const std::system_error& error)
+    {
+      throw Failure(FILE_TROUBLE,
+        "Cannot keep standard input: " + std::string(std::strerror(error.code().value())) + ".");
+    }
+    this->Path = this->Temporary->GetName();
+    std::ofstream copy(this->Path, std::ios::binary);
     if (std::cin.peek() != std::char_traits<char>::eof())
     {
       copy << std::cin.rdbuf();
@@ -54,10 +52,13 @@ InputFile::InputFile(const std::string& name, const std::string& format)
     copy.close();
     if (!copy)
     {
-      unlink(pattern.c_str());
       throw Failure(FILE_TROUBLE, "Cannot keep standard input: no room for it.");
     }
     return;
+  }
+  if (name.empty())
+  {
+    throw Failure(WRONG_USAGE, "The name of an input file is empty.");
   }
   std::error_code error;
   if (std::filesystem::is_directory(name, error))
@@ -67,14 +68,6 @@ InputFile::InputFile(const std::string& name, const std::string& format)
   if (!std::ifstream(name))
   {
     throw Failure(FILE_TROUBLE, "Cannot open " + name + ": " + std::strerror(errno) + ".");
-  }
-}
-
-InputFile::~InputFile()
-{
-  if (this->Temporary)
-  {
-    unlink(this->Path.c_str());
   }
 }
 

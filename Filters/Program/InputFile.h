@@ -7,6 +7,9 @@
 #ifndef dhm_InputFile_h
 #define dhm_InputFile_h
 
+#include "TemporaryFile.h"
+
+#include <optional>
 #include <string>
 
 namespace dhm
@@ -20,7 +23,6 @@ public:
   /// @a format is the extension that says what standard input holds. Throws Failure if there is no
   /// such file, or it cannot be read.
   InputFile(const std::string& name, const std::string& format);
-  ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
@@ -35,7 +37,7 @@ private:
   std::string Name;
   std::string Path;
   std::string Format;
-  bool Temporary = false;
+  std::optional<TemporaryFile> Temporary;
 };
 
 /// The extension of a file name in lower case, without the dot; empty if it has none.

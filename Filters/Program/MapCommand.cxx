@@ -32,6 +32,8 @@ struct DataOptions
   std::string Columns;
   std::string DataFormat = "csv";
   bool RequireInside = false;
+  /// Whether images do not stay images.
+  bool MovesPoints = false;
 
   void AddTo(CLI::App& command)
   {
@@ -88,6 +90,12 @@ struct DataOptions
     {
       CheckOutputFormat(output.GetFormat());
     }
+    if (IsPicture(output.GetFormat()) && this->MovesPoints)
+    {
+      throw Failure(WRONG_USAGE,
+        "Points that have moved are no picture (." + output.GetFormat() +
+          "): of images, write a .vts, or use dhm warp.");
+    }
 
     vtkSmartPointer<vtkDataObject> result;
     const vtkIdType outside = work(data, result);
@@ -108,7 +116,7 @@ struct DataOptions
       text.close();
       if (!text)
       {
-        throw Failure(FILE_TROUBLE, "Cannot write " + output.GetName() + ": no room for it.");
+        output.FailForWantOfRoom();
       }
     }
     else
@@ -142,6 +150,7 @@ void AddMap(CLI::App& program)
     "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu "
     ".vts .vtr .vti "
     ".vtm .vtk, or a picture, whose pixels move as points (to warp it, use dhm warp)");
+  options->Data.MovesPoints = true;
   options->Data.AddTo(*command);
   options->Map.AddTo(*command);
   command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")

@@ -8,6 +8,8 @@
 #include "Failure.h"
 #include "InputFile.h"
 #include "OutputFile.h"
+#include "PlyMesh.h"
+#include "StlMesh.h"
 #include "TextMesh.h"
 #include "TriangulationFile.h"
 #include "XmorphMesh.h"
@@ -18,10 +20,8 @@
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
-#include "vtkPLYReader.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
-#include "vtkSTLReader.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <fstream>
@@ -45,20 +45,6 @@ auto ReadXmorph(Read&& read)
   {
     throw Failure(FILE_TROUBLE, error.what());
   }
-}
-
-template <typename Reader>
-vtkSmartPointer<vtkPolyData> ReadWith(Reader* reader, const InputFile& file)
-{
-  reader->SetFileName(file.GetPath().c_str());
-  reader->Update();
-  const std::string errors = TakeErrors();
-  if (!errors.empty() || reader->GetOutput()->GetNumberOfPoints() == 0)
-  {
-    throw Failure(FILE_TROUBLE,
-      "Cannot read " + file.GetName() + (errors.empty() ? ": no points in it." : ": " + errors));
-  }
-  return reader->GetOutput();
 }
 
 /// An unstructured grid's cells as polygons.
@@ -87,21 +73,14 @@ vtkSmartPointer<vtkPolyData> ToPolygons(vtkUnstructuredGrid* grid, const std::st
 vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
 {
   const std::string& format = file.GetFormat();
-  if (format == "obj" || format == "off")
+  using Read = vtkSmartPointer<vtkPolyData> (*)(std::istream & text, const std::string& name);
+  static const std::map<std::string, Read> readers{ { "obj", ReadObj }, { "off", ReadOff },
+    { "ply", ReadPly }, { "stl", ReadStl } };
+  const auto reader = readers.find(format);
+  if (reader != readers.end())
   {
-    std::ifstream text(file.GetPath());
-    return format == "obj" ? ReadObj(text, file.GetName()) : ReadOff(text, file.GetName());
-  }
-  if (format == "ply")
-  {
-    return ReadWith(vtkNew<vtkPLYReader>().Get(), file);
-  }
-  if (format == "stl")
-  {
-    // Each triangle has points of its own; see JoinPoints.
-    vtkNew<vtkSTLReader> reader;
-    reader->MergingOff();
-    return ReadWith(reader.Get(), file);
+    std::ifstream bytes(file.GetPath(), std::ios::binary);
+    return reader->second(bytes, file.GetName());
   }
   if (format != "vtp" && format != "vtk" && format != "vtu")
   {
@@ -213,7 +192,10 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
 
 } // namespace
 
-MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptions& options)
+namespace
+{
+
+MeshPair ReadAnyPair(const std::vector<std::string>& files, const MeshPairOptions& options)
 {
   if (files.size() == 1)
   {
@@ -270,6 +252,27 @@ MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptio
   return pair;
 }
 
+/// A file without triangles, such as one of points, was hardly meant.
+void RequireTriangles(vtkPolyData* mesh, const std::string& name)
+{
+  if (mesh->GetNumberOfPolys() == 0 && mesh->GetNumberOfStrips() == 0)
+  {
+    throw Failure(FILE_TROUBLE, name + " has no triangles: it is no mesh.");
+  }
+}
+
+} // namespace
+
+MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptions& options)
+{
+  MeshPair pair = ReadAnyPair(files, options);
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    RequireTriangles(pair.Meshes[side], pair.Names[side]);
+  }
+  return pair;
+}
+
 vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::string& inputFormat)
 {
   const InputFile file(fileName, inputFormat);
@@ -285,7 +288,9 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::st
       return CutIntoTriangles(mesh, mesh)[0];
     });
   }
-  return ReadMesh(file);
+  auto mesh = ReadMesh(file);
+  RequireTriangles(mesh, file.GetName());
+  return mesh;
 }
 
 void FitToPictures(
@@ -340,9 +345,16 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
     text.close();
     if (!text)
     {
-      throw Failure(FILE_TROUBLE, "Cannot write " + file.GetName() + ": no room for it.");
+      file.FailForWantOfRoom();
     }
     return;
+  }
+  if (file.GetFormat() != "vtp" && file.GetFormat() != "vtk")
+  {
+    throw Failure(WRONG_USAGE,
+      "Cannot write a pair as ." + file.GetFormat() +
+        ": the formats are .json, .vtp and .vtk; with the target in a file of its own "
+        "(--target-output of dhm convert) .vtp, .vtk, .obj and .off.");
   }
   vtkNew<vtkPolyData> both;
   both->ShallowCopy(pair.Source());
@@ -357,10 +369,16 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
 
 void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
 {
-  if (file.GetFormat() != "obj" && file.GetFormat() != "off")
+  if (file.GetFormat() == "vtp" || file.GetFormat() == "vtk")
   {
     WriteData(mesh, file);
     return;
+  }
+  if (file.GetFormat() != "obj" && file.GetFormat() != "off")
+  {
+    throw Failure(WRONG_USAGE,
+      "Cannot write a mesh as ." + file.GetFormat() +
+        ": the formats are .vtp, .vtk, .obj and .off.");
   }
   std::ofstream text(file.GetTemporaryName(), std::ios::binary);
   if (file.GetFormat() == "obj")
@@ -374,7 +392,7 @@ void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
   text.close();
   if (!text)
   {
-    throw Failure(FILE_TROUBLE, "Cannot write " + file.GetName() + ": no room for it.");
+    file.FailForWantOfRoom();
   }
 }
 

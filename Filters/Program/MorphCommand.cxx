@@ -16,7 +16,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <regex>
 
@@ -67,7 +67,7 @@ struct Options
   std::string Data;
   int Frames = 11;
   std::string Size;
-  std::string Background = "transparent";
+  std::string Background;
 };
 
 /// Refuses frames whose meshes are folded, and says at which times others would be.
@@ -110,9 +110,23 @@ void Morph(const Options& options)
   {
     throw Failure(WRONG_USAGE, "Morph either images or data (--data), not both.");
   }
-  if (images && !IsPicture(format) && format != "vti")
+  const Background background =
+    images ? ReadBackgroundFor(format, options.Background) : Background();
+  if (!images)
   {
-    throw Failure(WRONG_USAGE, "Cannot write images as ." + format + ".");
+    CheckOutputFormat(format);
+  }
+  if (!options.Replace)
+  {
+    // None is written if not all can be.
+    for (int frame = 0; frame < options.Frames; ++frame)
+    {
+      if (std::filesystem::exists(names.Get(frame)))
+      {
+        throw Failure(
+          FILE_TROUBLE, names.Get(frame) + " exists. Use --force to replace such frames.");
+      }
+    }
   }
   MeshPair pair = options.Inputs.ReadPair(0);
   std::array<vtkSmartPointer<vtkImageData>, 2> pictures;
@@ -143,7 +157,6 @@ void Morph(const Options& options)
   }
   RequireMap(pair, options.Map.MaskInvalid);
   CheckFolds(pair, options.Frames);
-  const Background background = ReadBackground(options.Background);
 
   ProgressBar bar("Morphing", options.Frames);
   for (int frame = 0; frame < options.Frames; ++frame)
@@ -214,7 +227,7 @@ void AddMorph(CLI::App& program)
   command
     ->add_option("-n,--frames", options->Frames,
       "Number of frames, the first and the last included (default: 11)")
-    ->check(CLI::Range(2, 100000).description(""))
+    ->check(NumberFrom(2, 100000))
     ->type_name("NUMBER")
     ->group("Results");
   command
@@ -224,7 +237,9 @@ void AddMorph(CLI::App& program)
     ->group("Results");
   command
     ->add_option("--background", options->Background,
-      "Colour outside the domain: transparent (default), white, black or #rrggbb")
+      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
+      "or "
+      "#rrggbb")
     ->type_name("COLOUR")
     ->group("Results");
   options->Map.AddTo(*command);

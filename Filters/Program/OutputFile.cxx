@@ -6,20 +6,13 @@
 #include "Failure.h"
 #include "InputFile.h"
 
-#include <algorithm>
 #include <cerrno>
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
-#include <iterator>
 #include <system_error>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace dhm
@@ -29,51 +22,6 @@ namespace
 
 namespace files = std::filesystem;
 
-/// Names of the files that an interrupt must remove: signal handlers can use no more than plain
-/// arrays. One command writes at most two files at a time.
-constexpr int maximumFiles = 4;
-constexpr std::size_t maximumLength = 4096;
-char unfinished[maximumFiles][maximumLength] = {};
-
-extern "C" void RemoveUnfinished(int signal)
-{
-  for (const auto& name : unfinished)
-  {
-    if (name[0] != '\0')
-    {
-      unlink(name);
-    }
-  }
-  // The default action ends the program as the signal's sender expects.
-  std::signal(signal, SIG_DFL);
-  raise(signal);
-}
-
-void Remember(const std::string& name)
-{
-  for (auto& slot : unfinished)
-  {
-    if (slot[0] == '\0' && name.size() < maximumLength)
-    {
-      std::copy(name.begin() + 1, name.end(), slot + 1);
-      slot[name.size()] = '\0';
-      slot[0] = name[0];
-      return;
-    }
-  }
-}
-
-void Forget(const std::string& name)
-{
-  for (auto& slot : unfinished)
-  {
-    if (name == slot)
-    {
-      slot[0] = '\0';
-    }
-  }
-}
-
 /// Pipes and devices are written to, not replaced.
 bool IsWrittenThrough(const std::string& name)
 {
@@ -82,22 +30,21 @@ bool IsWrittenThrough(const std::string& name)
 
 } // namespace
 
+std::string OutputFormatOf(const std::string& name, const std::string& format)
+{
+  const std::string own = name == "-" ? "" : FormatOf(name);
+  return own.empty() && IsWrittenThrough(name) ? format : own;
+}
+
 OutputFile::OutputFile(const std::string& name, const std::string& format, bool replace)
   : Name(name)
-  , Format(name == "-" ? format : FormatOf(name))
+  , Format(OutputFormatOf(name, format))
+  , Replace(replace)
 {
-  static const bool prepared = [] {
-    for (const int signal : { SIGINT, SIGTERM, SIGHUP })
-    {
-      std::signal(signal, RemoveUnfinished);
-    }
-    // A limit on the size of files, or a reader that has gone, is an error like others.
-    std::signal(SIGXFSZ, SIG_IGN);
-    std::signal(SIGPIPE, SIG_IGN);
-    return true;
-  }();
-  (void)prepared;
-
+  if (name.empty())
+  {
+    throw Failure(WRONG_USAGE, "The output's name is empty.");
+  }
   std::error_code error;
   if (files::is_directory(name, error))
   {
@@ -111,31 +58,17 @@ OutputFile::OutputFile(const std::string& name, const std::string& format, bool 
   const files::path folder = IsWrittenThrough(name) ? files::temp_directory_path()
     : path.has_parent_path()                        ? path.parent_path()
                                                     : files::path(".");
-  // The extension stays at the end: some writers look at it.
-  const std::string ending = "." + this->Format;
-  std::string pattern =
-    (folder / ("." + path.filename().string() + ".unfinished-XXXXXX" + ending)).string();
-  const int descriptor = mkstemps(pattern.data(), static_cast<int>(ending.size()));
-  if (descriptor < 0)
+  try
+  {
+    // The extension stays at the end: some writers look at it.
+    this->Temporary.emplace(
+      (folder / ("." + path.filename().string() + ".unfinished-")).string(), "." + this->Format);
+  }
+  catch (const std::system_error& failed)
   {
     throw Failure(FILE_TROUBLE,
-      "Cannot write " + name + ": " + std::strerror(errno) + " (" + folder.string() + ").");
-  }
-  // As other new files, not only for the owner.
-  const mode_t mask = umask(0);
-  umask(mask);
-  fchmod(descriptor, 0666 & ~mask);
-  close(descriptor);
-  this->TemporaryName = pattern;
-  Remember(this->TemporaryName);
-}
-
-OutputFile::~OutputFile()
-{
-  if (!this->TemporaryName.empty())
-  {
-    unlink(this->TemporaryName.c_str());
-    Forget(this->TemporaryName);
+      "Cannot write " + this->GetName() + ": " + std::strerror(failed.code().value()) + " (" +
+        folder.string() + ").");
   }
 }
 
@@ -149,7 +82,7 @@ void OutputFile::Commit()
 {
   if (IsWrittenThrough(this->Name))
   {
-    std::ifstream written(this->TemporaryName, std::ios::binary);
+    std::ifstream written(this->GetTemporaryName(), std::ios::binary);
     const int descriptor =
       this->Name == "-" ? dup(STDOUT_FILENO) : open(this->Name.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0)
@@ -179,14 +112,33 @@ void OutputFile::Commit()
     return;
   }
   // Some file systems find out only now that there is no room.
-  const int descriptor = open(this->TemporaryName.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0 ||
-    std::rename(this->TemporaryName.c_str(), this->Name.c_str()) != 0)
+  const int descriptor = open(this->GetTemporaryName().c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0)
   {
     this->FailToWrite(errno);
   }
-  Forget(this->TemporaryName);
-  this->TemporaryName.clear();
+  const int error = this->Temporary->Rename(this->Name, this->Replace);
+  if (error != 0)
+  {
+    this->FailToWrite(error);
+  }
+}
+
+void OutputFile::Write(std::string_view contents) const
+{
+  std::ofstream file(this->GetTemporaryName(), std::ios::binary);
+  file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  file.close();
+  if (!file)
+  {
+    this->FailForWantOfRoom();
+  }
+}
+
+void OutputFile::FailForWantOfRoom() const
+{
+  throw Failure(FILE_TROUBLE,
+    "Cannot write " + this->GetName() + ": there is no room for it, or more than a file may take.");
 }
 
 } // namespace dhm

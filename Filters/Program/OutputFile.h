@@ -7,32 +7,40 @@
 #ifndef dhm_OutputFile_h
 #define dhm_OutputFile_h
 
+#include "TemporaryFile.h"
+
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace dhm
 {
 
 /// A file to be written: somebody writes to GetTemporaryName(), in the same folder, and Commit
-/// gives it its name. What is not committed is removed, on interrupts (SIGINT, SIGTERM, SIGHUP) as
-/// well.
-/// "-" is standard output, to which Commit copies.
+/// gives it its name. What is not committed is removed, on interrupts as well. "-" is standard
+/// output, to which Commit copies, as it does to pipes and devices.
 class OutputFile
 {
 public:
-  /// @a format is the extension that says what standard output is to hold; other files' names say
-  /// it themselves. Throws Failure if there is a file of that name and it is not to be replaced, or
-  /// the folder does not exist or cannot be written to.
+  /// @a format is the extension that says what standard output, or a pipe or device whose name does
+  /// not say it, is to hold. Throws Failure if there is a file of that name and it is not to be
+  /// replaced, or the folder does not exist or cannot be written to.
   OutputFile(const std::string& name, const std::string& format, bool replace);
-  ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   /// What to open.
-  const std::string& GetTemporaryName() const { return this->TemporaryName; }
+  const std::string& GetTemporaryName() const { return this->Temporary->GetName(); }
   /// What to call it in messages.
   std::string GetName() const { return this->Name == "-" ? "standard output" : this->Name; }
   /// The extension in lower case, without the dot.
   const std::string& GetFormat() const { return this->Format; }
+
+  /// Writes all of it. Throws Failure.
+  void Write(std::string_view contents) const;
+
+  /// Throws the Failure to say that the disk is full.
+  [[noreturn]] void FailForWantOfRoom() const;
 
   /// Throws Failure if what was written cannot be brought to the disk or to standard output.
   void Commit();
@@ -42,8 +50,13 @@ private:
 
   std::string Name;
   std::string Format;
-  std::string TemporaryName;
+  bool Replace;
+  std::optional<TemporaryFile> Temporary;
 };
+
+/// The format of an output of this name: its extension or, of standard output, and of pipes and
+/// devices without an extension, @a format.
+std::string OutputFormatOf(const std::string& name, const std::string& format);
 
 } // namespace dhm
 

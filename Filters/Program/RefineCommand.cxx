@@ -88,13 +88,13 @@ void AddRefine(CLI::App& program)
     ->add_option("-t,--within", options->Tolerance,
       "How far from the map the piecewise linear map may be anywhere, in the target's units")
     ->required()
-    ->check(CLI::PositiveNumber.description(""))
+    ->check(PositiveNumber())
     ->type_name("DISTANCE")
     ->group("Results");
   command
     ->add_option(
       "--most-triangles", options->MostTriangles, "Give up beyond this number (default: 2000000)")
-    ->check(CLI::PositiveNumber.description(""))
+    ->check(PositiveNumber())
     ->type_name("NUMBER")
     ->group("Results");
   options->Map.AddTo(*command);
@@ -155,6 +155,11 @@ void AddConvert(CLI::App& program)
     ->group("Results");
   command->callback([options] {
     const OutputOptions& names = options->Output.Output;
+    if (options->TargetOutput == names.Name)
+    {
+      throw Failure(
+        WRONG_USAGE, "Source and target cannot both go to " + names.Name + " (--target-output).");
+    }
     OutputFile output(names.Name, names.Format, names.Replace);
     std::unique_ptr<OutputFile> target;
     if (!options->TargetOutput.empty())

@@ -510,6 +510,15 @@ Refinement Refine(
   // margin for what is farther between their points.
   constexpr std::array<int, 3> divisions{ 6, 20, 33 };
   const std::array<double, 3> limits{ 0.8 * tolerance, 0.8 * tolerance, tolerance };
+  const auto requireFew = [&](double reached) {
+    if (refiner.GetNumberOfParts() > mostTriangles)
+    {
+      throw Failure(REFUSED,
+        "More than " + std::to_string(mostTriangles) + " triangles are needed to be within " +
+          ToText(tolerance) + " everywhere (" + ToText(reached) +
+          " was reached): ask for a larger distance, or allow more (--most-triangles).");
+    }
+  };
   ProgressBar bar("Refining");
   std::vector<std::size_t> parts = refiner.GetParts();
   for (std::size_t look = 0; look < divisions.size();)
@@ -521,6 +530,7 @@ Refinement Refine(
     {
       largest = std::max(largest, distance.Largest);
     }
+    requireFew(largest);
     if (largest <= limits[look])
     {
       ++look;
@@ -535,13 +545,7 @@ Refinement Refine(
       {
         refiner.Divide(parts[i], distances[i], limits[look]);
       }
-      if (refiner.GetNumberOfParts() > mostTriangles)
-      {
-        throw Failure(REFUSED,
-          "More than " + std::to_string(mostTriangles) + " triangles are needed to be within " +
-            ToText(tolerance) + " everywhere (" + ToText(largest) +
-            " was reached): ask for a larger distance, or allow more (--most-triangles).");
-      }
+      requireFew(largest);
     }
     refiner.MapNewPoints();
     parts = refiner.GetParts();

@@ -101,7 +101,7 @@ private:
   {
     throw Failure(FILE_TROUBLE,
       this->FileName + ": " + this->Member + "[" + std::to_string(row) + "]: expected " + expected +
-        ", found " + (*this->Rows)[row].dump() + ".");
+        ", found " + (*this->Rows)[row].dump(-1, ' ', false, Json::error_handler_t::replace) + ".");
   }
 
   std::string FileName;
@@ -143,8 +143,9 @@ TriangulationFile ReadTriangulationFile(std::istream& file, const std::string& f
     : "";
   if (type != "triangulation_file")
   {
-    throw Failure(
-      FILE_TROUBLE, fileName + " is no triangulation file: its \"file_type\" is \"" + type + "\".");
+    throw Failure(FILE_TROUBLE,
+      fileName + " is no triangulation file: its \"file_type\" is \"" + type +
+        "\", not \"triangulation_file\".");
   }
   const auto version = document.find("format_version");
   if (version == document.end() || !version->is_string() ||
@@ -220,7 +221,7 @@ void WriteTriangulationFile(
   document["triangles_columns"] = { "idx_vertex1", "idx_vertex2", "idx_vertex3" };
 
   // The members one below the other, then the tables, a row to a line.
-  std::string text = document.dump(2);
+  std::string text = document.dump(2, ' ', false, Json::error_handler_t::replace);
   text.erase(text.rfind('\n'));
   file << text << ",\n  \"vertices\": [";
   for (vtkIdType i = 0; i < source->GetNumberOfPoints(); ++i)

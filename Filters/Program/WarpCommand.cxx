@@ -3,7 +3,6 @@
 
 #include "Command.h"
 #include "DataFile.h"
-#include "Failure.h"
 #include "ImageWarp.h"
 #include "InputFile.h"
 #include "OutputFile.h"
@@ -60,21 +59,8 @@ void AddWarp(CLI::App& program)
                   "says.");
   command->callback([options] {
     const std::array<int, 2> size = ReadSize(options->Size);
-    const std::string format =
-      options->Output.Name == "-" ? options->Output.Format : FormatOf(options->Output.Name);
-    if (!IsPicture(format) && format != "vti")
-    {
-      throw Failure(WRONG_USAGE,
-        "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
-    }
-    const bool withoutAlpha = format[0] == 'j' || format[0] == 'p';
-    const Background background = ReadBackground(!options->Background.empty() ? options->Background
-        : withoutAlpha && format != "png"                                     ? "white"
-                                                                              : "transparent");
-    if (!background && withoutAlpha && format != "png")
-    {
-      throw Failure(WRONG_USAGE, "A ." + format + " picture cannot be transparent.");
-    }
+    const std::string format = OutputFormatOf(options->Output.Name, options->Output.Format);
+    const Background background = ReadBackgroundFor(format, options->Background);
     OutputFile output(options->Output.Name, options->Output.Format, options->Output.Replace);
     MeshPair pair = options->Inputs.ReadPair(1);
     const auto image = ReadImage(InputFile(options->Inputs.Files.back(), options->ImageFormat));

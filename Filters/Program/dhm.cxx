@@ -7,6 +7,7 @@
 #include "Console.h"
 #include "Failure.h"
 #include "Help.h"
+#include "TemporaryFile.h"
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,7 @@
 int main(int argc, char* argv[])
 {
   using namespace dhm;
+  HandleSignals();
   CaptureVtkMessages();
 
   CLI::App program("Carries data from one triangulated domain onto another that has the same "
@@ -59,28 +61,43 @@ int main(int argc, char* argv[])
       })
     ->group("");
 
+  // What help and versions are written to can be full, too.
+  const auto finish = [](int status) {
+    if (!std::cout.flush())
+    {
+      Complain("Cannot write to standard output.");
+      return static_cast<int>(FILE_TROUBLE);
+    }
+    return status;
+  };
   try
   {
     program.parse(argc, argv);
-    return SUCCESS;
+    return finish(SUCCESS);
   }
   catch (const CLI::ParseError& error)
   {
-    return program.exit(error) == 0 ? SUCCESS : WRONG_USAGE;
+    if (error.get_exit_code() == 0)
+    {
+      program.exit(error);
+      return finish(SUCCESS);
+    }
+    Complain(DescribeUsageError(program, error));
+    return WRONG_USAGE;
   }
   catch (const Failure& failure)
   {
-    std::cerr << "dhm: " << failure.what() << std::endl;
+    Complain(failure.what());
     return failure.GetStatus();
   }
   catch (const std::bad_alloc&)
   {
-    std::cerr << "dhm: There is not enough memory." << std::endl;
+    Complain("There is not enough memory.");
     return FILE_TROUBLE;
   }
   catch (const std::exception& error)
   {
-    std::cerr << "dhm: " << error.what() << std::endl;
+    Complain(error.what());
     return FILE_TROUBLE;
   }
 }
