@@ -31,7 +31,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 class LineCollector
 {
 public:
-  LineCollector(const Homeomorphism& map)
+  explicit LineCollector(const Homeomorphism& map)
     : Map(map)
     , Geometry(map.GetPair().GetEmbedding(Side::Source))
   {

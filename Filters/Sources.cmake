@@ -7,11 +7,13 @@
 # Pure mathematics: nothing of VTK may be included here.
 set(kernel_sources
   Kernel/ContourChart.cxx
+  Kernel/EdgeLanes.cxx
   Kernel/ExactSign.cxx
   Kernel/SmoothChart.cxx)
 set(kernel_headers
   Kernel/ContourChart.h
   Kernel/CoordinateSystem.h
+  Kernel/EdgeLanes.h
   Kernel/ExactSign.h
   Kernel/Geometry.h
   Kernel/LinearChart.h
@@ -27,18 +29,21 @@ set(mesh_sources
   Mesh/Homeomorphism.cxx
   Mesh/HomeomorphismCache.cxx
   Mesh/JacobianJump.cxx
+  Mesh/LargeArray.cxx
   Mesh/MeshProblem.cxx
   Mesh/MeshValidation.cxx
   Mesh/PointLocation.cxx
   Mesh/Triangulation.cxx
   Mesh/TriangulationPair.cxx)
 set(mesh_headers
+  Mesh/Box.h
   Mesh/BoxTree.h
   Mesh/ChartedTriangulation.h
   Mesh/Embedding.h
   Mesh/Homeomorphism.h
   Mesh/HomeomorphismCache.h
   Mesh/JacobianJump.h
+  Mesh/LargeArray.h
   Mesh/MeshProblem.h
   Mesh/MeshValidation.h
   Mesh/PointLocation.h

@@ -18,8 +18,6 @@
 using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkHomeomorphismTransform);
-vtkCxxSetObjectMacro(vtkHomeomorphismTransform, Source, vtkPolyData);
-vtkCxxSetObjectMacro(vtkHomeomorphismTransform, Target, vtkPolyData);
 
 class vtkHomeomorphismTransform::Internals
 {
@@ -103,8 +101,18 @@ vtkHomeomorphismTransform::vtkHomeomorphismTransform()
 
 vtkHomeomorphismTransform::~vtkHomeomorphismTransform()
 {
-  this->SetSource(nullptr);
-  this->SetTarget(nullptr);
+  this->vtkHomeomorphismTransform::SetSource(nullptr);
+  this->vtkHomeomorphismTransform::SetTarget(nullptr);
+}
+
+void vtkHomeomorphismTransform::SetSource(vtkPolyData* source)
+{
+  vtkSetObjectBodyMacro(Source, vtkPolyData, source);
+}
+
+void vtkHomeomorphismTransform::SetTarget(vtkPolyData* target)
+{
+  vtkSetObjectBodyMacro(Target, vtkPolyData, target);
 }
 
 vtkAbstractTransform* vtkHomeomorphismTransform::MakeTransform()

@@ -31,7 +31,6 @@
 using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkJacobianContinuity);
-vtkCxxSetObjectMacro(vtkJacobianContinuity, Transform, vtkAbstractTransform);
 
 class vtkJacobianContinuity::Internals
 {
@@ -235,7 +234,12 @@ vtkJacobianContinuity::vtkJacobianContinuity()
 
 vtkJacobianContinuity::~vtkJacobianContinuity()
 {
-  this->SetTransform(nullptr);
+  this->vtkJacobianContinuity::SetTransform(nullptr);
+}
+
+void vtkJacobianContinuity::SetTransform(vtkAbstractTransform* transform)
+{
+  vtkSetObjectBodyMacro(Transform, vtkAbstractTransform, transform);
 }
 
 void vtkJacobianContinuity::SetSourceData(vtkPolyData* source)

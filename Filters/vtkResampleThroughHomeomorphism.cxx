@@ -15,6 +15,7 @@
 #include "vtkCompositeDataProbeFilter.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataObjectTree.h"
 #include "vtkErrorCode.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
@@ -242,6 +243,49 @@ std::string DescribeDefects(vtkDataObject* data)
     }
   }
   return text;
+}
+
+/// The data without what VTK has computed for searching in it: VTK 9.1 uses the lists of each
+/// point's cells even after cells were replaced in place, and then reads beyond them.
+vtkSmartPointer<vtkDataObject> WithoutCaches(vtkDataObject* data)
+{
+  if (auto* mesh = vtkPolyData::SafeDownCast(data))
+  {
+    auto copy = vtkSmartPointer<vtkPolyData>::New();
+    copy->SetPoints(mesh->GetPoints());
+    copy->SetVerts(mesh->GetVerts());
+    copy->SetLines(mesh->GetLines());
+    copy->SetPolys(mesh->GetPolys());
+    copy->SetStrips(mesh->GetStrips());
+    copy->GetPointData()->ShallowCopy(mesh->GetPointData());
+    copy->GetCellData()->ShallowCopy(mesh->GetCellData());
+    return copy;
+  }
+  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    auto copy = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    copy->SetPoints(grid->GetPoints());
+    if (grid->GetCells())
+    {
+      copy->SetCells(
+        grid->GetCellTypesArray(), grid->GetCells(), grid->GetFaceLocations(), grid->GetFaces());
+    }
+    copy->GetPointData()->ShallowCopy(grid->GetPointData());
+    copy->GetCellData()->ShallowCopy(grid->GetCellData());
+    return copy;
+  }
+  if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
+  {
+    auto copy = vtkSmartPointer<vtkDataObjectTree>::Take(tree->NewInstance());
+    copy->CopyStructure(tree);
+    const auto leaf = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+    {
+      copy->SetDataSet(leaf, WithoutCaches(leaf->GetCurrentDataObject()));
+    }
+    return copy;
+  }
+  return data;
 }
 
 bool HasVectors(vtkPointData* pointData)
@@ -528,7 +572,8 @@ int vtkResampleThroughHomeomorphism::Resample(
 
   // What the data has there. A point on the data's border may be outside by rounding: it is looked
   // for again, a rounding error closer to the middle of its triangle.
-  vtkDataObject* probed = data ? data : (this->Inverse ? target : source);
+  const vtkSmartPointer<vtkDataObject> probed =
+    WithoutCaches(data ? data : (this->Inverse ? target : source));
   const std::string defects = DescribeDefects(probed);
   if (!defects.empty())
   {

@@ -371,8 +371,10 @@ void Panel::Hatch(const Curve& polygon, double spacing, const Pen& pen)
     lowest = std::min(lowest, height(corner));
     highest = std::max(highest, height(corner));
   }
-  for (double level = std::ceil(lowest / spacing) * spacing; level < highest; level += spacing)
+  const int first = static_cast<int>(std::ceil(lowest / spacing));
+  for (int line = first; line * spacing < highest; ++line)
   {
+    const double level = line * spacing;
     Curve ends;
     for (std::size_t i = 0; i < corners.size(); ++i)
     {

@@ -182,9 +182,9 @@ Curve Interpolate(const Curve& points, bool closed)
         0.5 * (2.0 - 5.0 * t * t + 3.0 * t * t * t), 0.5 * (t + 4.0 * t * t - 3.0 * t * t * t),
         0.5 * (-t * t + t * t * t) };
       Point sum{ 0.0, 0.0 };
-      for (int step = -1; step <= 2; ++step)
+      for (std::size_t j = 0; j < weights.size(); ++j)
       {
-        sum = Add(sum, at(i + step), weights[static_cast<std::size_t>(step + 1)]);
+        sum = Add(sum, at(i + static_cast<int>(j) - 1), weights[j]);
       }
       curve.push_back(sum);
     }
@@ -415,8 +415,8 @@ void Draw(const std::string& fileName, const std::array<vtkSmartPointer<vtkPolyD
   std::vector<std::pair<double, std::string>> ticks;
   for (int power = static_cast<int>(lowestPower); power <= 0; power += 3)
   {
-    ticks.push_back(
-      { 1.0 - power / lowestPower, power == 0 ? "1" : "10^{" + Decimal(power, 0) + "}" });
+    ticks.emplace_back(
+      1.0 - power / lowestPower, power == 0 ? "1" : "10^{" + Decimal(power, 0) + "}");
   }
   drawing.ColorBar({ 1163.0, 60.0, 16.0, 380.0 }, ColorOf, ticks);
   drawing.Write(fileName);

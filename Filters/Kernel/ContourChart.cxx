@@ -135,6 +135,7 @@ struct ArcOfHalfDerivative
 /// Derivatives of a contour's numbers with respect to s.
 struct ContourOfHalfDerivative : ArcOfHalfDerivative
 {
+  double Bend;   ///< R times that of the curvature, which overflows in needles
   double Angle;  ///< d phi / d s
   double Radius; ///< d r / d s; infinite at the center segment
   double Length; ///< d L / d s
@@ -281,6 +282,8 @@ ContourOfHalf::ContourOfHalf(double h, double b, double s)
   , ArcLength(0.5 * R * (1.0 - s) / (1.0 + s) * ArcTangentRatio(Slope))
   , Length(0.5 * R + ArcLength)
 {
+  // The product of h and R underflows in needles thinner than 1e-150.
+  this->Curvature = 4.0 * b * s / this->R / (h * (1.0 - s));
 }
 
 ContourOfHalfDerivative::ContourOfHalfDerivative(
@@ -288,6 +291,8 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
   : ArcOfHalfDerivative(h, b, s, contour)
 {
   const double slopeDerivative = 2.0 * b / (h * (1.0 + s) * (1.0 + s));
+  const double overRest = 1.0 / (1.0 - s);
+  this->Bend = 4.0 * (b / h) * overRest * (overRest - s * (this->R / contour.R));
   this->Angle = 2.0 * (b / contour.R) * (h / contour.R);
   this->Radius = h / (4.0 * b * s) * ((1.0 - s) * this->R - contour.R / s);
 
@@ -304,8 +309,11 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
 
 ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
   : Unit(PowerOfTwoNear(shape.Base))
-  , Shape{ shape.Base / Unit, shape.ApexX / Unit, shape.Height / Unit, shape.Apex }
 {
+  // Powers of two: to multiply by the reciprocal rounds no more than to divide.
+  const double overUnit = 1.0 / this->Unit;
+  this->Shape = { shape.Base * overUnit, shape.ApexX * overUnit, shape.Height * overUnit,
+    shape.Apex };
   if (center == CenterPoint::Centroid)
   {
     this->CenterWeights = { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 };
@@ -325,8 +333,7 @@ ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, C
   }
   for (int k = 0; k < 3; ++k)
   {
-    const EdgeView view{ views[k].Length / this->Unit, views[k].Foot,
-      views[k].Height / this->Unit };
+    const EdgeView view{ views[k].Length * overUnit, views[k].Foot, views[k].Height * overUnit };
     Edge& edge = this->Edges[k];
     edge.Start = this->Shape.Corner(NextCorner(k));
     edge.Length = view.Length;
@@ -572,8 +579,8 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
     const double cosine = std::cos(angle);
     byC = { contour.Length * sine, -contour.Length * cosine };
     // d(1/r)/ds (r psi)^2, from whichever of 1/r and r is finite.
-    const double bend =
-      s < 0.5 ? derivative.Curvature * remaining * remaining : -derivative.Radius * angle * angle;
+    const double bend = s < 0.5 ? derivative.Bend * (remaining / contour.R) * remaining
+                                : -derivative.Radius * angle * angle;
     const double halfSine = SineRatio(0.5 * angle);
     const double stretch = (1.0 - c) * derivative.Length;
     const Vector2 byS = { derivative.EdgePoint +
@@ -602,9 +609,13 @@ ContourChart::Direction ContourChart::Pull(
 {
   const Vector2 vector = (1.0 / this->Unit) * vectorInFrame;
   const Matrix2 columns = this->Columns(coordinates);
-  const double determinant = columns.Determinant();
-  return { Cross(vector, columns.ImageOfY) / determinant,
-    Cross(columns.ImageOfX, vector) / determinant };
+  // Powers of two keep the products from underflow.
+  const double scaleX = PowerOfTwoNear(columns.ImageOfX);
+  const double scaleY = PowerOfTwoNear(columns.ImageOfY);
+  const Vector2 x = (1.0 / scaleX) * columns.ImageOfX;
+  const Vector2 y = (1.0 / scaleY) * columns.ImageOfY;
+  const double determinant = Cross(x, y);
+  return { Cross(vector, y) / determinant / scaleX, Cross(x, vector) / determinant / scaleY };
 }
 
 double ContourChart::ContourLength(int edgeLabel, double p) const

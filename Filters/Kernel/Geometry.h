@@ -74,31 +74,25 @@ HOMEOMORPHISM_ALWAYS_INLINE double DifferenceOfProducts(double a, double d, doub
 }
 
 /// The power of two next to a positive number, 1 for others; it and its reciprocal are normal
-/// numbers.
-inline double PowerOfTwoNear(double x)
+/// numbers. Nothing branches, so that loops can become vector instructions.
+HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(double x)
 {
   constexpr double least = 0x1p-1021;
   constexpr double greatest = 0x1p1021;
-  if (!(x > 0.0 && x <= std::numeric_limits<double>::max()))
-  {
-    return 1.0;
-  }
-  if (!(x > least && x < greatest))
-  {
-    return x < 1.0 ? least : greatest;
-  }
+  double power = x > least ? x : least;
+  power = power < greatest ? power : greatest;
   // The number without its fraction: in a double, the bits after the sign and the exponent.
   std::uint64_t bits;
-  std::memcpy(&bits, &x, sizeof(bits));
+  std::memcpy(&bits, &power, sizeof(bits));
   bits &= std::uint64_t(0xfff) << 52;
-  double power;
   std::memcpy(&power, &bits, sizeof(power));
-  return power;
+  power = x > 0.0 ? power : 1.0;
+  return x <= std::numeric_limits<double>::max() ? power : 1.0;
 }
 
 /// The greatest power of two by which both components of a vector are at least 1 or less, see
 /// PowerOfTwoNear.
-inline double PowerOfTwoNear(const Vector2& v)
+HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(const Vector2& v)
 {
   const double x = std::abs(v.x);
   const double y = std::abs(v.y);

@@ -146,23 +146,6 @@ double DeterminantRatioOf(const StripFunction& function, const SmoothStrip& stri
 
 } // namespace
 
-SmoothStrip::SmoothStrip(const EdgeView& own, const EdgeView& neighbor)
-{
-  const double sum = own.Height + neighbor.Height;
-  const double ownShare = own.Height / sum;
-  const double otherShare = neighbor.Height / sum;
-  this->OffsetNext = ownShare * neighbor.Foot - otherShare * (1.0 - own.Foot);
-  this->OffsetPrevious = ownShare * (1.0 - neighbor.Foot) - otherShare * own.Foot;
-  // The three components sum to 0, which far feet let cancellation spoil: then barycentric
-  // coordinates would not sum to 1, and what they lack would be lost on the way back.
-  const double excess = this->OffsetNext + this->OffsetPrevious + (otherShare - ownShare);
-  this->OffsetNext -= 0.5 * excess;
-  this->OffsetPrevious -= 0.5 * excess;
-  this->Kappa = 2.0 * otherShare;
-  const double least = std::min(this->OffsetNext, this->OffsetPrevious);
-  this->Tau = least < -0.5 ? -0.5 / least : 1.0;
-}
-
 SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor, 3>& neighbors)
 {
   SmoothStrips strips;
@@ -282,9 +265,13 @@ void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const 
   {
     const bool is0 = lanes.Corner[i] == 0;
     const bool is1 = lanes.Corner[i] == 1;
-    first[i] = is0 ? lanes.L[0][i] : (is1 ? lanes.L[2][i] : lanes.L[1][i]);
-    second[i] = is0 ? lanes.L[1][i] : (is1 ? lanes.L[0][i] : lanes.L[2][i]);
-    third[i] = is0 ? lanes.L[2][i] : (is1 ? lanes.L[1][i] : lanes.L[0][i]);
+    // Read whatever the corner is: to read or not to read takes longer.
+    const double k = lanes.L[0][i];
+    const double next = lanes.L[1][i];
+    const double previous = lanes.L[2][i];
+    first[i] = is0 ? k : (is1 ? previous : next);
+    second[i] = is0 ? next : (is1 ? k : previous);
+    third[i] = is0 ? previous : (is1 ? next : k);
   }
 }
 

@@ -59,7 +59,23 @@ struct SmoothStrip
   SmoothStrip() = default;
 
   /// @a own is what the edge sees of its triangle, @a neighbor of the one on its other side.
-  SmoothStrip(const EdgeView& own, const EdgeView& neighbor);
+  HOMEOMORPHISM_ALWAYS_INLINE SmoothStrip(const EdgeView& own, const EdgeView& neighbor)
+  {
+    const double sum = own.Height + neighbor.Height;
+    const double ownShare = own.Height / sum;
+    const double otherShare = neighbor.Height / sum;
+    this->OffsetNext = ownShare * neighbor.Foot - otherShare * (1.0 - own.Foot);
+    this->OffsetPrevious = ownShare * (1.0 - neighbor.Foot) - otherShare * own.Foot;
+    // The three components sum to 0, which far feet let cancellation spoil: then barycentric
+    // coordinates would not sum to 1, and what they lack would be lost on the way back.
+    const double excess = this->OffsetNext + this->OffsetPrevious + (otherShare - ownShare);
+    this->OffsetNext -= 0.5 * excess;
+    this->OffsetPrevious -= 0.5 * excess;
+    this->Kappa = 2.0 * otherShare;
+    const double least =
+      this->OffsetPrevious < this->OffsetNext ? this->OffsetPrevious : this->OffsetNext;
+    this->Tau = least < -0.5 ? -0.5 / least : 1.0;
+  }
 
   /// Whether l is in the strip, if it is that of edge k: 0 <= l_k / (tau q) < 1.
   bool Contains(double k, double next, double previous) const

@@ -9,13 +9,14 @@
 
 /// HOMEOMORPHISM_FOR_WIDE_VECTORS, before a function: it is compiled for wider vectors, too, and
 /// the widest that the processor has are used. HOMEOMORPHISM_WITH_FMA: the same for functions with
-/// std::fma, which is one instruction where the processor has it. No rounding depends on which,
-/// since sums and products are never fused unasked (see Sources.cmake). Sanitizers do not work with
-/// functions that are chosen when the library is loaded.
+/// std::fma, which is one instruction where the processor has it. (By features: the name of an
+/// architecture, such as haswell, would mean the processors of one maker.) No rounding depends on
+/// which, since sums and products are never fused unasked (see Sources.cmake). Sanitizers do not
+/// work with functions that are chosen when the library is loaded.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&       \
   !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define HOMEOMORPHISM_FOR_WIDE_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
-#define HOMEOMORPHISM_WITH_FMA __attribute__((target_clones("arch=haswell", "default")))
+#define HOMEOMORPHISM_WITH_FMA __attribute__((target_clones("avx512f", "fma", "default")))
 #else
 #define HOMEOMORPHISM_FOR_WIDE_VECTORS
 #define HOMEOMORPHISM_WITH_FMA

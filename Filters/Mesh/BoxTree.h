@@ -7,6 +7,8 @@
 #ifndef homeomorphism_BoxTree_h
 #define homeomorphism_BoxTree_h
 
+#include "Box.h"
+#include "LargeArray.h"
 #include "Triangulation.h"
 
 #include <algorithm>
@@ -20,59 +22,6 @@
 
 namespace homeomorphism
 {
-
-/// An axis-parallel box in the plane or in 3-space. It starts empty.
-template <int Dimension>
-struct Box
-{
-  std::array<double, Dimension> Least;
-  std::array<double, Dimension> Greatest;
-
-  Box()
-  {
-    this->Least.fill(std::numeric_limits<double>::infinity());
-    this->Greatest.fill(-std::numeric_limits<double>::infinity());
-  }
-
-  void Add(const std::array<double, Dimension>& point)
-  {
-    for (int axis = 0; axis < Dimension; ++axis)
-    {
-      this->Least[axis] = std::min(this->Least[axis], point[axis]);
-      this->Greatest[axis] = std::max(this->Greatest[axis], point[axis]);
-    }
-  }
-
-  void Add(const Box& other)
-  {
-    this->Add(other.Least);
-    this->Add(other.Greatest);
-  }
-
-  bool Meets(const Box& other) const
-  {
-    for (int axis = 0; axis < Dimension; ++axis)
-    {
-      if (this->Least[axis] > other.Greatest[axis] || other.Least[axis] > this->Greatest[axis])
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  /// The box of all points at most @a distance from @a point in each coordinate.
-  static Box Around(const std::array<double, Dimension>& point, double distance)
-  {
-    Box box;
-    for (int axis = 0; axis < Dimension; ++axis)
-    {
-      box.Least[axis] = point[axis] - distance;
-      box.Greatest[axis] = point[axis] + distance;
-    }
-    return box;
-  }
-};
 
 /// A binary tree of boxes over the triangles in the order of a space-filling curve (Morton's), so
 /// that building takes time linear in their number. Immutable once built; any number of threads may
@@ -257,7 +206,7 @@ private:
       scale[axis] = length > 0.0 ? std::ldexp(1.0, bits) * (1.0 - 1e-9) / length : 0.0;
       scale[axis] = std::isfinite(scale[axis]) ? scale[axis] : 0.0;
     }
-    std::vector<Entry> entries(this->Triangles.size());
+    LargeArray<Entry> entries(this->Triangles.size());
     for (std::size_t i = 0; i < entries.size(); ++i)
     {
       const BoxType box = boxOf(this->Triangles[i]);
@@ -272,7 +221,7 @@ private:
     // Digit by digit, from the least significant one.
     constexpr int digitBits = 11;
     constexpr std::size_t digits = std::size_t(1) << digitBits;
-    std::vector<Entry> sorted(entries.size());
+    LargeArray<Entry> sorted(entries.size());
     for (int shift = 0; shift < Dimension * bits; shift += digitBits)
     {
       std::array<std::size_t, digits + 1> start{};
@@ -288,7 +237,7 @@ private:
       {
         sorted[start[(entry.Code >> shift) & (digits - 1)]++] = entry;
       }
-      entries.swap(sorted);
+      std::swap(entries, sorted);
     }
     for (std::size_t i = 0; i < entries.size(); ++i)
     {

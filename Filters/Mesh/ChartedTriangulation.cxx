@@ -3,6 +3,8 @@
 
 #include "ChartedTriangulation.h"
 
+#include "Kernel/EdgeLanes.h"
+
 #include "vtkSMPTools.h"
 
 #include <utility>
@@ -12,25 +14,6 @@ namespace homeomorphism
 namespace
 {
 
-/// One chart for each triangle, made in parallel. A masked triangle gets a chart of no meaning.
-template <typename Chart, typename MakeChart>
-std::vector<Chart> MakeCharts(
-  const Triangulation& triangulation, const Chart& none, MakeChart&& makeChart)
-{
-  const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  std::vector<Chart> charts(count, none);
-  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
-    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
-    {
-      if (!triangulation.IsMasked(t))
-      {
-        charts[t] = makeChart(t);
-      }
-    }
-  });
-  return charts;
-}
-
 /// What the triangle on one side of an edge is to the one on the other side. What an edge sees of a
 /// triangle does not change when the triangle turns about the edge.
 EdgeView Unfolded(const EdgeView& view, const AcrossEdge& across)
@@ -38,28 +21,138 @@ EdgeView Unfolded(const EdgeView& view, const AcrossEdge& across)
   return across.SameDirection ? view : Reversed(view);
 }
 
+/// Makes the strips of edges of a plane, many at once.
+class StripMaker
+{
+public:
+  StripMaker(const Triangulation& triangulation, const Embedding& embedding,
+    LargeArray<SmoothStrips>& strips)
+    : Topology(triangulation)
+    , Geometry(embedding)
+    , Strips(strips)
+  {
+  }
+
+  void Add(TriangleIndex triangle, int edge, const AcrossEdge& across)
+  {
+    const int i = this->Count++;
+    const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
+    const Triangulation::Corners& others = this->Topology.GetCorners(across.Triangle);
+    const Vector2& start = this->Geometry.GetPlanePoint(corners[NextCorner(edge)]);
+    const Vector2& end = this->Geometry.GetPlanePoint(corners[PreviousCorner(edge)]);
+    this->First.Set(i, triangle, edge, start, end, this->Geometry.GetPlanePoint(corners[edge]));
+    const bool turned = !across.SameDirection;
+    this->Turned[i] = turned;
+    this->Second.Set(i, across.Triangle, across.Edge, turned ? end : start, turned ? start : end,
+      this->Geometry.GetPlanePoint(others[across.Edge]));
+    if (this->Count == EdgeLanes)
+    {
+      this->Finish();
+    }
+  }
+
+  void Finish()
+  {
+    this->First.Look(this->Turned, this->Count);
+    this->Second.Look(this->Turned, this->Count);
+    MakeSmoothStrips(this->First.Views, this->Second.Unfolded, this->Count, this->Made);
+    this->First.Write(this->Made, this->Count, this->Strips);
+    MakeSmoothStrips(this->Second.Views, this->First.Unfolded, this->Count, this->Made);
+    this->Second.Write(this->Made, this->Count, this->Strips);
+    this->Count = 0;
+  }
+
+private:
+  /// The triangles on one side of the edges.
+  struct OneSide
+  {
+    TriangleIndex Triangles[EdgeLanes];
+    int Edges[EdgeLanes];
+    LanesOfPoints Starts;
+    LanesOfPoints Ends;
+    LanesOfPoints Opposites;
+    ViewLanes Views;
+    /// What they are to the triangles on the other side.
+    ViewLanes Unfolded;
+
+    void Set(int i, TriangleIndex triangle, int edge, const Vector2& start, const Vector2& end,
+      const Vector2& opposite)
+    {
+      this->Triangles[i] = triangle;
+      this->Edges[i] = edge;
+      this->Starts.Set(i, start);
+      this->Ends.Set(i, end);
+      this->Opposites.Set(i, opposite);
+    }
+
+    void Look(const bool* turned, int count)
+    {
+      ViewFromEdges(this->Starts, this->Ends, this->Opposites, count, this->Views);
+      for (int i = 0; i < count; ++i)
+      {
+        // As Reversed does.
+        this->Unfolded.Length[i] = this->Views.Length[i];
+        this->Unfolded.Foot[i] = turned[i] ? 1.0 - this->Views.Foot[i] : this->Views.Foot[i];
+        this->Unfolded.Height[i] = this->Views.Height[i];
+      }
+    }
+
+    void Write(const SmoothStrip* made, int count, LargeArray<SmoothStrips>& strips) const
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        strips[this->Triangles[i]][this->Edges[i]] = made[i];
+      }
+    }
+  };
+
+  const Triangulation& Topology;
+  const Embedding& Geometry;
+  LargeArray<SmoothStrips>& Strips;
+  int Count = 0;
+  bool Turned[EdgeLanes];
+  OneSide First;
+  OneSide Second;
+  SmoothStrip Made[EdgeLanes];
+};
+
 /// The strips of all triangles. Each edge is looked at once, for both of its triangles.
-std::vector<SmoothStrips> MakeStrips(const Triangulation& triangulation, const Embedding& embedding)
+LargeArray<SmoothStrips> MakeStrips(const Triangulation& triangulation, const Embedding& embedding)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  std::vector<SmoothStrips> strips(count);
+  LargeArray<SmoothStrips> strips(count);
+  const auto makeBoth = [&](TriangleIndex t, int k, const AcrossEdge& across) {
+    const EdgeView own = embedding.GetView(triangulation.GetCorners(t), k);
+    const EdgeView other =
+      embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
+    strips[t][k] = SmoothStrip(own, Unfolded(other, across));
+    strips[across.Triangle][across.Edge] = SmoothStrip(other, Unfolded(own, across));
+  };
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+    StripMaker maker(triangulation, embedding, strips);
     for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
     {
       for (int k = 0; k < 3; ++k)
       {
         const AcrossEdge across = triangulation.GetAcross(t, k);
-        if (across.Triangle <= t)
+        if (across.Triangle < 0)
         {
-          continue;
+          strips[t][k] = SmoothStrip();
         }
-        const EdgeView own = embedding.GetView(triangulation.GetCorners(t), k);
-        const EdgeView other =
-          embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
-        strips[t][k] = SmoothStrip(own, Unfolded(other, across));
-        strips[across.Triangle][across.Edge] = SmoothStrip(other, Unfolded(own, across));
+        else if (across.Triangle > t)
+        {
+          if (embedding.IsPlanar())
+          {
+            maker.Add(t, k, across);
+          }
+          else
+          {
+            makeBoth(t, k, across);
+          }
+        }
       }
     }
+    maker.Finish();
   });
   return strips;
 }
@@ -102,15 +195,20 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   std::vector<std::uint8_t> carriedByLinear)
   : Geometry(embedding)
   , System(system)
+  , Center(center)
   , CarriedByLinear(std::move(carriedByLinear))
 {
   if (system == CoordinateSystem::Contour)
   {
-    this->ContourCharts =
-      MakeCharts(triangulation, ContourChart::Equilateral(), [&](TriangleIndex t) {
-        return ContourChart(
-          embedding.GetShape(t), embedding.GetViews(triangulation.GetCorners(t)), center);
-      });
+    const TriangleIndex count = triangulation.GetNumberOfTriangles();
+    this->ContourViews = LargeArray<EdgeViews>(count);
+    vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+      for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+      {
+        this->ContourViews[t] =
+          triangulation.IsMasked(t) ? EdgeViews{} : embedding.GetViews(triangulation.GetCorners(t));
+      }
+    });
   }
   else if (system == CoordinateSystem::Smooth)
   {

@@ -8,6 +8,7 @@
 #define homeomorphism_ChartedTriangulation_h
 
 #include "Embedding.h"
+#include "LargeArray.h"
 #include "Triangulation.h"
 
 #include "Kernel/ContourChart.h"
@@ -29,7 +30,8 @@ std::array<Neighbor, 3> UnfoldNeighbors(
 std::vector<TriangleIndex> FindDiscordant(
   const Triangulation& triangulation, const Embedding& embedding);
 
-/// Charts of all triangles of one embedding. Immutable; any number of threads may use it.
+/// Charts of all triangles of one embedding, made as they are asked for from what is expensive to
+/// find. Immutable; any number of threads may use it.
 class ChartedTriangulation
 {
 public:
@@ -54,9 +56,10 @@ public:
   {
     return LinearChart(this->Geometry.GetShape(triangle));
   }
-  const ContourChart& GetContourChart(TriangleIndex triangle) const
+  ContourChart GetContourChart(TriangleIndex triangle) const
   {
-    return this->ContourCharts[triangle];
+    return ContourChart(
+      this->Geometry.GetShape(triangle), this->ContourViews[triangle], this->Center);
   }
   SmoothChart GetSmoothChart(TriangleIndex triangle) const
   {
@@ -89,9 +92,11 @@ public:
 private:
   const Embedding& Geometry;
   CoordinateSystem System;
+  CenterPoint Center;
   std::vector<std::uint8_t> CarriedByLinear;
-  std::vector<ContourChart> ContourCharts;
-  std::vector<SmoothStrips> Strips;
+  // A third of the charts' size, from which they are quickly made.
+  LargeArray<EdgeViews> ContourViews;
+  LargeArray<SmoothStrips> Strips;
 };
 
 } // namespace homeomorphism

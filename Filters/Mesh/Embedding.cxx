@@ -3,8 +3,10 @@
 
 #include "Embedding.h"
 
+#include "Kernel/EdgeLanes.h"
 #include "Kernel/ExactSign.h"
 
+#include "vtkDoubleArray.h"
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkType.h"
@@ -69,6 +71,39 @@ EdgeView PlaneView(const Vector2& start, const Vector2& end, const Vector2& oppo
 
 } // namespace
 
+/// The points of a mesh times a power of two, read where they are.
+class Embedding::MeshPoints
+{
+public:
+  explicit MeshPoints(vtkPoints* points)
+    : Points(points)
+  {
+    auto* doubles = vtkArrayDownCast<vtkDoubleArray>(points->GetData());
+    this->Doubles = doubles ? doubles->GetPointer(0) : nullptr;
+  }
+
+  void SetScale(double scale) { this->Scale = scale; }
+
+  Vector3 operator[](vtkIdType i) const
+  {
+    Vector3 p;
+    if (this->Doubles)
+    {
+      std::copy_n(this->Doubles + 3 * i, 3, p.begin());
+    }
+    else
+    {
+      this->Points->GetPoint(i, p.data());
+    }
+    return Scaled(p, this->Scale);
+  }
+
+private:
+  vtkPoints* Points;
+  const double* Doubles;
+  double Scale = 1.0;
+};
+
 Embedding::Embedding(
   vtkPoints* points, const Triangulation& triangulation, const Embedding* companion)
 {
@@ -87,68 +122,93 @@ Embedding::Embedding(
 
   // A point with a coordinate that is not finite counts neither for the scale nor for the plane;
   // the triangles that use it are found by IsFinite.
-  std::vector<Vector3> positions(count, Vector3{});
+  MeshPoints positions(points);
   double largest = 0.0;
+  Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
+  Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
   for (vtkIdType i = 0; i < count; ++i)
   {
     if (!used[i])
     {
       continue;
     }
-    points->GetPoint(i, positions[i].data());
-    const Vector3& p = positions[i];
+    const Vector3 p = positions[i];
     if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
     {
       used[i] = 0;
+      this->Finite = false;
       continue;
     }
-    largest = std::max({ largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      least[axis] = std::min(least[axis], p[axis]);
+      greatest[axis] = std::max(greatest[axis], p[axis]);
+    }
+  }
+  for (int axis = 0; axis < 3 && least[0] <= greatest[0]; ++axis)
+  {
+    largest = std::max({ largest, std::abs(least[axis]), std::abs(greatest[axis]) });
   }
   if (largest > 0.0)
   {
     this->InverseScale = PowerOfTwoNear(largest);
     this->Scale = 1.0 / this->InverseScale;
   }
-  Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
-  Vector3 greatest{ -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    positions[i] = Scaled(positions[i], this->Scale);
-    for (int axis = 0; axis < 3 && used[i]; ++axis)
-    {
-      least[axis] = std::min(least[axis], positions[i][axis]);
-      greatest[axis] = std::max(greatest[axis], positions[i][axis]);
-    }
-  }
+  positions.SetScale(this->Scale);
   this->LargestCoordinate = largest * this->Scale;
-  this->Diagonal = largest > 0.0 ? Length(Difference(greatest, least)) : 0.0;
+  this->Diagonal = largest > 0.0
+    ? Length(Difference(Scaled(greatest, this->Scale), Scaled(least, this->Scale)))
+    : 0.0;
 
   this->FindPlane(positions, used, companion);
+  if (this->Planar)
+  {
+    this->PlanePoints = LargeArray<Vector2>(count);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const Vector3 p = positions[i];
+      const Vector3 working = this->AxisParallel
+        ? Vector3{ p[this->AxisOrder[0]], p[this->AxisOrder[1]], p[this->AxisOrder[2]] }
+        : this->ToTiltedPlane(p);
+      this->PlanePoints[i] = { working[0], working[1] };
+      if (used[i])
+      {
+        this->PlaneBounds.Add({ working[0], working[1] });
+      }
+      else if (!std::isfinite(working[2]))
+      {
+        // The third coordinate is not kept, but IsFinite must see it.
+        this->PlanePoints[i].x = working[2];
+      }
+    }
+    this->FindOrientations(triangulation);
+  }
   if (!this->AxisParallel)
   {
-    this->SpacePoints = std::move(positions);
-  }
-  if (!this->Planar)
-  {
-    return;
-  }
-  this->PlanePoints.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    double original[3];
-    points->GetPoint(i, original);
-    const Vector3 working = this->ToWorking(original);
-    this->PlanePoints[i] = { working[0], working[1] };
-    if (!std::isfinite(working[2]))
+    this->SpacePoints = LargeArray<Vector3>(count);
+    for (vtkIdType i = 0; i < count; ++i)
     {
-      // The third coordinate is not kept, but IsFinite must see it.
-      this->PlanePoints[i].x = working[2];
+      this->SpacePoints[i] = positions[i];
     }
   }
 }
 
-void Embedding::FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
-  const Embedding* companion)
+void Embedding::FindOrientations(const Triangulation& triangulation)
+{
+  const TriangleIndex count = triangulation.GetNumberOfTriangles();
+  this->Orientations = LargeArray<std::int8_t>(count);
+  vtkSMPTools::For(0, count, [this, &triangulation](vtkIdType begin, vtkIdType end) {
+    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+    {
+      const Triangulation::Corners& corners = triangulation.GetCorners(t);
+      const bool isSeen = !triangulation.IsMasked(t) && (this->Finite || this->IsFinite(corners));
+      this->Orientations[t] = static_cast<std::int8_t>(isSeen ? this->GetOrientation(corners) : 0);
+    }
+  });
+}
+
+void Embedding::FindPlane(
+  const MeshPoints& points, const std::vector<std::uint8_t>& used, const Embedding* companion)
 {
   const auto isTurnedAway = [companion](const Vector3& normal) {
     // Not for planes that are at right angles to rounding, where either side is as good.
@@ -162,13 +222,13 @@ void Embedding::FindPlane(const std::vector<Vector3>& points, const std::vector<
     this->PlaneAxes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
     return;
   }
-  const Vector3& origin = points[first - used.begin()];
+  const Vector3 origin = points[first - used.begin()];
 
   // Parallel to two axes? z first, so that a mesh in a line counts as drawn in the xy plane.
   for (const int normalAxis : { 2, 1, 0 })
   {
     bool constant = true;
-    for (std::size_t i = 0; i < points.size() && constant; ++i)
+    for (std::size_t i = 0; i < used.size() && constant; ++i)
     {
       constant = !used[i] || points[i][normalAxis] == origin[normalAxis];
     }
@@ -197,7 +257,7 @@ void Embedding::FindPlane(const std::vector<Vector3>& points, const std::vector<
   // line.
   Vector3 along{};
   double farthest = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
     const Vector3 d = Difference(points[i], origin);
     if (used[i] && Length(d) > farthest)
@@ -208,7 +268,7 @@ void Embedding::FindPlane(const std::vector<Vector3>& points, const std::vector<
   }
   Vector3 normal{};
   double widest = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
     const Vector3 c = Cross3(along, Difference(points[i], origin));
     if (used[i] && Length(c) > widest)
@@ -224,7 +284,7 @@ void Embedding::FindPlane(const std::vector<Vector3>& points, const std::vector<
   {
     return;
   }
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
     if (used[i] && std::abs(Dot3(normal, Difference(points[i], origin))) > spread)
     {
@@ -299,12 +359,13 @@ int Embedding::GetOrientation(const Triangulation::Corners& corners) const
     this->PlanePoints[corners[0]], this->PlanePoints[corners[1]], this->PlanePoints[corners[2]]);
 }
 
-bool Embedding::HasNoArea(const Triangulation::Corners& corners) const
+bool Embedding::HasNoArea(const Triangulation& triangulation, TriangleIndex triangle) const
 {
-  if (this->Planar && this->AxisParallel)
+  if (this->AxisParallel)
   {
-    return this->GetOrientation(corners) == 0;
+    return this->GetOrientation(triangle) == 0;
   }
+  const Triangulation::Corners& corners = triangulation.GetCorners(triangle);
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
   // Written so that a view spoilt by an edge of no length counts as no area.
   return !(this->GetView(corners, this->FindApex(corners)).Height > least);
@@ -371,51 +432,84 @@ void Embedding::ComputeFrames(const Triangulation& triangulation)
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
   if (this->Planar)
   {
-    this->PlaneFrames.resize(count);
+    this->PlaneFrames = LargeArray<PlaneFrame>(count);
   }
   else
   {
-    this->SpaceFrames.resize(count);
+    this->SpaceFrames = LargeArray<SpaceFrame>(count);
   }
-  vtkSMPTools::For(0, count, [this, &triangulation](vtkIdType begin, vtkIdType end) {
-    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+  vtkSMPTools::For(0, count, [this, &triangulation](vtkIdType first, vtkIdType last) {
+    const auto begin = static_cast<TriangleIndex>(first);
+    const auto end = static_cast<TriangleIndex>(last);
+    if (this->Planar)
     {
-      if (triangulation.IsMasked(t))
+      for (TriangleIndex t = begin; t < end; t += EdgeLanes)
       {
-        continue;
+        this->ComputePlaneFrames(triangulation, t, std::min(end, t + EdgeLanes));
       }
-      const Triangulation::Corners& corners = triangulation.GetCorners(t);
-      const int apex = this->FindApex(corners);
-      const TriangleShape shape = MakeShape(this->GetView(corners, apex), apex);
-      if (this->Planar)
+      return;
+    }
+    for (TriangleIndex t = begin; t < end; ++t)
+    {
+      this->SpaceFrames[t] = SpaceFrame{};
+      if (!triangulation.IsMasked(t))
       {
-        this->ComputePlaneFrame(t, corners, shape);
-      }
-      else
-      {
-        this->ComputeSpaceFrame(t, corners, shape);
+        this->ComputeSpaceFrame(t, triangulation.GetCorners(t));
       }
     }
   });
+  this->Orientations = {};
 }
 
-void Embedding::ComputePlaneFrame(
-  TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape)
+/// The frames of some triangles of a plane, EdgeLanes at most.
+void Embedding::ComputePlaneFrames(
+  const Triangulation& triangulation, TriangleIndex begin, TriangleIndex end)
 {
-  PlaneFrame& frame = this->PlaneFrames[triangle];
-  frame.Origin = this->PlanePoints[corners[NextCorner(shape.Apex)]];
-  const Vector2 edge = this->PlanePoints[corners[PreviousCorner(shape.Apex)]] - frame.Origin;
-  frame.Tangent = { edge.x / shape.Base, edge.y / shape.Base };
-  frame.Base = shape.Base;
-  frame.ApexX = shape.ApexX;
-  frame.Height = shape.Height;
-  frame.Apex = shape.Apex;
-  frame.Side = this->GetOrientation(corners);
+  LanesOfPoints corners[3] = {};
+  for (TriangleIndex t = begin; t < end; ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      corners[k].Set(t - begin, this->PlanePoints[triangulation.GetCorners(t)[k]]);
+    }
+  }
+  ViewLanes views[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    ViewFromEdges(
+      corners[NextCorner(k)], corners[PreviousCorner(k)], corners[k], end - begin, views[k]);
+  }
+  for (TriangleIndex t = begin; t < end; ++t)
+  {
+    PlaneFrame& frame = this->PlaneFrames[t];
+    if (triangulation.IsMasked(t))
+    {
+      frame = PlaneFrame{};
+      continue;
+    }
+    const int i = t - begin;
+    // Opposite the longest edge; the first of equals.
+    int apex = views[1].Length[i] > views[0].Length[i] ? 1 : 0;
+    apex = views[2].Length[i] > views[apex].Length[i] ? 2 : apex;
+    const TriangleShape shape =
+      MakeShape({ views[apex].Length[i], views[apex].Foot[i], views[apex].Height[i] }, apex);
+    const LanesOfPoints& start = corners[NextCorner(apex)];
+    const LanesOfPoints& finish = corners[PreviousCorner(apex)];
+    frame.Origin = { start.X[i], start.Y[i] };
+    frame.Tangent = { (finish.X[i] - start.X[i]) / shape.Base,
+      (finish.Y[i] - start.Y[i]) / shape.Base };
+    frame.Base = shape.Base;
+    frame.ApexX = shape.ApexX;
+    frame.Height = shape.Height;
+    frame.Apex = shape.Apex;
+    frame.Side = this->GetOrientation(t);
+  }
 }
 
-void Embedding::ComputeSpaceFrame(
-  TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape)
+void Embedding::ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners)
 {
+  const int apex = this->FindApex(corners);
+  const TriangleShape shape = MakeShape(this->GetView(corners, apex), apex);
   SpaceFrame& frame = this->SpaceFrames[triangle];
   frame.Shape = shape;
   frame.Origin = this->SpacePoints[corners[NextCorner(shape.Apex)]];

@@ -7,6 +7,8 @@
 #ifndef homeomorphism_Embedding_h
 #define homeomorphism_Embedding_h
 
+#include "Box.h"
+#include "LargeArray.h"
 #include "Triangulation.h"
 #include "Vector3.h"
 
@@ -78,6 +80,8 @@ public:
   /// Computes the triangles' frames. All triangles that are not masked must have an area.
   void ComputeFrames(const Triangulation& triangulation);
 
+  /// Whether the coordinates of all corners are finite, of triangles that are not masked.
+  bool IsFinite() const { return this->Finite; }
   /// Whether all points lie in one plane (to the rounding of their coordinates).
   bool IsPlanar() const { return this->Planar; }
   /// Whether distances from the plane are unlimited and measured along the plane's normal, as in
@@ -91,6 +95,8 @@ public:
   double GetInverseScale() const { return this->InverseScale; }
   /// Largest absolute working coordinate of a point, about 1.
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
+  /// The box around the points of a planar mesh that triangles use, in its plane.
+  const Box<2>& GetPlaneBounds() const { return this->PlaneBounds; }
   /// Length of the diagonal of the box around the points, in working coordinates.
   double GetDiagonal() const { return this->Diagonal; }
   /// Relative rounding error of the coordinates as they were stored: half an ulp of float or
@@ -171,9 +177,15 @@ public:
   /// Orientation of a triangle of a planar mesh with respect to the plane's normal, exactly: 1 if
   /// its corners run anticlockwise, -1 if clockwise, 0 if it has no area.
   int GetOrientation(const Triangulation::Corners& corners) const;
+  /// The same, looked up, of a triangle that is not masked and whose corners are finite.
+  int GetOrientation(TriangleIndex triangle) const
+  {
+    return this->Orientations.empty() ? this->PlaneFrames[triangle].Side
+                                      : this->Orientations[triangle];
+  }
   /// Whether the triangle has no area: exactly none in a plane parallel to two axes, none to the
   /// rounding of coordinates as doubles otherwise.
-  bool HasNoArea(const Triangulation::Corners& corners) const;
+  bool HasNoArea(const Triangulation& triangulation, TriangleIndex triangle) const;
   /// Whether the coordinates of all corners are finite.
   bool IsFinite(const Triangulation::Corners& corners) const;
   /// Whether the triangle is concordant (see IsConcordant), exactly.
@@ -241,13 +253,15 @@ private:
   Vector3 FromTiltedPlane(const Vector3& working) const;
   /// The corner opposite the longest edge; the first of equals.
   int FindApex(const Triangulation::Corners& corners) const;
-  void FindPlane(const std::vector<Vector3>& points, const std::vector<std::uint8_t>& used,
-    const Embedding* companion);
-  void ComputePlaneFrame(
-    TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape);
-  void ComputeSpaceFrame(
-    TriangleIndex triangle, const Triangulation::Corners& corners, const TriangleShape& shape);
+  class MeshPoints;
+  void FindPlane(
+    const MeshPoints& points, const std::vector<std::uint8_t>& used, const Embedding* companion);
+  void FindOrientations(const Triangulation& triangulation);
+  void ComputePlaneFrames(
+    const Triangulation& triangulation, TriangleIndex begin, TriangleIndex end);
+  void ComputeSpaceFrame(TriangleIndex triangle, const Triangulation::Corners& corners);
 
+  bool Finite = true;
   bool Planar = false;
   bool Columnar = false;
   /// Whether the plane is parallel to two axes: no rounding on the way to working coordinates.
@@ -265,12 +279,15 @@ private:
   double NormalSign = 1.0;
   double PlaneDistance = 0.0;
 
-  std::vector<Vector2> PlanePoints;
+  LargeArray<Vector2> PlanePoints;
+  Box<2> PlaneBounds;
   // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times
   // Scale.
-  std::vector<Vector3> SpacePoints;
-  std::vector<PlaneFrame> PlaneFrames;
-  std::vector<SpaceFrame> SpaceFrames;
+  LargeArray<Vector3> SpacePoints;
+  // Of a planar mesh, until it has frames.
+  LargeArray<std::int8_t> Orientations;
+  LargeArray<PlaneFrame> PlaneFrames;
+  LargeArray<SpaceFrame> SpaceFrames;
 };
 
 } // namespace homeomorphism

@@ -408,22 +408,35 @@ void Homeomorphism::MapByContours(Side from, PointBlock& block) const
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
   const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  struct ChartPair
+  {
+    ContourChart From;
+    ContourChart To;
+  };
+  // Of the triangles, each point's triangle being one of them.
+  LargeArray<ChartPair> made(block.Count);
   std::array<const ContourChart*, PointBlock::Capacity> froms{};
   std::array<const ContourChart*, PointBlock::Capacity> tos{};
   Vector2 points[PointBlock::Capacity];
   int numbers[PointBlock::Capacity];
   int count = 0;
-  for (int i = 0; i < block.Count; ++i)
-  {
-    const TriangleIndex t = block.Triangles[i];
-    if (t >= 0 && block.Corners[i] < 0 && charts.GetSystemOf(t) == CoordinateSystem::Contour)
-    {
-      froms[count] = &charts.GetContourChart(t);
-      tos[count] = &otherCharts.GetContourChart(t);
-      points[count] = { block.InPlane[0][i], block.InPlane[1][i] };
-      numbers[count++] = i;
-    }
-  }
+  ForEachRun(
+    block,
+    [&](int begin, int end, TriangleIndex t) {
+      if (charts.GetSystemOf(t) != CoordinateSystem::Contour)
+      {
+        return;
+      }
+      made[begin] = { charts.GetContourChart(t), otherCharts.GetContourChart(t) };
+      for (int i = begin; i < end; ++i)
+      {
+        froms[count] = &made[begin].From;
+        tos[count] = &made[begin].To;
+        points[count] = { block.InPlane[0][i], block.InPlane[1][i] };
+        numbers[count++] = i;
+      }
+    },
+    [](int) {});
   ContourChart::MapPoints(froms.data(), tos.data(), points, count);
   for (int n = 0; n < count; ++n)
   {

@@ -3,6 +3,8 @@
 
 #include "MeshValidation.h"
 
+#include "BoxTree.h"
+
 #include "Kernel/ExactSign.h"
 
 #include "vtkCellArray.h"
@@ -13,6 +15,8 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 namespace homeomorphism
@@ -85,14 +89,15 @@ TriangleList FindTriangles(const Triangulation& triangulation, Predicate&& predi
 /// Reads polygons from offsets and connectivity, which need not be well formed.
 template <typename OffsetArray>
 void ReadPolygons(OffsetArray* offsets, OffsetArray* connectivity, vtkIdType numberOfPoints,
-  vtkIdType firstCell, std::vector<Triangulation::Corners>& triangles, Offenders& notTriangles,
+  vtkIdType firstCell, LargeArray<Triangulation::Corners>& triangles, Offenders& notTriangles,
   Offenders& badConnectivity)
 {
   const vtkIdType cells = std::max<vtkIdType>(0, offsets->GetNumberOfValues() - 1);
   const vtkIdType entries = connectivity->GetNumberOfValues();
-  triangles.resize(cells, { 0, 0, 0 });
+  triangles = LargeArray<Triangulation::Corners>(cells);
   for (vtkIdType cell = 0; cell < cells; ++cell)
   {
+    triangles[cell] = { 0, 0, 0 };
     const vtkIdType begin = offsets->GetValue(cell);
     const vtkIdType end = offsets->GetValue(cell + 1);
     if (begin < 0 || end < begin || end > entries)
@@ -143,10 +148,10 @@ bool InteriorsMeet(const Embedding& geometry, const Triangulation::Corners& firs
   return !separates(first, second) && !separates(second, first);
 }
 
-/// Whether neighbours across an edge lie on the same side of it.
+/// Whether a triangle and a neighbour across an edge lie on the same side of it.
 bool HasFold(const Triangulation& triangulation, const Embedding& embedding, TriangleIndex t)
 {
-  const int orientation = embedding.GetOrientation(triangulation.GetCorners(t));
+  const int orientation = embedding.GetOrientation(t);
   for (int k = 0; k < 3; ++k)
   {
     const AcrossEdge across = triangulation.GetAcross(t, k);
@@ -154,7 +159,7 @@ bool HasFold(const Triangulation& triangulation, const Embedding& embedding, Tri
     {
       continue;
     }
-    const int other = embedding.GetOrientation(triangulation.GetCorners(across.Triangle));
+    const int other = embedding.GetOrientation(across.Triangle);
     if (orientation != (across.SameDirection ? -other : other))
     {
       return true;
@@ -163,17 +168,30 @@ bool HasFold(const Triangulation& triangulation, const Embedding& embedding, Tri
   return false;
 }
 
-/// Whether a triangle's interior meets that of one that is near a box.
-bool OverlapsNear(const Triangulation& triangulation, const Embedding& embedding,
-  const PointLocation& location, TriangleIndex t, const Box<2>& box)
+/// Whether there are such triangles.
+bool HasFolds(const Triangulation& triangulation, const Embedding& embedding)
 {
-  bool overlaps = false;
-  location.VisitNear(box, [&](TriangleIndex other) {
-    overlaps = other != t &&
-      InteriorsMeet(embedding, triangulation.GetCorners(t), triangulation.GetCorners(other));
-    return !overlaps;
-  });
-  return overlaps;
+  if (!triangulation.HasMixedWinding())
+  {
+    // As usual: then all turn the same way unless there are folds or pieces apart.
+    bool left = false;
+    bool right = false;
+    for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+    {
+      if (!triangulation.IsMasked(t))
+      {
+        left = left || embedding.GetOrientation(t) > 0;
+        right = right || embedding.GetOrientation(t) < 0;
+      }
+    }
+    if (!left || !right)
+    {
+      return false;
+    }
+  }
+  return !FindTriangles(triangulation, [&](TriangleIndex t) {
+    return HasFold(triangulation, embedding, t);
+  }).empty();
 }
 
 /// The box around some corners of a triangle of the plane.
@@ -187,6 +205,170 @@ Box<2> BoxAround(const Embedding& embedding, std::initializer_list<std::int32_t>
   return box;
 }
 
+/// Whether a triangle's interior meets that of one that is near a box. visitNear(box, visit) is
+/// like PointLocation::VisitNear.
+template <typename VisitNear>
+bool OverlapsNear(const Triangulation& triangulation, const Embedding& embedding,
+  VisitNear&& visitNear, TriangleIndex t, const Box<2>& box)
+{
+  bool overlaps = false;
+  visitNear(box, [&](TriangleIndex other) {
+    overlaps = other != t &&
+      InteriorsMeet(embedding, triangulation.GetCorners(t), triangulation.GetCorners(other));
+    return !overlaps;
+  });
+  return overlaps;
+}
+
+/// A coarse grid over a part of the plane, which says where boxes were put. All is done in time
+/// that does not depend on how large the boxes are.
+class Cover
+{
+public:
+  Cover(const Box<2>& bounds, int cellsPerSide)
+    : Bounds(bounds)
+    , Side(cellsPerSide)
+    , Counts(static_cast<std::size_t>(Side + 1) * static_cast<std::size_t>(Side + 1), 0)
+  {
+  }
+
+  void Put(const Box<2>& box)
+  {
+    // Where the count changes; the sums are made by Finish.
+    const Cells cells = this->CellsOf(box);
+    this->At(cells.Least[0], cells.Least[1]) += 1;
+    this->At(cells.Greatest[0] + 1, cells.Least[1]) -= 1;
+    this->At(cells.Least[0], cells.Greatest[1] + 1) -= 1;
+    this->At(cells.Greatest[0] + 1, cells.Greatest[1] + 1) += 1;
+  }
+
+  /// After all boxes were put.
+  void Finish()
+  {
+    this->SumUp();
+    for (std::int32_t& count : this->Counts)
+    {
+      count = count > 0 ? 1 : 0;
+    }
+    // At(x, y) becomes the number of covered cells before it in both directions.
+    for (int y = this->Side; y >= 0; --y)
+    {
+      for (int x = this->Side; x >= 0; --x)
+      {
+        this->At(x, y) = x > 0 && y > 0 ? this->At(x - 1, y - 1) : 0;
+      }
+    }
+    this->SumUp();
+  }
+
+  /// False only if @a box meets none of the boxes.
+  bool MayMeet(const Box<2>& box) const
+  {
+    const Cells cells = this->CellsOf(box);
+    return this->At(cells.Greatest[0] + 1, cells.Greatest[1] + 1) -
+      this->At(cells.Least[0], cells.Greatest[1] + 1) -
+      this->At(cells.Greatest[0] + 1, cells.Least[1]) + this->At(cells.Least[0], cells.Least[1]) >
+      0;
+  }
+
+private:
+  struct Cells
+  {
+    std::array<int, 2> Least;
+    std::array<int, 2> Greatest;
+  };
+
+  std::int32_t& At(int x, int y)
+  {
+    return this->Counts[static_cast<std::size_t>(y) * static_cast<std::size_t>(this->Side + 1) +
+      static_cast<std::size_t>(x)];
+  }
+  std::int32_t At(int x, int y) const { return const_cast<Cover*>(this)->At(x, y); }
+
+  void SumUp()
+  {
+    for (int y = 0; y <= this->Side; ++y)
+    {
+      for (int x = 1; x <= this->Side; ++x)
+      {
+        this->At(x, y) += this->At(x - 1, y);
+      }
+    }
+    for (int y = 1; y <= this->Side; ++y)
+    {
+      for (int x = 0; x <= this->Side; ++x)
+      {
+        this->At(x, y) += this->At(x, y - 1);
+      }
+    }
+  }
+
+  /// Never decreases with the coordinate, so that boxes that meet have a cell in common.
+  Cells CellsOf(const Box<2>& box) const
+  {
+    Cells cells;
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const double least = this->Bounds.Least[axis];
+      const double scale = this->Side / (this->Bounds.Greatest[axis] - least);
+      const auto cellOf = [&](double x) {
+        const double place = (x - least) * scale;
+        // Also where it is not a number, because the scale is not finite.
+        return place > 0.0 ? static_cast<int>(std::min(place, this->Side - 1.0)) : 0;
+      };
+      cells.Least[axis] = cellOf(box.Least[axis]);
+      cells.Greatest[axis] = cellOf(box.Greatest[axis]);
+    }
+    return cells;
+  }
+
+  Box<2> Bounds;
+  int Side;
+  std::vector<std::int32_t> Counts;
+};
+
+/// Whether a triangle at the boundary overlaps one that is near its boundary edge.
+bool OverlapsAtBoundary(const Triangulation& triangulation, const Embedding& embedding)
+{
+  const auto boxOf = [&](TriangleIndex t) {
+    const Triangulation::Corners& corners = triangulation.GetCorners(t);
+    return BoxAround(embedding, { corners[0], corners[1], corners[2] });
+  };
+  const auto boxOfEdge = [&](TriangleIndex t, int k) {
+    const Triangulation::Corners& corners = triangulation.GetCorners(t);
+    return BoxAround(embedding, { corners[NextCorner(k)], corners[PreviousCorner(k)] });
+  };
+  const TriangleList atBoundary = FindTriangles(triangulation, [&](TriangleIndex t) {
+    return triangulation.GetAcross(t, 0).Triangle < 0 ||
+      triangulation.GetAcross(t, 1).Triangle < 0 || triangulation.GetAcross(t, 2).Triangle < 0;
+  });
+  const auto visitEdges = [&](const auto& visit) {
+    return std::any_of(atBoundary.begin(), atBoundary.end(), [&](TriangleIndex t) {
+      bool found = false;
+      for (int k = 0; k < 3 && !found; ++k)
+      {
+        found = triangulation.GetAcross(t, k).Triangle < 0 && visit(t, boxOfEdge(t, k));
+      }
+      return found;
+    });
+  };
+  // Most triangles are far from all boundary edges.
+  const double few = 0.5 * std::sqrt(static_cast<double>(triangulation.GetNumberOfTriangles()));
+  Cover cover(embedding.GetPlaneBounds(), 1 + static_cast<int>(std::min(few, 255.0)));
+  visitEdges([&cover](TriangleIndex, const Box<2>& box) {
+    cover.Put(box);
+    return false;
+  });
+  cover.Finish();
+  BoxTree<2> tree;
+  tree.Build(
+    FindTriangles(triangulation, [&](TriangleIndex t) { return cover.MayMeet(boxOf(t)); }), boxOf);
+  const auto visitNear = [&tree](const Box<2>& box, const auto& visit) { tree.Search(box, visit); };
+  return visitEdges([&](TriangleIndex t, const Box<2>& box) {
+    return OverlapsNear(triangulation, embedding, visitNear, t, box);
+  });
+}
+
 } // namespace
 
 vtkIdType FirstPolygon(vtkPolyData* mesh)
@@ -194,10 +376,10 @@ vtkIdType FirstPolygon(vtkPolyData* mesh)
   return CountCells(mesh->GetVerts()) + CountCells(mesh->GetLines());
 }
 
-std::vector<Triangulation::Corners> ReadTriangles(
+LargeArray<Triangulation::Corners> ReadTriangles(
   vtkPolyData* mesh, const std::string& where, MeshProblems& problems)
 {
-  std::vector<Triangulation::Corners> triangles;
+  LargeArray<Triangulation::Corners> triangles;
   const vtkIdType firstCell = FirstPolygon(mesh);
   Offenders notTriangles(MeshProblem::Kind::NotTriangles, where);
   Offenders badConnectivity(MeshProblem::Kind::BadConnectivity, where);
@@ -241,8 +423,8 @@ std::vector<Triangulation::Corners> ReadTriangles(
 }
 
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
-  const std::vector<Triangulation::Corners>& sourceTriangles,
-  const std::vector<Triangulation::Corners>& targetTriangles, MeshProblems& problems)
+  const LargeArray<Triangulation::Corners>& sourceTriangles,
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshProblems& problems)
 {
   if (source->GetNumberOfPoints() != target->GetNumberOfPoints())
   {
@@ -266,8 +448,9 @@ void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const vtkIdType firstCell = FirstPolygon(source);
   for (std::size_t t = 0; t < sourceTriangles.size(); ++t)
   {
-    if (!std::is_permutation(
-          sourceTriangles[t].begin(), sourceTriangles[t].end(), targetTriangles[t].begin()))
+    if (sourceTriangles[t] != targetTriangles[t] &&
+      !std::is_permutation(
+        sourceTriangles[t].begin(), sourceTriangles[t].end(), targetTriangles[t].begin()))
     {
       different.Add(firstCell + static_cast<vtkIdType>(t));
     }
@@ -286,6 +469,10 @@ TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation)
 {
   vtkUnsignedCharArray* cells = GhostsOf(mesh->GetCellData(), mesh->GetNumberOfCells());
   vtkUnsignedCharArray* points = GhostsOf(mesh->GetPointData(), mesh->GetNumberOfPoints());
+  if (!cells && !points)
+  {
+    return {};
+  }
   const vtkIdType firstCell = FirstPolygon(mesh);
   return FindTriangles(triangulation, [&](TriangleIndex t) {
     if (cells && (cells->GetValue(firstCell + t) & vtkDataSetAttributes::HIDDENCELL))
@@ -309,22 +496,25 @@ TriangleList FindRepeatedCorners(const Triangulation& triangulation)
 
 TriangleList FindNotFinite(const Triangulation& triangulation, const Embedding& embedding)
 {
+  if (embedding.IsFinite())
+  {
+    return {};
+  }
   return FindTriangles(triangulation,
     [&](TriangleIndex t) { return !embedding.IsFinite(triangulation.GetCorners(t)); });
 }
 
 TriangleList FindNoArea(const Triangulation& triangulation, const Embedding& embedding)
 {
-  return FindTriangles(triangulation,
-    [&](TriangleIndex t) { return embedding.HasNoArea(triangulation.GetCorners(t)); });
+  return FindTriangles(
+    triangulation, [&](TriangleIndex t) { return embedding.HasNoArea(triangulation, t); });
 }
 
 TriangleList FindFlipped(
   const Triangulation& triangulation, const Embedding& source, const Embedding& target)
 {
   const auto isMirrored = [&](TriangleIndex t) {
-    const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return source.GetOrientation(corners) != target.GetOrientation(corners);
+    return source.GetOrientation(t) != target.GetOrientation(t);
   };
   TriangleList mirrored = FindTriangles(triangulation, isMirrored);
   std::size_t all = 0;
@@ -346,30 +536,17 @@ TriangleList FindOverlapping(
   // Beside a region that is covered twice there then is a boundary edge whose triangle is on the
   // side that is covered twice: there it overlaps a triangle that touches the edge. So only what is
   // near boundary edges has to be compared.
-  const bool folded = !FindTriangles(triangulation, [&](TriangleIndex t) {
-    return HasFold(triangulation, embedding, t);
-  }).empty();
-  const auto overlapsAtBoundary = [&](TriangleIndex t) {
-    const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    for (int k = 0; k < 3; ++k)
-    {
-      if (triangulation.GetAcross(t, k).Triangle < 0 &&
-        OverlapsNear(triangulation, embedding, location, t,
-          BoxAround(embedding, { corners[NextCorner(k)], corners[PreviousCorner(k)] })))
-      {
-        return true;
-      }
-    }
-    return false;
-  };
-  if (!folded && FindTriangles(triangulation, overlapsAtBoundary).empty())
+  if (!HasFolds(triangulation, embedding) && !OverlapsAtBoundary(triangulation, embedding))
   {
     return {};
   }
+  const auto visitNear = [&location](const Box<2>& box, const auto& visit) {
+    location.VisitNear(box, visit);
+  };
   // Something overlaps: name all that do.
   return FindTriangles(triangulation, [&](TriangleIndex t) {
     const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return OverlapsNear(triangulation, embedding, location, t,
+    return OverlapsNear(triangulation, embedding, visitNear, t,
       BoxAround(embedding, { corners[0], corners[1], corners[2] }));
   });
 }

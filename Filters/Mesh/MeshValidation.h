@@ -33,14 +33,14 @@ vtkIdType FirstPolygon(vtkPolyData* mesh);
 /// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
 /// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
 /// exist, and counts beyond what can be numbered. @a where names the mesh in messages.
-std::vector<Triangulation::Corners> ReadTriangles(
+LargeArray<Triangulation::Corners> ReadTriangles(
   vtkPolyData* mesh, const std::string& where, MeshProblems& problems);
 
 /// Reports what keeps source and target from being the same mesh: counts, and triangles that do not
 /// have the same three points. The order of the three points is free.
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
-  const std::vector<Triangulation::Corners>& sourceTriangles,
-  const std::vector<Triangulation::Corners>& targetTriangles, MeshProblems& problems);
+  const LargeArray<Triangulation::Corners>& sourceTriangles,
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshProblems& problems);
 
 /// The array of some attributes that marks what is hidden or belongs to another piece
 /// (vtkGhostType); null if there is none that has one value for each of @a tuples points or cells.
@@ -65,7 +65,7 @@ TriangleList FindFlipped(
 
 /// Triangles of a planar mesh whose interior meets another's, by exact predicates. @a
 /// triangulation's adjacency and @a location must know which triangles are masked. Nearly linear in
-/// the number of triangles as long as there are none.
+/// the number of triangles as long as there are none; @a location is asked only if there are some.
 TriangleList FindOverlapping(
   const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location);
 

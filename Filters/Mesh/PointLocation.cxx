@@ -69,24 +69,13 @@ PointLocation::PointLocation(const Triangulation& triangulation, const Embedding
   : Topology(triangulation)
   , Geometry(embedding)
 {
-  std::vector<TriangleIndex> triangles;
-  triangles.reserve(triangulation.GetNumberOfTriangles());
-  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
-  {
-    if (!triangulation.IsMasked(t))
-    {
-      triangles.push_back(t);
-    }
-  }
   if (embedding.IsPlanar())
   {
-    this->PlantSeeds(triangles);
-    this->PlaneTree.Build(
-      std::move(triangles), [this](TriangleIndex t) { return this->PlaneBox(t); });
+    this->PlantSeeds();
   }
   else
   {
-    this->SpaceTree.Build(std::move(triangles), [this](TriangleIndex t) {
+    this->SpaceTree.Build(this->ListTriangles(), [this](TriangleIndex t) {
       Box<3> box;
       for (const std::int32_t corner : this->Topology.GetCorners(t))
       {
@@ -95,6 +84,29 @@ PointLocation::PointLocation(const Triangulation& triangulation, const Embedding
       return box;
     });
   }
+}
+
+std::vector<TriangleIndex> PointLocation::ListTriangles() const
+{
+  std::vector<TriangleIndex> triangles;
+  triangles.reserve(this->Topology.GetNumberOfTriangles());
+  for (TriangleIndex t = 0; t < this->Topology.GetNumberOfTriangles(); ++t)
+  {
+    if (!this->Topology.IsMasked(t))
+    {
+      triangles.push_back(t);
+    }
+  }
+  return triangles;
+}
+
+const BoxTree<2>& PointLocation::GetPlaneTree() const
+{
+  std::call_once(this->HasPlaneTree, [this]() {
+    this->PlaneTree.Build(
+      this->ListTriangles(), [this](TriangleIndex t) { return this->PlaneBox(t); });
+  });
+  return this->PlaneTree;
 }
 
 Box<2> PointLocation::PlaneBox(TriangleIndex triangle) const
@@ -108,16 +120,12 @@ Box<2> PointLocation::PlaneBox(TriangleIndex triangle) const
   return box;
 }
 
-void PointLocation::PlantSeeds(const std::vector<TriangleIndex>& triangles)
+void PointLocation::PlantSeeds()
 {
-  Box<2> bounds;
-  for (const TriangleIndex t : triangles)
-  {
-    bounds.Add(this->PlaneBox(t));
-  }
+  const Box<2>& bounds = this->Geometry.GetPlaneBounds();
   const double width = bounds.Greatest[0] - bounds.Least[0];
   const double height = bounds.Greatest[1] - bounds.Least[1];
-  const double cells = 0.5 * static_cast<double>(triangles.size());
+  const double cells = 0.5 * static_cast<double>(this->Topology.GetNumberOfTriangles());
   const double columns = std::floor(std::sqrt(cells * width / height));
   if (!(columns >= 1.0 && columns <= cells))
   {
@@ -127,10 +135,14 @@ void PointLocation::PlantSeeds(const std::vector<TriangleIndex>& triangles)
   this->SeedRows = std::max(1.0, std::floor(cells / columns));
   this->SeedOrigin = { bounds.Least[0], bounds.Least[1] };
   this->SeedScale = { this->SeedColumns / width, this->SeedRows / height };
-  this->Seeds.assign(
+  this->Seeds = LargeArray<TriangleIndex>(
     static_cast<std::size_t>(this->SeedColumns) * static_cast<std::size_t>(this->SeedRows), -1);
-  for (const TriangleIndex t : triangles)
+  for (TriangleIndex t = 0; t < this->Topology.GetNumberOfTriangles(); ++t)
   {
+    if (this->Topology.IsMasked(t))
+    {
+      continue;
+    }
     Vector2 middle;
     for (const std::int32_t corner : this->Topology.GetCorners(t))
     {
@@ -266,7 +278,7 @@ TriangleIndex PointLocation::Walk(
 TriangleIndex PointLocation::SearchPlane(const Vector2& point) const
 {
   TriangleIndex found = -1;
-  this->PlaneTree.Search(
+  this->GetPlaneTree().Search(
     Box<2>::Around({ point.x, point.y }, 0.0), [this, &point, &found](TriangleIndex t) {
       if ((found < 0 || t < found) &&
         Containment(this->Geometry, this->Topology.GetCorners(t), point) >= 0)
@@ -317,7 +329,7 @@ Location PointLocation::FindInPlane(
   }
   Nearest nearest{ {}, tolerance };
   Box<2> reach = Box<2>::Around({ point.x, point.y }, tolerance);
-  this->PlaneTree.Search(reach, [&](TriangleIndex t) {
+  this->GetPlaneTree().Search(reach, [&](TriangleIndex t) {
     FramePoint place = this->Geometry.ToFrame(t, working);
     const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), place.InPlane);
     const double distance = Distance(inTriangle, place.InPlane);

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 namespace homeomorphism
@@ -108,12 +109,14 @@ public:
   template <typename Visit>
   void VisitNear(const Box<2>& box, Visit&& visit) const
   {
-    this->PlaneTree.Search(box, visit);
+    this->GetPlaneTree().Search(box, visit);
   }
 
 private:
   Box<2> PlaneBox(TriangleIndex triangle) const;
-  void PlantSeeds(const std::vector<TriangleIndex>& triangles);
+  std::vector<TriangleIndex> ListTriangles() const;
+  void PlantSeeds();
+  const BoxTree<2>& GetPlaneTree() const;
   int FindCorner(TriangleIndex triangle, const Vector3& working) const;
   Location Place(TriangleIndex triangle, const Vector3& working) const;
   Location FindInPlane(const Vector3& working, double tolerance, TriangleIndex hint) const;
@@ -123,11 +126,14 @@ private:
 
   const Triangulation& Topology;
   const Embedding& Geometry;
-  BoxTree<2> PlaneTree;
   BoxTree<3> SpaceTree;
+  // Made when it is first needed, by whichever thread does first: often no point is outside or on
+  // an edge, and one of the two directions is not used at all.
+  mutable std::once_flag HasPlaneTree;
+  mutable BoxTree<2> PlaneTree;
 
   // A grid over a planar domain; each cell has a triangle whose middle is in it, or -1.
-  std::vector<TriangleIndex> Seeds;
+  LargeArray<TriangleIndex> Seeds;
   Vector2 SeedOrigin;
   Vector2 SeedScale;
   double SeedColumns = 0.0;

@@ -6,95 +6,97 @@
 #include "Kernel/Geometry.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace homeomorphism
 {
 
-void Triangulation::SetTriangles(std::vector<Corners> triangles, vtkIdType firstCell)
+void Triangulation::SetTriangles(
+  LargeArray<Corners> triangles, vtkIdType firstCell, LargeArray<Corners> scratch)
 {
   this->Triangles = std::move(triangles);
+  this->Adjacency = std::move(scratch);
   this->FirstCell = firstCell;
   this->Masked.assign(this->Triangles.size(), 0);
-  this->Adjacency.assign(this->Triangles.size(), { -1, -1, -1 });
 }
 
 std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints)
 {
-  struct HalfEdge
-  {
-    std::int32_t GreaterPoint;
-    std::int32_t TriangleAndEdge; // triangle * 4 + edge
-  };
-  // Half edges are put into one bucket for each point, the lesser of their two; those with the same
-  // greater point in a bucket then are the same edge.
-  const auto lesserPoint = [this](TriangleIndex triangle, int edge) {
-    const Corners& corners = this->Triangles[triangle];
-    return std::min(corners[NextCorner(edge)], corners[PreviousCorner(edge)]);
-  };
-  std::vector<std::int64_t> bucketEnd(static_cast<std::size_t>(numberOfPoints) + 1, 0);
+  // Half edges are put into one list for each point, the lesser of their two; those with the same
+  // greater point in a list then are the same edge. A half edge's code is triangle * 8 + edge * 2 +
+  // whether it runs from the lesser to the greater point; what is to become its adjacency has the
+  // code of the next in its list meanwhile.
   const TriangleIndex count = this->GetNumberOfTriangles();
+  if (this->Adjacency.size() != this->Triangles.size())
+  {
+    this->Adjacency = LargeArray<Corners>(this->Triangles.size());
+  }
+  LargeArray<std::int32_t> lists(static_cast<std::size_t>(numberOfPoints), -1);
   for (TriangleIndex t = 0; t < count; ++t)
   {
-    this->Adjacency[t] = { -1, -1, -1 };
-    for (int k = 0; k < 3 && !this->Masked[t]; ++k)
+    const Corners& corners = this->Triangles[t];
+    for (int k = 0; k < 3; ++k)
     {
-      ++bucketEnd[lesserPoint(t, k) + 1];
-    }
-  }
-  for (vtkIdType i = 0; i < numberOfPoints; ++i)
-  {
-    bucketEnd[i + 1] += bucketEnd[i];
-  }
-  std::vector<HalfEdge> halfEdges(bucketEnd[numberOfPoints]);
-  // Filling moves the start of each bucket, kept in bucketEnd, to its end.
-  for (TriangleIndex t = 0; t < count; ++t)
-  {
-    for (int k = 0; k < 3 && !this->Masked[t]; ++k)
-    {
-      const Corners& corners = this->Triangles[t];
-      const std::int32_t greater = std::max(corners[NextCorner(k)], corners[PreviousCorner(k)]);
-      halfEdges[bucketEnd[lesserPoint(t, k)]++] = { greater, t * 4 + k };
+      this->Adjacency[t][k] = -1;
+      if (!this->Masked[t])
+      {
+        const std::int32_t start = corners[NextCorner(k)];
+        const std::int32_t end = corners[PreviousCorner(k)];
+        std::int32_t& list = lists[std::min(start, end)];
+        this->Adjacency[t][k] = list;
+        list = t * 8 + k * 2 + (start < end ? 1 : 0);
+      }
     }
   }
 
+  this->MixedWinding = false;
   std::vector<TriangleIndex> crowded;
-  std::int64_t begin = 0;
-  for (vtkIdType i = 0; i < numberOfPoints; ++i)
+  // The half edges of a point: the greater point above the code, so that sorting brings those of an
+  // edge together, in the order of their triangles.
+  constexpr int bits = 31;
+  static_assert(MaximumTriangles * 8 <= (vtkIdType(1) << bits), "The codes of half edges");
+  std::vector<std::uint64_t> halfEdges;
+  const auto codeOf = [](std::uint64_t halfEdge) {
+    return static_cast<std::int32_t>(halfEdge & ((std::uint64_t(1) << bits) - 1));
+  };
+  for (const std::int32_t list : lists)
   {
-    const std::int64_t end = bucketEnd[i];
-    std::sort(
-      halfEdges.begin() + begin, halfEdges.begin() + end, [](const HalfEdge& a, const HalfEdge& b) {
-        return a.GreaterPoint != b.GreaterPoint ? a.GreaterPoint < b.GreaterPoint
-                                                : a.TriangleAndEdge < b.TriangleAndEdge;
-      });
-    for (std::int64_t first = begin; first < end;)
+    halfEdges.clear();
+    for (std::int32_t code = list; code >= 0;)
     {
-      std::int64_t last = first + 1;
-      while (last < end && halfEdges[last].GreaterPoint == halfEdges[first].GreaterPoint)
+      const TriangleIndex t = code >> 3;
+      const int k = (code >> 1) & 3;
+      const Corners& corners = this->Triangles[t];
+      const auto greater =
+        static_cast<std::uint64_t>(std::max(corners[NextCorner(k)], corners[PreviousCorner(k)]));
+      halfEdges.push_back((greater << bits) + static_cast<std::uint64_t>(code));
+      code = std::exchange(this->Adjacency[t][k], -1);
+    }
+    std::sort(halfEdges.begin(), halfEdges.end());
+    for (auto first = halfEdges.begin(); first != halfEdges.end();)
+    {
+      auto last = first + 1;
+      while (last != halfEdges.end() && *last >> bits == *first >> bits)
       {
         ++last;
       }
       if (last - first == 2)
       {
-        const std::int32_t a = halfEdges[first].TriangleAndEdge;
-        const std::int32_t b = halfEdges[first + 1].TriangleAndEdge;
-        const auto start = [this](std::int32_t code) {
-          return this->Triangles[code >> 2][NextCorner(code & 3)];
-        };
-        const std::int32_t same = start(a) == start(b) ? 1 : 0;
-        this->Adjacency[a >> 2][a & 3] = (b >> 2) * 8 + (b & 3) * 2 + same;
-        this->Adjacency[b >> 2][b & 3] = (a >> 2) * 8 + (a & 3) * 2 + same;
+        const std::int32_t a = codeOf(first[0]);
+        const std::int32_t b = codeOf(first[1]);
+        const std::int32_t same = (a & 1) == (b & 1) ? 1 : 0;
+        this->Adjacency[a >> 3][(a >> 1) & 3] = (b & ~1) + same;
+        this->Adjacency[b >> 3][(b >> 1) & 3] = (a & ~1) + same;
+        this->MixedWinding = this->MixedWinding || same != 0;
       }
       else if (last - first > 2)
       {
-        for (std::int64_t i2 = first; i2 < last; ++i2)
-        {
-          crowded.push_back(halfEdges[i2].TriangleAndEdge >> 2);
-        }
+        std::transform(first, last, std::back_inserter(crowded),
+          [&codeOf](std::uint64_t halfEdge) { return codeOf(halfEdge) >> 3; });
       }
       first = last;
     }
-    begin = end;
   }
   std::sort(crowded.begin(), crowded.end());
   crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
@@ -103,6 +105,10 @@ std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints
 
 std::vector<TriangleIndex> Triangulation::FindNotOrientable() const
 {
+  if (!this->MixedWinding)
+  {
+    return {};
+  }
   const TriangleIndex count = this->GetNumberOfTriangles();
   constexpr std::int8_t unknown = 0;
   std::vector<std::int8_t> winding(count, unknown);

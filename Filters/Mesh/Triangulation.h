@@ -7,6 +7,8 @@
 #ifndef homeomorphism_Triangulation_h
 #define homeomorphism_Triangulation_h
 
+#include "LargeArray.h"
+
 #include "vtkType.h"
 
 #include <array>
@@ -78,7 +80,10 @@ public:
   /// Asks for what GetAcross will need, without waiting for it.
   void PrefetchAcross(TriangleIndex triangle) const { Prefetch(&this->Adjacency[triangle]); }
 
-  void SetTriangles(std::vector<Corners> triangles, vtkIdType firstCell);
+  /// What lies across the edges is not known until FindAdjacency. @a scratch is an array of the
+  /// same size that is no longer needed, whose memory can be used again.
+  void SetTriangles(
+    LargeArray<Corners> triangles, vtkIdType firstCell, LargeArray<Corners> scratch = {});
   void Mask(TriangleIndex triangle) { this->Masked[triangle] = 1; }
 
   /// Finds what lies across each edge. Linear in the number of triangles. Masked triangles take no
@@ -86,15 +91,19 @@ public:
   /// boundary.
   std::vector<TriangleIndex> FindAdjacency(vtkIdType numberOfPoints);
 
+  /// Whether there are neighbours whose cyclic orders run through their edge in the same direction.
+  bool HasMixedWinding() const { return this->MixedWinding; }
+
   /// Returns, ascending, the triangles whose winding contradicts a neighbour's, however the winding
   /// of triangles is reversed: none if the surface is orientable.
   std::vector<TriangleIndex> FindNotOrientable() const;
 
 private:
-  std::vector<Corners> Triangles;
+  LargeArray<Corners> Triangles;
   std::vector<std::uint8_t> Masked;
   // Neighbour, its edge and the direction in one number: triangle * 8 + edge * 2 + same direction.
-  std::vector<std::array<std::int32_t, 3>> Adjacency;
+  LargeArray<Corners> Adjacency;
+  bool MixedWinding = false;
   vtkIdType FirstCell = 0;
 };
 

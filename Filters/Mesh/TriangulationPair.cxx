@@ -101,12 +101,12 @@ private:
 
   void ReadTopology()
   {
-    std::vector<Triangulation::Corners> triangles =
+    LargeArray<Triangulation::Corners> triangles =
       ReadTriangles(this->Meshes[0], this->Names[0], this->Problems);
+    LargeArray<Triangulation::Corners> others;
     if (this->Meshes[1])
     {
-      const std::vector<Triangulation::Corners> others =
-        ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
+      others = ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
       if (!IsRefused(this->Problems))
       {
         CompareConnectivity(this->Meshes[0], this->Meshes[1], triangles, others, this->Problems);
@@ -117,7 +117,7 @@ private:
       return;
     }
     Triangulation& topology = this->Pair->Topology;
-    topology.SetTriangles(std::move(triangles), FirstPolygon(this->Meshes[0]));
+    topology.SetTriangles(std::move(triangles), FirstPolygon(this->Meshes[0]), std::move(others));
     for (vtkPolyData* mesh : this->Meshes)
     {
       // What the mesh blanks is not there: no defect, so no message.

@@ -52,10 +52,12 @@ Point Cross(const Point& a, const Point& b)
   return c;
 }
 
-Point Unit(Point a)
+/// Not of a parameter by value, changed in place through a pointer: GCC 12's -fipa-modref may drop
+/// what the caller writes into it, which it did in the build with the thread sanitizer.
+Point Unit(const Point& a)
 {
-  vtkMath::Normalize(a.data());
-  return a;
+  const double length = vtkMath::Norm(a.data());
+  return { a[0] / length, a[1] / length, a[2] / length };
 }
 
 double Distance(const Point& a, const Point& b)

@@ -17,6 +17,7 @@
 #include "vtkPointData.h"
 #include "vtkResampleThroughHomeomorphism.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <gtest/gtest.h>
 
@@ -355,6 +356,66 @@ TEST(Resample, NewDataDoesNotBuildTheMeshesAgain)
     filter->Update();
   }
   EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 1);
+}
+
+TEST(Resample, DataMayBeReplacedInPlace)
+{
+  // VTK keeps lists of each point's cells from the first search.
+  const MeshPair pair = MakePair();
+  const auto toGrid = [](vtkPolyData* mesh) {
+    auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    grid->SetPoints(mesh->GetPoints());
+    grid->SetCells(VTK_TRIANGLE, mesh->GetPolys());
+    grid->GetPointData()->ShallowCopy(mesh->GetPointData());
+    return grid;
+  };
+  const auto withField = [](int side) {
+    // Larger than the domain, so that no point of it is outside by rounding.
+    const auto mesh = MakePlanarPair(side, 5).Source;
+    vtkNew<vtkDoubleArray> field;
+    field->SetName("Field");
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      mesh->GetPoint(i, p);
+      p[0] = (p[0] * (n + 1)) / side - 0.5;
+      p[1] = (p[1] * (n + 1)) / side - 0.5;
+      mesh->GetPoints()->SetPoint(i, p);
+      field->InsertNextValue(Field(p));
+    }
+    mesh->GetPointData()->SetScalars(field);
+    return mesh;
+  };
+  const auto coarse = withField(2);
+  const auto fine = withField(200);
+  for (const int kind : { 0, 1, 2 })
+  {
+    SCOPED_TRACE(kind);
+    vtkSmartPointer<vtkPointSet> data = toGrid(coarse);
+    if (kind == 0)
+    {
+      data = vtkSmartPointer<vtkPolyData>::New();
+      data->ShallowCopy(coarse);
+    }
+    vtkNew<vtkMultiBlockDataSet> tree;
+    tree->SetBlock(0, data);
+    const auto resample =
+      MakeResample(pair, kind == 2 ? static_cast<vtkDataObject*>(tree) : data.Get());
+    resample->Update();
+    data->SetPoints(fine->GetPoints());
+    data->GetPointData()->ShallowCopy(fine->GetPointData());
+    if (kind > 0)
+    {
+      vtkUnstructuredGrid::SafeDownCast(data)->SetCells(VTK_TRIANGLE, fine->GetPolys());
+    }
+    else
+    {
+      vtkPolyData::SafeDownCast(data)->SetPolys(fine->GetPolys());
+    }
+    tree->Modified();
+    resample->Update();
+    ExpectPulledBack(vtkDataSet::SafeDownCast(resample->GetOutputDataObject(0)), pair);
+  }
 }
 
 TEST(Resample, RefusalsAreReported)

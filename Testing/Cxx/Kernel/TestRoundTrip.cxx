@@ -306,4 +306,44 @@ TEST(ContourRoundTrip, NearTheTipOfACap)
   EXPECT_LT(Norm(chart.ToPoint(chart.ToReference(point)) - point), 1e-14 * triangle.Shape.Base);
 }
 
+/// Seen from the incenter, needles and caps as thin as numbers can tell: products of two heights
+/// underflow.
+TEST(ContourRoundTrip, NeedlesFromTheIncenterHaveImagesAndDerivatives)
+{
+  const std::vector<double> weights{ 0.0, 1e-300, 1e-200, 1e-100, 1e-40, 1e-17, 1e-10, 1e-3, 0.1,
+    0.3 };
+  for (int power = -280; power <= 0; power += 4)
+  {
+    for (const double apexX : { 0.5, 0.9, 0.0, 1e-20, 1e-100, 1e-200 })
+    {
+      const TriangleShape shape{ 1.0, apexX, std::pow(10.0, power), 2 };
+      const ContourChart chart(shape,
+        ViewsFromEdges(shape.Corner(0), shape.Corner(1), shape.Corner(2)), CenterPoint::Incenter);
+      for (int k = 0; k < 3; ++k)
+      {
+        for (const double next : weights)
+        {
+          for (const double previous : weights)
+          {
+            Barycentric l;
+            l[k] = 1.0 - next - previous;
+            l[NextCorner(k)] = next;
+            l[PreviousCorner(k)] = previous;
+            const auto reference = chart.ToReference(shape.FromBarycentric(l));
+            const Vector2 image = chart.ToPoint(reference);
+            ASSERT_LT(DistanceOutside(shape, image), 1e-15) << power << ", " << apexX;
+            for (const Vector2& axis : { Vector2{ 1.0, 0.0 }, Vector2{ 0.0, 1.0 } })
+            {
+              const Vector2 pulled = chart.Pull(reference, axis);
+              const Vector2 pushed = chart.Push(reference, axis);
+              ASSERT_FALSE(std::isnan(pulled.x + pulled.y)) << power << ", " << apexX;
+              ASSERT_TRUE(std::isfinite(pushed.x + pushed.y)) << power << ", " << apexX;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 } // namespace

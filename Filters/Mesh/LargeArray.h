@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file LargeArray.h
+/// Arrays with an element for each triangle or point of a mesh.
+
+#ifndef homeomorphism_LargeArray_h
+#define homeomorphism_LargeArray_h
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Memory for an array, for ReleaseLarge to give back. It starts at a line of the processor's
+/// cache. Much memory is asked for in the system's large pages, where it has some: to be given
+/// small pages one by one takes longer than to compute what is written to them, and to look up
+/// where they are takes longer than to read them.
+void* AllocateLarge(std::size_t bytes);
+void ReleaseLarge(void* memory);
+
+/// An array whose size does not change. Its elements have no values until some are assigned: memory
+/// is written once.
+template <typename T>
+class LargeArray
+{
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>,
+    "Elements are neither constructed nor destroyed");
+  static_assert(alignof(T) <= 64, "See AllocateLarge");
+
+public:
+  LargeArray() = default;
+
+  explicit LargeArray(std::size_t size)
+    : Memory(size > 0 ? static_cast<T*>(AllocateLarge(size * sizeof(T))) : nullptr)
+    , Count(size)
+  {
+  }
+
+  LargeArray(std::size_t size, const T& value)
+    : LargeArray(size)
+  {
+    std::fill(this->begin(), this->end(), value);
+  }
+
+  /// Copies, for meshes written down element by element.
+  LargeArray(const std::vector<T>& elements) // NOLINT(google-explicit-constructor)
+    : LargeArray(elements.size())
+  {
+    std::copy(elements.begin(), elements.end(), this->begin());
+  }
+  LargeArray(std::initializer_list<T> elements)
+    : LargeArray(elements.size())
+  {
+    std::copy(elements.begin(), elements.end(), this->begin());
+  }
+
+  LargeArray(LargeArray&& other) noexcept
+    : Memory(std::move(other.Memory))
+    , Count(std::exchange(other.Count, 0))
+  {
+  }
+  LargeArray& operator=(LargeArray&& other) noexcept
+  {
+    this->Memory = std::move(other.Memory);
+    this->Count = std::exchange(other.Count, 0);
+    return *this;
+  }
+
+  std::size_t size() const { return this->Count; }
+  bool empty() const { return this->Count == 0; }
+
+  T& operator[](std::size_t i) { return this->Memory.get()[i]; }
+  const T& operator[](std::size_t i) const { return this->Memory.get()[i]; }
+
+  T* begin() { return this->Memory.get(); }
+  T* end() { return this->Memory.get() + this->Count; }
+  const T* begin() const { return this->Memory.get(); }
+  const T* end() const { return this->Memory.get() + this->Count; }
+
+private:
+  struct Release
+  {
+    void operator()(T* memory) const { ReleaseLarge(memory); }
+  };
+
+  std::unique_ptr<T, Release> Memory;
+  std::size_t Count = 0;
+};
+
+} // namespace homeomorphism
+
+#endif
