@@ -9,6 +9,7 @@
 #include "OutputFile.h"
 #include "PictureFile.h"
 
+#include "vtkCellArray.h"
 #include "vtkErrorCode.h"
 #include "vtkGenericDataObjectReader.h"
 #include "vtkGenericDataObjectWriter.h"
@@ -17,7 +18,9 @@
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 #include "vtkXMLDataObjectWriter.h"
 #include "vtkXMLGenericDataObjectReader.h"
 #include "vtkXMLWriter.h"
@@ -27,6 +30,7 @@
 #include <csignal>
 #include <initializer_list>
 #include <new>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -56,6 +60,28 @@ bool IsOneOf(const Value& value, const Values& values)
       (why.empty() ? " as what its name says (." + file.GetFormat() + ")." : ": " + why));
 }
 
+/// Throws Failure if cells' points are not where the mesh says: no reader of VTK looks, and all
+/// that go through the cells would read memory of others.
+void RequireCells(vtkDataObject* data, const InputFile& file)
+{
+  std::vector<vtkCellArray*> arrays;
+  if (auto* mesh = vtkPolyData::SafeDownCast(data))
+  {
+    arrays = { mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips() };
+  }
+  else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    arrays = { grid->GetCells() };
+  }
+  for (vtkCellArray* cells : arrays)
+  {
+    if (cells && !cells->IsValid())
+    {
+      FailToRead(file, "the numbers that say where each cell's points begin are wrong.");
+    }
+  }
+}
+
 /// Warnings are errors: many of VTK's readers only warn of data that is not there.
 template <typename Reader>
 vtkSmartPointer<vtkDataObject> ReadWith(Reader* reader, const InputFile& file)
@@ -79,6 +105,7 @@ vtkSmartPointer<vtkDataObject> ReadWith(Reader* reader, const InputFile& file)
   {
     FailToRead(file, errors);
   }
+  RequireCells(output, file);
   return output;
 }
 

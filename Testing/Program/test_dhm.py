@@ -1536,6 +1536,26 @@ class InputFiles(ProgramTest):
                     self.refuse(FILE_TROUBLE, "map", "pair.json", f"bad.{extension}", "-o", "new.vtp",
                                 says=f"bad.{extension}")
 
+    def test_cells_that_begin_elsewhere(self):
+        """VTK's files of today say where each cell's points begin."""
+        write_vtk(self.path("plain.vtk"), self.pair.source, self.pair.triangles, target=self.pair.target)
+        text = self.path("plain.vtk").read_text().replace("Version 3.0", "Version 5.1")
+        count = len(self.pair.triangles)
+        corners = " ".join(map(str, self.pair.triangles.ravel().tolist()))
+        head, tail = text[:text.index("POLYGONS")], text[text.index("POINT_DATA"):]
+        def write(offsets):
+            self.path("mesh.vtk").write_text(
+                f"{head}POLYGONS {count + 1} {3 * count}\nOFFSETS vtktypeint64\n"
+                f"{' '.join(map(str, offsets))}\nCONNECTIVITY vtktypeint64\n{corners}\n{tail}")
+        good = list(range(0, 3 * count + 1, 3))
+        write(good)
+        check = ["check", "--quick", "--target-array", "Moved", "mesh.vtk"]
+        self.run_dhm(*check)
+        for place, value in ((5, 10 ** 12), (5, -10 ** 12), (count, 10 ** 9), (0, -10 ** 9), (count, 3)):
+            write(good[:place] + [value] + good[place + 1:])
+            self.refuse(FILE_TROUBLE, *check, says="mesh.vtk")
+            self.refuse(FILE_TROUBLE, "map", "pair.json", "mesh.vtk", "-o", "new.vtp", says="mesh.vtk")
+
     def test_standard_input(self):
         pair = self.path("pair.json").read_bytes()
         points = self.path("points.csv").read_bytes()
