@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -40,8 +39,7 @@ InputFile::InputFile(const std::string& name, const std::string& format)
     }
     catch (const std::system_error& error)
     {
-      throw Failure(FILE_TROUBLE,
-        "Cannot keep standard input: " + std::string(std::strerror(error.code().value())) + ".");
+      throw Failure(FILE_TROUBLE, "Cannot keep standard input: " + error.code().message() + ".");
     }
     this->Path = this->Temporary->GetName();
     std::ofstream copy(this->Path, std::ios::binary);
@@ -67,7 +65,8 @@ InputFile::InputFile(const std::string& name, const std::string& format)
   }
   if (!std::ifstream(name))
   {
-    throw Failure(FILE_TROUBLE, "Cannot open " + name + ": " + std::strerror(errno) + ".");
+    throw Failure(
+      FILE_TROUBLE, "Cannot open " + name + ": " + std::generic_category().message(errno) + ".");
   }
 }
 

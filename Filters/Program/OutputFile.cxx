@@ -7,7 +7,6 @@
 #include "InputFile.h"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -67,15 +66,15 @@ OutputFile::OutputFile(const std::string& name, const std::string& format, bool 
   catch (const std::system_error& failed)
   {
     throw Failure(FILE_TROUBLE,
-      "Cannot write " + this->GetName() + ": " + std::strerror(failed.code().value()) + " (" +
-        folder.string() + ").");
+      "Cannot write " + this->GetName() + ": " + failed.code().message() + " (" + folder.string() +
+        ").");
   }
 }
 
 void OutputFile::FailToWrite(int error) const
 {
-  throw Failure(
-    FILE_TROUBLE, "Cannot write " + this->GetName() + ": " + std::strerror(error) + ".");
+  throw Failure(FILE_TROUBLE,
+    "Cannot write " + this->GetName() + ": " + std::generic_category().message(error) + ".");
 }
 
 void OutputFile::Commit()

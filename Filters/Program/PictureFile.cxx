@@ -12,6 +12,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
@@ -297,9 +298,8 @@ vtkSmartPointer<vtkImageData> ReadPnm(const InputFile& file)
   const auto scale = [&](std::uint64_t value) {
     return largest == static_cast<std::uint64_t>(full)
       ? value
-      : static_cast<std::uint64_t>(
-          full * static_cast<double>(std::min(value, largest)) / static_cast<double>(largest) +
-          0.5);
+      : static_cast<std::uint64_t>(std::llround(
+          full * static_cast<double>(std::min(value, largest)) / static_cast<double>(largest)));
   };
   for (int row = 0; row < static_cast<int>(height); ++row)
   {
@@ -432,8 +432,8 @@ void WriteTiff(vtkImageData* image, const OutputFile& file)
   const int* size = image->GetDimensions();
   const auto width = static_cast<std::size_t>(size[0]);
   const auto height = static_cast<std::size_t>(size[1]);
-  const std::size_t rowSize =
-    width * static_cast<std::size_t>(components * pixels->GetDataTypeSize());
+  const std::size_t rowSize = width * static_cast<std::size_t>(components) *
+    static_cast<std::size_t>(pixels->GetDataTypeSize());
   // What is said of each component does not fit into the entries: it comes behind them.
   struct Entry
   {

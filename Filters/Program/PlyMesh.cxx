@@ -300,37 +300,38 @@ private:
         continue;
       }
       const double length = this->Content->Next(*property.Length, what);
-      if (!(length >= 0.0) || length != std::floor(length))
+      if (!(length >= 0.0 && length < 1e9) || length != std::floor(length))
       {
         throw Failure(FILE_TROUBLE,
           this->FileName + ": " + what + ": expected a number of values, found " + ToText(length) +
             ".");
       }
+      const auto count = static_cast<std::int64_t>(length);
       const bool isFace = element.Name == "face" &&
         (property.Name == "vertex_indices" || property.Name == "vertex_index");
       if (isFace)
       {
         this->Faces->InsertNextCell(0);
       }
-      for (double k = 0.0; k < length; k += 1.0)
+      for (std::int64_t k = 0; k < count; ++k)
       {
         const double value = this->Content->Next(property.What, what);
         if (!isFace)
         {
           continue;
         }
-        const vtkIdType count = this->Points->GetNumberOfPoints();
-        if (!(value >= 0.0 && value < static_cast<double>(count)) || value != std::floor(value))
+        const vtkIdType points = this->Points->GetNumberOfPoints();
+        if (!(value >= 0.0 && value < static_cast<double>(points)) || value != std::floor(value))
         {
           throw Failure(FILE_TROUBLE,
             this->FileName + ": " + what + ": expected numbers of points, 0 to " +
-              std::to_string(count - 1) + ", found " + ToText(value) + ".");
+              std::to_string(points - 1) + ", found " + ToText(value) + ".");
         }
         this->Faces->InsertCellPoint(static_cast<vtkIdType>(value));
       }
       if (isFace)
       {
-        this->Faces->UpdateCellCount(static_cast<int>(length));
+        this->Faces->UpdateCellCount(static_cast<int>(count));
       }
     }
     if (isPoint)
