@@ -443,7 +443,7 @@ void WriteTiff(vtkImageData* image, const OutputFile& file)
   };
   const bool hasAlpha = components == 2 || components == 4;
   std::vector<Entry> entries{ { TIFFTAG_IMAGEWIDTH, width }, { TIFFTAG_IMAGELENGTH, height },
-    { TIFFTAG_BITSPERSAMPLE, static_cast<std::size_t>(8 * pixels->GetDataTypeSize()), true },
+    { TIFFTAG_BITSPERSAMPLE, 8 * static_cast<std::size_t>(pixels->GetDataTypeSize()), true },
     { TIFFTAG_COMPRESSION, COMPRESSION_NONE },
     { TIFFTAG_PHOTOMETRIC,
       static_cast<std::size_t>(components < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) },
