@@ -460,7 +460,7 @@ void WriteTiff(vtkImageData* image, const OutputFile& file)
                                         : SAMPLEFORMAT_UINT),
     true });
   const std::size_t behind = 8 + 2 + 12 * entries.size() + 4;
-  const auto eachSize = static_cast<std::size_t>(2 * components);
+  const auto eachSize = 2 * static_cast<std::size_t>(components);
   const std::size_t start = behind + 2 * eachSize;
   if (start + rowSize * height > std::numeric_limits<std::uint32_t>::max())
   {
