@@ -443,7 +443,7 @@ void WriteTiff(vtkImageData* image, const OutputFile& file)
   };
   const bool hasAlpha = components == 2 || components == 4;
   std::vector<Entry> entries{ { TIFFTAG_IMAGEWIDTH, width }, { TIFFTAG_IMAGELENGTH, height },
-    { TIFFTAG_BITSPERSAMPLE, static_cast<std::size_t>(8 * pixels->GetDataTypeSize()), true },
+    { TIFFTAG_BITSPERSAMPLE, 8 * static_cast<std::size_t>(pixels->GetDataTypeSize()), true },
     { TIFFTAG_COMPRESSION, COMPRESSION_NONE },
     { TIFFTAG_PHOTOMETRIC,
       static_cast<std::size_t>(components < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) },
@@ -460,7 +460,7 @@ void WriteTiff(vtkImageData* image, const OutputFile& file)
                                         : SAMPLEFORMAT_UINT),
     true });
   const std::size_t behind = 8 + 2 + 12 * entries.size() + 4;
-  const auto eachSize = static_cast<std::size_t>(2 * components);
+  const auto eachSize = 2 * static_cast<std::size_t>(components);
   const std::size_t start = behind + 2 * eachSize;
   if (start + rowSize * height > std::numeric_limits<std::uint32_t>::max())
   {
