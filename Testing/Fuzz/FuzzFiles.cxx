@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Reads any bytes as one of the text files that the program dhm reads itself. What is read is
+// Reads any bytes as one of the files that the program dhm reads itself. What it also writes is
 // written, and what is written must be read as the same.
 
 #include "Program/Failure.h"
+#include "Program/PlyMesh.h"
 #include "Program/PointTable.h"
+#include "Program/StlMesh.h"
 #include "Program/TextMesh.h"
 #include "Program/TriangulationFile.h"
 
@@ -102,6 +104,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         break;
       case 'j':
         ReadTriangulationAndBack(file);
+        break;
+      case 'p':
+        dhm::ReadPly(file, "file");
+        break;
+      case 's':
+        dhm::ReadStl(file, "file");
         break;
       default:
         ReadTableAndBack(file);
