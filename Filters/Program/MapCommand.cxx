@@ -32,7 +32,7 @@ struct DataOptions
   std::string Columns;
   std::string DataFormat = "csv";
   bool RequireInside = false;
-  /// Whether images do not stay images.
+  /// Whether points go elsewhere: images do not stay images, and points outside are nowhere.
   bool MovesPoints = false;
 
   void AddTo(CLI::App& command)
@@ -110,7 +110,8 @@ struct DataOptions
     }
     if (asTable)
     {
-      table->Update(vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(result));
+      table->Update(
+        vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(result), this->MovesPoints);
       std::ofstream text(output.GetTemporaryName(), std::ios::binary);
       table->Write(text);
       text.close();

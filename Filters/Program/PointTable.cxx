@@ -229,16 +229,17 @@ void PointTable::ChooseColumns(const std::string& columns, const std::string& fi
   std::istringstream list(columns);
   for (std::string name; std::getline(list, name, ',');)
   {
+    // A number is never a name: in a table without names it may well be a coordinate.
     const auto named = std::find(first.begin(), first.end(), name);
     const auto number = ToNumber<std::size_t>(name);
-    if (named != first.end())
+    if (number && *number >= 1 && *number <= first.size())
+    {
+      this->Columns.push_back(*number - 1);
+    }
+    else if (!number && named != first.end())
     {
       this->Columns.push_back(static_cast<std::size_t>(named - first.begin()));
       this->Names = first;
-    }
-    else if (number && *number >= 1 && *number <= first.size())
-    {
-      this->Columns.push_back(*number - 1);
     }
     else
     {
@@ -274,9 +275,9 @@ vtkSmartPointer<vtkPolyData> PointTable::ToPoints() const
   return data;
 }
 
-void PointTable::Update(vtkDataSet* before, vtkDataSet* data)
+void PointTable::Update(vtkDataSet* before, vtkDataSet* data, bool moved)
 {
-  vtkDataArray* mask = data->GetPointData()->GetArray("ValidPointMask");
+  vtkDataArray* mask = moved ? data->GetPointData()->GetArray("ValidPointMask") : nullptr;
   for (std::size_t row = 0; row < this->Rows.size(); ++row)
   {
     double point[3];

@@ -37,9 +37,10 @@ public:
   vtkSmartPointer<vtkPolyData> ToPoints() const;
 
   /// Takes the coordinates from @a data, and adds those of its point arrays as columns that @a
-  /// before does not have. Coordinates of points that `ValidPointMask` leaves out become nan. z
+  /// before does not have. If points were moved, coordinates of those that `ValidPointMask` leaves
+  /// out become nan. z
   /// stays if there is no column for it.
-  void Update(vtkDataSet* before, vtkDataSet* data);
+  void Update(vtkDataSet* before, vtkDataSet* data, bool moved);
 
   void Write(std::ostream& file) const;
 

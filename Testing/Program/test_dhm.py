@@ -431,6 +431,23 @@ class Map(ProgramTest):
             self.assert_near(table["JacobianDeterminant"], determinant, 1e-12)
             self.assertGreater(determinant.min(), 0)
 
+    def test_numbers_of_columns_are_no_names(self):
+        # The first line has a coordinate that is the number of a column.
+        for lines in ("P1,0.25,0.5\nP2,3,2\n", "P1,3,2\nP2,0.25,0.5\n"):
+            with open(self.path("numbers.csv"), "w", encoding="utf-8") as file:
+                file.write(lines)
+            result = self.run_dhm("map", "pair.json", "numbers.csv", "--columns", "2,3", "-o", "-")
+            rows = [line.split(",") for line in result.out.decode().splitlines()]
+            self.assertEqual(sorted((row[0], row[3]) for row in rows),
+                             sorted((row.split(",")[0], "1" if "0.25" in row else "0") for row in lines.split()))
+
+    def test_coordinates_leave_points_where_they_are(self):
+        points = [[0.5, 0.5], [1.5, 0.5]]
+        write_csv(self.path("points.csv"), points)
+        table = read_csv(self.run_dhm("coordinates", "pair.json", "points.csv", "-o", "-").out.decode())
+        self.assertEqual(places(table).tolist(), points)
+        self.assertEqual(table["ValidPointMask"].tolist(), [1, 0])
+
     def test_points_outside_are_marked(self):
         points = [[0.5, 0.5], [1.5, 0.5], [0.2, 0.2]]
         write_csv(self.path("points.csv"), points)
