@@ -43,7 +43,7 @@ char FindSeparator(const std::string& line)
 
 bool NeedsQuotes(const std::string& field, char separator)
 {
-  return field.find_first_of("\"\n") != std::string::npos ||
+  return field.find_first_of("\"\n\r") != std::string::npos ||
     field.find(separator) != std::string::npos || (separator == ' ' && field.empty());
 }
 
