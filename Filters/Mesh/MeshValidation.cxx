@@ -86,20 +86,24 @@ TriangleList FindTriangles(const Triangulation& triangulation, Predicate&& predi
   return found;
 }
 
-/// Reads polygons from offsets and connectivity, which need not be well formed.
+/// Reads polygons from offsets and connectivity, which need not be well formed. The memory itself
+/// is read, and not by the arrays' own methods: so sanitizers of this module's code see what is
+/// read.
 template <typename OffsetArray>
-void ReadPolygons(OffsetArray* offsets, OffsetArray* connectivity, vtkIdType numberOfPoints,
-  vtkIdType firstCell, LargeArray<Triangulation::Corners>& triangles, Offenders& notTriangles,
-  Offenders& badConnectivity)
+void ReadPolygons(OffsetArray* offsetArray, OffsetArray* connectivityArray,
+  vtkIdType numberOfPoints, vtkIdType firstCell, LargeArray<Triangulation::Corners>& triangles,
+  Offenders& notTriangles, Offenders& badConnectivity)
 {
-  const vtkIdType cells = std::max<vtkIdType>(0, offsets->GetNumberOfValues() - 1);
-  const vtkIdType entries = connectivity->GetNumberOfValues();
+  const vtkIdType cells = std::max<vtkIdType>(0, offsetArray->GetNumberOfValues() - 1);
+  const vtkIdType entries = connectivityArray->GetNumberOfValues();
+  const auto* offsets = offsetArray->GetPointer(0);
+  const auto* connectivity = connectivityArray->GetPointer(0);
   triangles = LargeArray<Triangulation::Corners>(cells);
   for (vtkIdType cell = 0; cell < cells; ++cell)
   {
     triangles[cell] = { 0, 0, 0 };
-    const vtkIdType begin = offsets->GetValue(cell);
-    const vtkIdType end = offsets->GetValue(cell + 1);
+    const vtkIdType begin = offsets[cell];
+    const vtkIdType end = offsets[cell + 1];
     if (begin < 0 || end < begin || end > entries)
     {
       badConnectivity.Add(firstCell + cell);
@@ -113,7 +117,7 @@ void ReadPolygons(OffsetArray* offsets, OffsetArray* connectivity, vtkIdType num
     bool exist = true;
     for (int k = 0; k < 3; ++k)
     {
-      const vtkIdType point = connectivity->GetValue(begin + k);
+      const vtkIdType point = connectivity[begin + k];
       exist = exist && point >= 0 && point < numberOfPoints;
       triangles[cell][k] = exist ? static_cast<std::int32_t>(point) : 0;
     }
