@@ -128,7 +128,8 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const InputFile& file)
     // A crash is expected, and leaves no memory image behind.
     const rlimit none{ 0, 0 };
     setrlimit(RLIMIT_CORE, &none);
-    for (const int signal : { SIGINT, SIGTERM, SIGHUP })
+    // It has to be seen as what it is, too, if somebody else watches over crashes.
+    for (const int signal : { SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGFPE, SIGABRT })
     {
       std::signal(signal, SIG_DFL);
     }
