@@ -17,6 +17,7 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
@@ -897,6 +898,9 @@ int main(int argc, char* argv[])
   {
     return Usage();
   }
+  // Threads have cases of their own; VTK's, which are not meant to be started by several threads at
+  // once, would have nothing left to do.
+  vtkSMPTools::SetBackend("Sequential");
   std::vector<std::pair<const TestedSystem*, int>> chosen;
   for (const TestedSystem& system : Systems)
   {
