@@ -7,6 +7,7 @@
 #include "Failure.h"
 #include "ImageWarp.h"
 #include "InputFile.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairPicture.h"
@@ -251,9 +252,7 @@ void MakeFigure(const Options& options)
   }
   for (vtkPolyData* mesh : { pair.Source(), pair.Target() })
   {
-    double bounds[6];
-    mesh->GetBounds(bounds);
-    if (bounds[4] != bounds[5])
+    if (!IsFlat(mesh))
     {
       throw Failure(REFUSED, "Figures are drawn of meshes in planes parallel to x and y only.");
     }

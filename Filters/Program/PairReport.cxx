@@ -5,6 +5,7 @@
 
 #include "Command.h"
 #include "Failure.h"
+#include "MeshParts.h"
 
 #include "Mesh/TriangulationPair.h"
 
@@ -61,19 +62,14 @@ void CountPoints(vtkPolyData* mesh, MeshReport& report)
   report.Triangles = mesh->GetNumberOfPolys();
 
   std::vector<bool> used(static_cast<std::size_t>(report.Points), false);
-  const auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType count;
-    const vtkIdType* points;
-    cells->GetCurrentCell(count, points);
+  ForEachCell(mesh->GetPolys(), [&used](vtkIdType, vtkIdType count, const vtkIdType* points) {
     std::for_each(points, points + count, [&used](vtkIdType point) {
       if (point >= 0 && point < static_cast<vtkIdType>(used.size()))
       {
         used[static_cast<std::size_t>(point)] = true;
       }
     });
-  }
+  });
   report.UnusedPoints = std::count(used.begin(), used.end(), false);
 
   std::vector<vtkIdType> order(static_cast<std::size_t>(report.Points));

@@ -4,6 +4,7 @@
 #include "Command.h"
 #include "Console.h"
 #include "Failure.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairReport.h"
@@ -57,9 +58,7 @@ void RequirePlane(const MeshPair& pair)
 {
   for (std::size_t side = 0; side < 2; ++side)
   {
-    double bounds[6];
-    pair.Meshes[side]->GetBounds(bounds);
-    if (bounds[4] != bounds[5])
+    if (!IsFlat(pair.Meshes[side]))
     {
       throw Failure(REFUSED, pair.Names[side] + " is not in a plane parallel to x and y.");
     }

@@ -4,10 +4,10 @@
 #include "TextMesh.h"
 
 #include "Failure.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
@@ -99,20 +99,6 @@ vtkSmartPointer<vtkPolyData> MakeMesh(vtkPoints* points, vtkCellArray* polygons)
   mesh->SetPoints(points);
   mesh->SetPolys(polygons);
   return mesh;
-}
-
-/// Calls write(points of a polygon) for each polygon.
-template <typename Write>
-void ForEachPolygon(vtkPolyData* mesh, Write&& write)
-{
-  const auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType count;
-    const vtkIdType* points;
-    cells->GetCurrentCell(count, points);
-    write(count, points);
-  }
 }
 
 void WritePoint(vtkPolyData* mesh, vtkIdType point, std::ostream& file)
@@ -225,7 +211,7 @@ void WriteObj(vtkPolyData* mesh, std::ostream& file)
     file << "v ";
     WritePoint(mesh, i, file);
   }
-  ForEachPolygon(mesh, [&file](vtkIdType count, const vtkIdType* points) {
+  ForEachCell(mesh->GetPolys(), [&file](vtkIdType, vtkIdType count, const vtkIdType* points) {
     file << 'f';
     for (vtkIdType k = 0; k < count; ++k)
     {
@@ -242,7 +228,7 @@ void WriteOff(vtkPolyData* mesh, std::ostream& file)
   {
     WritePoint(mesh, i, file);
   }
-  ForEachPolygon(mesh, [&file](vtkIdType count, const vtkIdType* points) {
+  ForEachCell(mesh->GetPolys(), [&file](vtkIdType, vtkIdType count, const vtkIdType* points) {
     file << count;
     for (vtkIdType k = 0; k < count; ++k)
     {
