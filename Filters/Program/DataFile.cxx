@@ -154,8 +154,8 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const InputFile& file)
   return ReadWith(reader.Get(), file);
 }
 
-/// Lets a writer write. Most are asked to do so to memory (see WriteText and WriteBytes): of
-/// VTK 9.1's, some crash on full disks, and others do not notice.
+/// Lets a writer write. All are asked to do so to memory: of VTK 9.1's, some crash on full disks,
+/// and others do not notice.
 template <typename Writer>
 void WriteWith(Writer* writer, vtkDataObject* data, const OutputFile& file)
 {

@@ -112,13 +112,7 @@ struct DataOptions
     {
       table->Update(
         vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(result), this->MovesPoints);
-      std::ofstream text(output.GetTemporaryName(), std::ios::binary);
-      table->Write(text);
-      text.close();
-      if (!text)
-      {
-        output.FailForWantOfRoom();
-      }
+      output.Write([&table](std::ostream& text) { table->Write(text); });
     }
     else
     {

@@ -190,11 +190,6 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
   return pair;
 }
 
-} // namespace
-
-namespace
-{
-
 MeshPair ReadAnyPair(const std::vector<std::string>& files, const MeshPairOptions& options)
 {
   if (files.size() == 1)
@@ -340,13 +335,9 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
             pair.Names[side] + ".");
       }
     }
-    std::ofstream text(file.GetTemporaryName(), std::ios::binary);
-    WriteTriangulationFile(pair.Metadata, pair.Source(), pair.Target(), text);
-    text.close();
-    if (!text)
-    {
-      file.FailForWantOfRoom();
-    }
+    file.Write([&pair](std::ostream& text) {
+      WriteTriangulationFile(pair.Metadata, pair.Source(), pair.Target(), text);
+    });
     return;
   }
   if (file.GetFormat() != "vtp" && file.GetFormat() != "vtk")
@@ -359,8 +350,6 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
   vtkNew<vtkPolyData> both;
   both->ShallowCopy(pair.Source());
   vtkNew<vtkDoubleArray> positions;
-  positions->SetName(targetArray.c_str());
-  positions->SetNumberOfComponents(3);
   positions->DeepCopy(pair.Target()->GetPoints()->GetData());
   positions->SetName(targetArray.c_str());
   both->GetPointData()->AddArray(positions);
@@ -380,20 +369,8 @@ void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
       "Cannot write a mesh as ." + file.GetFormat() +
         ": the formats are .vtp, .vtk, .obj and .off.");
   }
-  std::ofstream text(file.GetTemporaryName(), std::ios::binary);
-  if (file.GetFormat() == "obj")
-  {
-    WriteObj(mesh, text);
-  }
-  else
-  {
-    WriteOff(mesh, text);
-  }
-  text.close();
-  if (!text)
-  {
-    file.FailForWantOfRoom();
-  }
+  const auto write = file.GetFormat() == "obj" ? &WriteObj : &WriteOff;
+  file.Write([mesh, write](std::ostream& text) { write(mesh, text); });
 }
 
 } // namespace dhm

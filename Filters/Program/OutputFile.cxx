@@ -125,8 +125,15 @@ void OutputFile::Commit()
 
 void OutputFile::Write(std::string_view contents) const
 {
+  this->Write([contents](std::ostream& file) {
+    file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  });
+}
+
+void OutputFile::Write(const std::function<void(std::ostream& file)>& write) const
+{
   std::ofstream file(this->GetTemporaryName(), std::ios::binary);
-  file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  write(file);
   file.close();
   if (!file)
   {

@@ -9,6 +9,8 @@
 
 #include "TemporaryFile.h"
 
+#include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,6 +40,8 @@ public:
 
   /// Writes all of it. Throws Failure.
   void Write(std::string_view contents) const;
+  /// The same of what @a write puts into a stream.
+  void Write(const std::function<void(std::ostream& file)>& write) const;
 
   /// Throws the Failure to say that the disk is full.
   [[noreturn]] void FailForWantOfRoom() const;
