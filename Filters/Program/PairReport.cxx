@@ -373,74 +373,80 @@ void MakeSamples(vtkPolyData* mesh, const Triangulation& triangulation, Samples&
   samples.Points->SetPoints(points);
 }
 
-void MeasureSystems(const MeshPair& pair, const Triangulation& triangulation,
-  const CheckExtent& extent, PairReport& report)
+/// How the map is measured in each system: what Contour lacks is Linear's, invalid triangles are
+/// holes.
+MapOptions MeasuredMap()
 {
   MapOptions options;
   options.LinearWhereDiscordant = true;
   options.MaskInvalid = true;
   // On surfaces, points between the corners are off the surface by rounding.
   options.Tolerance = 1e-12;
+  return options;
+}
+
+void MeasureDeterminants(
+  const MeshPair& pair, const Triangulation& triangulation, PairReport& report)
+{
   Samples samples;
-  if (extent.Determinants)
-  {
-    MakeSamples(pair.Source(), triangulation, samples);
-  }
+  MakeSamples(pair.Source(), triangulation, samples);
+  // One filter for all systems: it reads the meshes once.
+  vtkNew<vtkDifferentiableHomeomorphism> map;
+  MeasuredMap().ApplyTo(map.Get());
+  map->SetSourceData(pair.Source());
+  map->SetTargetData(pair.Target());
+  map->SetDataObject(samples.Points);
+  map->ComputeJacobianDeterminantOn();
   vtkSmartPointer<vtkPoints> linear;
   for (int system = 0; system < 3; ++system)
   {
     SystemReport& result = report.Systems[static_cast<std::size_t>(system)];
-    options.System = system;
-    if (extent.Determinants)
+    map->SetCoordinateSystem(system);
+    Run(map, std::string("Mapping with ") + SystemNames[system], false);
+    auto* output = vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
+    vtkDataArray* determinants = output->GetPointData()->GetArray("JacobianDeterminant");
+    if (!linear)
     {
-      vtkNew<vtkDifferentiableHomeomorphism> map;
-      options.ApplyTo(map.Get());
-      map->SetSourceData(pair.Source());
-      map->SetTargetData(pair.Target());
-      map->SetDataObject(samples.Points);
-      map->ComputeJacobianDeterminantOn();
-      Run(map, std::string("Mapping with ") + SystemNames[system], false);
-      auto* output = vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
-      vtkDataArray* determinants = output->GetPointData()->GetArray("JacobianDeterminant");
-      if (!linear)
-      {
-        linear = output->GetPoints();
-      }
-      for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
-      {
-        const double determinant = determinants->GetTuple1(i);
-        if (std::isnan(determinant))
-        {
-          continue;
-        }
-        const vtkIdType cell = samples.Cells[static_cast<std::size_t>(i)];
-        ++result.Samples;
-        result.NotPositive += !(report.Mirrored ? determinant < 0.0 : determinant > 0.0);
-        TakeSmaller(result.SmallestDeterminant, std::abs(determinant), cell);
-        TakeLarger(result.LargestDeterminant, std::abs(determinant), cell);
-        double a[3];
-        double b[3];
-        output->GetPoint(i, a);
-        linear->GetPoint(i, b);
-        TakeLarger(
-          result.DistanceFromLinear, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)), cell);
-      }
+      linear = output->GetPoints();
     }
-    if (extent.Continuity)
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
-      vtkNew<vtkJacobianContinuity> continuity;
-      continuity->SetCoordinateSystem(system);
-      continuity->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
-      continuity->MaskInvalidTrianglesOn();
-      continuity->SetSourceData(pair.Source());
-      continuity->SetTargetData(pair.Target());
-      Run(continuity, std::string("Measuring the continuity of ") + SystemNames[system], false);
-      result.ContinuityMeasured = true;
-      result.DifferentiableEdges = continuity->GetNumberOfDifferentiableEdges();
-      result.Kinks = continuity->GetNumberOfKinks();
-      result.UndecidedEdges = continuity->GetNumberOfUndecidedEdges();
-      result.LargestJump = continuity->GetLargestJump();
+      const double determinant = determinants->GetTuple1(i);
+      if (std::isnan(determinant))
+      {
+        continue;
+      }
+      const vtkIdType cell = samples.Cells[static_cast<std::size_t>(i)];
+      ++result.Samples;
+      result.NotPositive += !(report.Mirrored ? determinant < 0.0 : determinant > 0.0);
+      TakeSmaller(result.SmallestDeterminant, std::abs(determinant), cell);
+      TakeLarger(result.LargestDeterminant, std::abs(determinant), cell);
+      double a[3];
+      double b[3];
+      output->GetPoint(i, a);
+      linear->GetPoint(i, b);
+      TakeLarger(result.DistanceFromLinear, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)), cell);
     }
+  }
+}
+
+void MeasureContinuity(const MeshPair& pair, PairReport& report)
+{
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
+  continuity->MaskInvalidTrianglesOn();
+  continuity->SetSourceData(pair.Source());
+  continuity->SetTargetData(pair.Target());
+  for (int system = 0; system < 3; ++system)
+  {
+    SystemReport& result = report.Systems[static_cast<std::size_t>(system)];
+    continuity->SetCoordinateSystem(system);
+    Run(continuity, std::string("Measuring the continuity of ") + SystemNames[system], false);
+    result.ContinuityMeasured = true;
+    result.DifferentiableEdges = continuity->GetNumberOfDifferentiableEdges();
+    result.Kinks = continuity->GetNumberOfKinks();
+    result.UndecidedEdges = continuity->GetNumberOfUndecidedEdges();
+    result.LargestJump = continuity->GetLargestJump();
   }
 }
 
@@ -498,7 +504,14 @@ PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent)
       read->GetEmbedding(Side::Target).GetOrientation(corners);
   }
   MeasureShapes(pair, triangulation, report);
-  MeasureSystems(pair, triangulation, extent, report);
+  if (extent.Determinants)
+  {
+    MeasureDeterminants(pair, triangulation, report);
+  }
+  if (extent.Continuity)
+  {
+    MeasureContinuity(pair, report);
+  }
   report.Measured = true;
   return report;
 }
