@@ -4,6 +4,7 @@
 #include "Canvas.h"
 
 #include "Failure.h"
+#include "ImageWarp.h"
 #include "MeshParts.h"
 #include "OutputFile.h"
 
@@ -213,8 +214,7 @@ void Canvas::DrawImage(vtkImageData* image)
   }
   const int components = pixels->GetNumberOfComponents();
   const bool hasAlpha = components == 2 || components == 4;
-  const bool isFloating = pixels->GetDataType() == VTK_FLOAT || pixels->GetDataType() == VTK_DOUBLE;
-  const double full = isFloating ? 1.0 : pixels->GetDataTypeMax();
+  const double brightest = Brightest(pixels);
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size[0], size[1]);
   cairo_surface_flush(surface);
   unsigned char* rows = cairo_image_surface_get_data(surface);
@@ -227,7 +227,7 @@ void Canvas::DrawImage(vtkImageData* image)
     {
       const vtkIdType pixel = static_cast<vtkIdType>(y) * size[0] + x;
       const auto value = [&](int component) {
-        return std::clamp(pixels->GetComponent(pixel, component) / full, 0.0, 1.0);
+        return std::clamp(pixels->GetComponent(pixel, component) / brightest, 0.0, 1.0);
       };
       const double alpha = hasAlpha ? value(components - 1) : 1.0;
       std::uint32_t packed = static_cast<std::uint32_t>(std::lround(255.0 * alpha));

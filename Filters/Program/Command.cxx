@@ -155,6 +155,19 @@ void OutputOptions::AddTo(
     ->group("Files");
 }
 
+void PictureOptions::AddTo(CLI::App& command, const std::string& sizeDescription)
+{
+  command.add_option("--size", this->Size, sizeDescription)
+    ->type_name("WIDTHxHEIGHT")
+    ->group("Results");
+  command
+    .add_option("--background", this->Background,
+      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
+      "or #rrggbb")
+    ->type_name("COLOUR")
+    ->group("Results");
+}
+
 void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings)
 {
   {

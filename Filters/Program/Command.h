@@ -94,6 +94,17 @@ struct OutputOptions
   void AddTo(CLI::App& command, const std::string& description, const std::string& defaultFormat);
 };
 
+/// What a warped image is to be like.
+struct PictureOptions
+{
+  /// See ReadSize and ReadBackground.
+  std::string Size;
+  std::string Background;
+
+  /// Adds `--size`, which @a sizeDescription describes, and `--background`.
+  void AddTo(CLI::App& command, const std::string& sizeDescription);
+};
+
 /// Runs a filter with a progress bar. Throws Failure with its errors; shows its warnings, if
 /// wanted.
 void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings = true);

@@ -186,9 +186,7 @@ double MeanBrightness(vtkImageData* image)
       sum += pixels->GetComponent(i, k);
     }
   }
-  const bool isFloating = pixels->GetDataType() == VTK_FLOAT || pixels->GetDataType() == VTK_DOUBLE;
-  const double full = isFloating ? 1.0 : pixels->GetDataTypeMax();
-  return sum / (full * colors * static_cast<double>(pixels->GetNumberOfTuples()));
+  return sum / (Brightest(pixels) * colors * static_cast<double>(pixels->GetNumberOfTuples()));
 }
 
 void Draw(const std::vector<Panel>& panels, bool closeUps, double width, const OutputFile& file)

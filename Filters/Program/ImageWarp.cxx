@@ -15,22 +15,12 @@
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace dhm
 {
 namespace
 {
-
-/// The value that is fully opaque, or the brightest.
-template <typename Value>
-constexpr double Full()
-{
-  return std::is_floating_point<Value>::value
-    ? 1.0
-    : static_cast<double>(std::numeric_limits<Value>::max());
-}
 
 template <typename Value>
 Value ToValue(double value)
@@ -40,8 +30,10 @@ Value ToValue(double value)
 
 template <typename Value>
 void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, int components,
-  int colors, bool hasAlpha, const Background& background, Value* to, int newComponents)
+  int colors, bool hasAlpha, const Background& background, double brightest, Value* to,
+  int newComponents)
 {
+  const auto opaque = ToValue<Value>(brightest);
   for (vtkIdType i = 0; i < count; ++i, from += components, to += newComponents)
   {
     const bool inside = mask[i] != 0;
@@ -50,7 +42,7 @@ void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, i
       const bool isAlpha = k == colors;
       if (inside)
       {
-        to[k] = isAlpha && !hasAlpha ? ToValue<Value>(Full<Value>()) : from[k];
+        to[k] = isAlpha && !hasAlpha ? opaque : from[k];
       }
       else if (!background)
       {
@@ -58,14 +50,14 @@ void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, i
       }
       else if (isAlpha)
       {
-        to[k] = ToValue<Value>(Full<Value>());
+        to[k] = opaque;
       }
       else
       {
         const auto& color = *background;
         const double gray = (color[0] + color[1] + color[2]) / 3.0;
         to[k] =
-          ToValue<Value>(Full<Value>() * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
+          ToValue<Value>(brightest * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
       }
     }
   }
@@ -100,6 +92,12 @@ vtkSmartPointer<vtkImageData> LikeWithout(vtkImageData* image)
 }
 
 } // namespace
+
+double Brightest(vtkDataArray* pixels)
+{
+  const int type = pixels->GetDataType();
+  return type == VTK_FLOAT || type == VTK_DOUBLE ? 1.0 : pixels->GetDataTypeMax();
+}
 
 Background ReadBackground(const std::string& text)
 {
@@ -255,8 +253,8 @@ vtkSmartPointer<vtkImageData> Finish(vtkImageData* warped, const Background& bac
   {
     vtkTemplateMacro(FillPixels(static_cast<const VTK_TT*>(from->GetVoidPointer(0)),
       static_cast<const unsigned char*>(mask->GetVoidPointer(0)), from->GetNumberOfTuples(),
-      components, colors, hasAlpha, background, static_cast<VTK_TT*>(pixels->GetVoidPointer(0)),
-      newComponents));
+      components, colors, hasAlpha, background, Brightest(from),
+      static_cast<VTK_TT*>(pixels->GetVoidPointer(0)), newComponents));
   }
   vtkSmartPointer<vtkImageData> result = LikeWithout(warped);
   result->GetPointData()->SetScalars(pixels);

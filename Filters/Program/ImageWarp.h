@@ -14,12 +14,16 @@
 #include <optional>
 #include <string>
 
+class vtkDataArray;
 class vtkPolyData;
 
 namespace dhm
 {
 
 struct MapOptions;
+
+/// The brightest, or the fully opaque, value of pixels of this type.
+double Brightest(vtkDataArray* pixels);
 
 /// What pixels outside the domain get: a colour, red, green and blue from 0 to 1, or none, which is
 /// transparent.

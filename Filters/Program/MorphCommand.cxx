@@ -66,8 +66,7 @@ struct Options
   std::string TargetImage;
   std::string Data;
   int Frames = 11;
-  std::string Size;
-  std::string Background;
+  PictureOptions Picture;
 };
 
 /// Refuses frames whose meshes are folded, and says at which times others would be.
@@ -111,7 +110,7 @@ void Morph(const Options& options)
     throw Failure(WRONG_USAGE, "Morph either images or data (--data), not both.");
   }
   const Background background =
-    images ? ReadBackgroundFor(format, options.Background) : Background();
+    images ? ReadBackgroundFor(format, options.Picture.Background) : Background();
   if (!images)
   {
     CheckOutputFormat(format);
@@ -141,7 +140,7 @@ void Morph(const Options& options)
   vtkSmartPointer<vtkImageData> grid;
   if (images)
   {
-    grid = MakeGrid(pictures[0] ? pictures[0] : pictures[1], ReadSize(options.Size));
+    grid = MakeGrid(pictures[0] ? pictures[0] : pictures[1], ReadSize(options.Picture.Size));
     std::array<int, 2> sizes[2];
     for (int side = 0; side < 2; ++side)
     {
@@ -230,18 +229,7 @@ void AddMorph(CLI::App& program)
     ->check(NumberFrom(2, 100000))
     ->type_name("NUMBER")
     ->group("Results");
-  command
-    ->add_option(
-      "--size", options->Size, "Size of the frames in pixels (default: the source image's)")
-    ->type_name("WIDTHxHEIGHT")
-    ->group("Results");
-  command
-    ->add_option("--background", options->Background,
-      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
-      "or "
-      "#rrggbb")
-    ->type_name("COLOUR")
-    ->group("Results");
+  options->Picture.AddTo(*command, "Size of the frames in pixels (default: the source image's)");
   options->Map.AddTo(*command);
   command->footer(
     "In frame t, from 0 to 1, each point of the meshes has gone the proportion t of its way along "

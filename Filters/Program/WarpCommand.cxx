@@ -22,8 +22,7 @@ void AddWarp(CLI::App& program)
     OutputOptions Output;
     MapOptions Map;
     std::string ImageFormat = "png";
-    std::string Size;
-    std::string Background;
+    PictureOptions Picture;
     bool Inverse = false;
   };
   CLI::App* command =
@@ -44,23 +43,14 @@ void AddWarp(CLI::App& program)
   options->Map.AddTo(*command);
   command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")
     ->group("Map");
-  command
-    ->add_option("--size", options->Size, "Size of the result in pixels (default: the image's)")
-    ->type_name("WIDTHxHEIGHT")
-    ->group("Results");
-  command
-    ->add_option("--background", options->Background,
-      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
-      "or #rrggbb")
-    ->type_name("COLOUR")
-    ->group("Results");
+  options->Picture.AddTo(*command, "Size of the result in pixels (default: the image's)");
   command->footer("Pixels are interpolated linearly. Each pixel of the result is looked up where "
                   "the exact inverse "
                   "says.");
   command->callback([options] {
-    const std::array<int, 2> size = ReadSize(options->Size);
+    const std::array<int, 2> size = ReadSize(options->Picture.Size);
     const std::string format = OutputFormatOf(options->Output.Name, options->Output.Format);
-    const Background background = ReadBackgroundFor(format, options->Background);
+    const Background background = ReadBackgroundFor(format, options->Picture.Background);
     OutputFile output(options->Output.Name, options->Output.Format, options->Output.Replace);
     MeshPair pair = options->Inputs.ReadPair(1);
     const auto image = ReadImage(InputFile(options->Inputs.Files.back(), options->ImageFormat));
