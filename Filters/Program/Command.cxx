@@ -92,8 +92,7 @@ void MapOptions::AddTo(CLI::App& command)
   command
     .add_option("--tolerance", this->Tolerance,
       "How far outside a point may be and still be taken to the nearest point of the domain, as a "
-      "proportion "
-      "of the domain's diagonal (default: rounding only)")
+      "proportion of the domain's diagonal (default: rounding only)")
     ->check(NonNegativeNumber())
     ->type_name("NUMBER")
     ->group("Map");
@@ -119,8 +118,7 @@ void InputFiles::AddTo(
   command
     .add_option("--working-size", this->WorkingSize,
       "Of xmorph's meshes that do not fill their pictures: the size of its working picture "
-      "(resulting_size in a "
-      "session's file)")
+      "(resulting_size in a session's file)")
     ->type_name("WIDTHxHEIGHT")
     ->group("Files");
 }

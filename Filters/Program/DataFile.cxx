@@ -280,8 +280,7 @@ vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file)
   throw Failure(WRONG_USAGE,
     "Cannot read " + file.GetName() +
       ": the formats of data are .csv, .txt and .xyz (points), .vtp, .vtu, .vts, .vtr, .vti, .vtm, "
-      ".vtk, and "
-      "pictures (.png, .jpg, .tif, .ppm).");
+      ".vtk, and pictures (.png, .jpg, .tif, .ppm).");
 }
 
 vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file)
@@ -327,8 +326,7 @@ void CheckOutputFormat(const std::string& format)
       (format.empty() ? std::string("The output's name has no extension")
                       : "Cannot write ." + format) +
         ": the formats are .csv and .txt (if the data came from such a file), .vtp, .vtu, .vts, "
-        ".vtr, "
-        ".vti, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
+        ".vtr, .vti, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
   }
 }
 

@@ -44,8 +44,7 @@ struct DataOptions
     command
       .add_option("--columns", this->Columns,
         "Names or numbers (from 1) of the coordinate columns of a point table, separated by commas "
-        "(default: "
-        "x,y,z or x,y or E,N or easting,northing, else the first two)")
+        "(default: x,y,z or x,y or E,N or easting,northing, else the first two)")
       ->type_name("LIST")
       ->group("Files");
     command
@@ -142,9 +141,8 @@ void AddMap(CLI::App& program)
     program.add_subcommand("map", "Carry data from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "SOURCE [TARGET] DATA", 1,
-    "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu "
-    ".vts .vtr .vti "
-    ".vtm .vtk, or a picture, whose pixels move as points (to warp it, use dhm warp)");
+    "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu .vts .vtr .vti .vtm .vtk, "
+    "or a picture, whose pixels move as points (to warp it, use dhm warp)");
   options->Data.MovesPoints = true;
   options->Data.AddTo(*command);
   options->Map.AddTo(*command);
@@ -165,8 +163,7 @@ void AddMap(CLI::App& program)
   command
     ->add_flag("--carry-all-vectors", options->CarryAllVectors,
       "Carry all arrays of 3, 6 and 9 components by the derivative, not only the active vectors, "
-      "normals and "
-      "tensors")
+      "normals and tensors")
     ->group("Results");
   command
     ->add_flag(
@@ -208,8 +205,7 @@ void AddCoordinates(CLI::App& program)
   const auto options = std::make_shared<Options>();
   command
     ->add_option("FILES", options->Files,
-      "The triangulation (of a triangulation file the source), and the data: as for dhm "
-      "map")
+      "The triangulation (of a triangulation file the source), and the data: as for dhm map")
     ->expected(2)
     ->required()
     ->type_name("MESH DATA");

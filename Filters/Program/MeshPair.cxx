@@ -87,8 +87,7 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
     throw Failure(WRONG_USAGE,
       "Cannot read " + file.GetName() +
         ": the formats of meshes are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, "
-        ".off, .ply, "
-        ".stl, and .mesh (xmorph).");
+        ".off, .ply, .stl, and .mesh (xmorph).");
   }
   const vtkSmartPointer<vtkDataObject> data = ReadData(file);
   if (auto* mesh = vtkPolyData::SafeDownCast(data))
@@ -171,8 +170,7 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
     throw Failure(WRONG_USAGE,
       file.GetName() + " has no point array \"" + options.TargetArray +
         "\" of 2 or 3 components that would be the target's positions: give the target's file, "
-        "too, or name "
-        "the array (--target-array).");
+        "too, or name the array (--target-array).");
   }
   vtkNew<vtkPoints> points;
   points->SetDataType(positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
@@ -304,8 +302,7 @@ void FitToPictures(
       throw Failure(WRONG_USAGE,
         pair.Names[static_cast<std::size_t>(side)] +
           " does not fill its picture, and does not say how large that is: give the size of "
-          "xmorph's working "
-          "picture (--working-size; in a session's file, resulting_size).");
+          "xmorph's working picture (--working-size; in a session's file, resulting_size).");
     }
     // Xmorph's units end at the last pixel.
     const double factors[2] = { (size[0] - 1) / extent[0], (size[1] - 1) / extent[1] };

@@ -93,8 +93,7 @@ void CheckFolds(const MeshPair& pair, int frames)
       throw Failure(REFUSED,
         where + ", frame " + std::to_string(frame) + " (at " + ToText(t) +
           ") among them: points must move so that no triangle is turned over. Put a mesh in "
-          "between and morph in "
-          "two steps.");
+          "between and morph in two steps.");
     }
   }
   Warn(where + ", but at none of the frames.");
@@ -231,10 +230,9 @@ void AddMorph(CLI::App& program)
     ->group("Results");
   options->Picture.AddTo(*command, "Size of the frames in pixels (default: the source image's)");
   options->Map.AddTo(*command);
-  command->footer(
-    "In frame t, from 0 to 1, each point of the meshes has gone the proportion t of its way along "
-    "a "
-    "straight line. If a triangle would be turned over in a frame, nothing is written (status 1).");
+  command->footer("In frame t, from 0 to 1, each point of the meshes has gone the proportion t of "
+                  "its way along a straight line. If a triangle would be turned over in a frame, "
+                  "nothing is written (status 1).");
   command->callback([options] { Morph(*options); });
 }
 

@@ -141,8 +141,7 @@ void AddConvert(CLI::App& program)
   options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair");
   options->Output.AddTo(*command,
     "The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a "
-    "point array; with "
-    "--target-output the source alone: .vtp .vtk .obj .off");
+    "point array; with --target-output the source alone: .vtp .vtk .obj .off");
   command
     ->add_option("--target-output", options->TargetOutput, "Write the target to a file of its own")
     ->type_name("FILE")
@@ -184,8 +183,7 @@ void AddConvert(CLI::App& program)
     {
       throw Failure(WRONG_USAGE,
         "A ." + output.GetFormat() +
-          " file cannot hold both meshes: name another for the target "
-          "(--target-output).");
+          " file cannot hold both meshes: name another for the target (--target-output).");
     }
     WritePair(pair, options->Output.TargetArray, output);
     output.Commit();

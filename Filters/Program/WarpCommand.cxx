@@ -29,10 +29,8 @@ void AddWarp(CLI::App& program)
     program.add_subcommand("warp", "Warp an image from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "SOURCE [TARGET] IMAGE", 1,
-    "The pair, in pixels of the image (the first pixel's centre, at the "
-    "lower left, is "
-    "(0, 0), y runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif "
-    ".ppm or .vti");
+    "The pair, in pixels of the image (the first pixel's centre, at the lower left, is (0, 0), y "
+    "runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif .ppm or .vti");
   options->Output.AddTo(
     *command, "The warped image: .png .jpg .tif .ppm .vti, or - for standard output", "png");
   command
@@ -45,8 +43,7 @@ void AddWarp(CLI::App& program)
     ->group("Map");
   options->Picture.AddTo(*command, "Size of the result in pixels (default: the image's)");
   command->footer("Pixels are interpolated linearly. Each pixel of the result is looked up where "
-                  "the exact inverse "
-                  "says.");
+                  "the exact inverse says.");
   command->callback([options] {
     const std::array<int, 2> size = ReadSize(options->Picture.Size);
     const std::string format = OutputFormatOf(options->Output.Name, options->Output.Format);
