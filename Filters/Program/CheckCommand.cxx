@@ -43,7 +43,7 @@ std::string Format(const char* format, ...)
 
 Json ToJson(const Extreme& extreme)
 {
-  return { { "value", extreme.Value }, { "cell", extreme.Cell } };
+  return extreme.Cell < 0 ? Json() : Json{ { "value", extreme.Value }, { "cell", extreme.Cell } };
 }
 
 const char* NameOf(MeshProblem::Kind kind)
@@ -164,7 +164,9 @@ void Row(const std::string& name, const std::vector<std::string>& columns)
 
 std::string AtCell(const char* format, const Extreme& extreme)
 {
-  return Format(format, extreme.Value) + " (cell " + std::to_string(extreme.Cell) + ")";
+  return extreme.Cell < 0
+    ? "none"
+    : Format(format, extreme.Value) + " (cell " + std::to_string(extreme.Cell) + ")";
 }
 
 void PrintMeshes(const PairReport& report)

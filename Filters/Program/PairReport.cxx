@@ -297,28 +297,44 @@ void MeasureShapes(const MeshPair& pair, const Triangulation& triangulation, Pai
   }
 }
 
+/// Concordance and angles, of the triangles that are valid in the pair. Those that are not have no
+/// part in it: in one mesh alone, such a triangle may cover others, which would then be left out.
 void MeasureTriangles(vtkPolyData* mesh, const Triangulation& triangulation, MeshReport& report)
 {
+  vtkNew<vtkCellArray> polygons;
+  std::vector<vtkIdType> cells;
+  for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
+  {
+    if (!triangulation.IsMasked(triangle))
+    {
+      const auto& corners = triangulation.GetCorners(triangle);
+      polygons->InsertNextCell({ corners[0], corners[1], corners[2] });
+      cells.push_back(triangulation.GetCellId(triangle));
+    }
+  }
+  if (cells.empty())
+  {
+    return;
+  }
+  vtkNew<vtkPolyData> valid;
+  valid->SetPoints(mesh->GetPoints());
+  valid->SetPolys(polygons);
   vtkNew<vtkTriangularCoordinates> coordinates;
-  coordinates->SetInputDataObject(0, mesh);
+  coordinates->SetInputDataObject(0, valid);
   coordinates->MaskInvalidTrianglesOn();
   coordinates->GenerateLinesOff();
   Run(coordinates, "Measuring triangles", false);
   vtkPolyData* measured = coordinates->GetTriangulation();
   vtkDataArray* concordant = measured->GetCellData()->GetArray("Concordant");
   vtkDataArray* angles = measured->GetCellData()->GetArray("SmallestAngle");
-  for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
+  for (std::size_t i = 0; i < cells.size(); ++i)
   {
-    if (triangulation.IsMasked(triangle))
+    const auto triangle = static_cast<vtkIdType>(i);
+    if (concordant->GetTuple1(triangle) == 0.0)
     {
-      continue;
+      report.DiscordantTriangles.push_back(cells[i]);
     }
-    const vtkIdType cell = triangulation.GetCellId(triangle);
-    if (concordant->GetTuple1(cell) == 0.0)
-    {
-      report.DiscordantTriangles.push_back(cell);
-    }
-    TakeSmaller(report.SmallestAngle, angles->GetTuple1(cell), cell);
+    TakeSmaller(report.SmallestAngle, angles->GetTuple1(triangle), cells[i]);
   }
 }
 

@@ -19,7 +19,7 @@
 namespace dhm
 {
 
-/// A number and where it occurs.
+/// A number and where it occurs; nowhere (-1) if there was nothing to measure.
 struct Extreme
 {
   double Value = 0.0;

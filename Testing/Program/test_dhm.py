@@ -767,6 +767,31 @@ class Check(ProgramTest):
         report = self.check(Pair(straight, ring, numpy.array(strip)), "--quick", status=REFUSED)
         self.assertIn("overlapping", [problem["kind"] for problem in report["problems"]])
 
+    def test_invalid_triangles_do_not_touch_the_measures_of_others(self):
+        """What is said of the valid triangles is what is said of them alone."""
+        pair = make_pair(4, 4, seed=3)
+        alone = self.check(pair)
+        # Without area in the source; over many others in the target.
+        along = numpy.vstack((pair.triangles, [0, 6, 24]))
+        for bad in (pair._replace(triangles=along),
+                    Pair(pair.target, pair.source, along)):
+            report = self.check(bad, status=REFUSED)
+            self.assertEqual([problem["kind"] for problem in report["problems"]], ["no area"])
+            self.assertEqual(report["problems"][0]["first_cells"], [32])
+            sides = ("source", "target") if bad.source is pair.source else ("target", "source")
+            for side, other in zip(("source", "target"), sides):
+                for name in ("discordant_triangles", "smallest_angle_degrees",
+                             "largest_area_ratio_across_an_edge"):
+                    self.assertEqual(report[side][name], alone[other][name], name)
+        # Nothing to compare is no number.
+        single = Pair(numpy.array([[0, 0], [1, 0], [0, 1]]), numpy.array([[0, 0], [1, 0], [0, 2]]),
+                      numpy.array([[0, 1, 2]]))
+        report = self.check(single, "--quick")
+        self.assertIsNone(report["source"]["largest_area_ratio_across_an_edge"])
+        self.assertAlmostEqual(report["source"]["smallest_angle_degrees"]["value"], 45)
+        self.assertRegex(self.run_dhm("check", "--quick", "pair.json").out.decode(),
+                         r"largest area ratio across an edge +none +none\n")
+
     def test_mismatched_pairs(self):
         pair = make_pair(3, 3)
         write_off(self.path("a.off"), pair.source, pair.triangles)
