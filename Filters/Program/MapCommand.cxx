@@ -11,10 +11,13 @@
 
 #include "vtkDataSet.h"
 #include "vtkNew.h"
+#include "vtkPointSet.h"
 #include "vtkTriangularCoordinates.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -23,6 +26,28 @@ namespace dhm
 {
 namespace
 {
+
+/// Of points whose coordinates are no finite numbers, how many there are; empty if there are none.
+std::string DescribeNowhere(vtkDataObject* data)
+{
+  auto* set = vtkPointSet::SafeDownCast(data);
+  vtkIdType count = 0;
+  vtkIdType first = -1;
+  for (vtkIdType i = 0; set && i < set->GetNumberOfPoints(); ++i)
+  {
+    double point[3];
+    set->GetPoint(i, point);
+    if (!std::all_of(point, point + 3, [](double x) { return std::isfinite(x); }))
+    {
+      ++count;
+      first = first < 0 ? i : first;
+    }
+  }
+  return count == 0 ? std::string()
+                    : " (of " + std::to_string(count) +
+      ", the coordinates are no finite numbers; the first is point " + std::to_string(first) +
+      ", counted from 0)";
+}
 
 /// What `map` and `coordinates` have in common: data in, the same data with moved points or more
 /// arrays out.
@@ -44,7 +69,8 @@ struct DataOptions
     command
       .add_option("--columns", this->Columns,
         "Names or numbers (from 1) of the coordinate columns of a point table, separated by commas "
-        "(default: x,y,z or x,y or E,N or easting,northing, else the first two)")
+        "(default: those with usual names, such as x,y,z, or E,N, or lon,lat; of a table without "
+        "names, the first two)")
       ->type_name("LIST")
       ->group("Files");
     command
@@ -96,11 +122,17 @@ struct DataOptions
           "): of images, write a .vts, or use dhm warp.");
     }
 
+    if (table && !asTable)
+    {
+      table->AddColumnsTo(vtkPolyData::SafeDownCast(data));
+    }
+
     vtkSmartPointer<vtkDataObject> result;
     const vtkIdType outside = work(data, result);
     if (outside > 0)
     {
-      const std::string message = Count(outside, "point", "is", "are") + " outside the domain";
+      const std::string message =
+        Count(outside, "point", "is", "are") + " outside the domain" + DescribeNowhere(data);
       if (this->RequireInside)
       {
         throw Failure(REFUSED, message + ".");
@@ -109,8 +141,7 @@ struct DataOptions
     }
     if (asTable)
     {
-      table->Update(
-        vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(result), this->MovesPoints);
+      table->Update(vtkDataSet::SafeDownCast(result), this->MovesPoints);
       output.Write([&table](std::ostream& text) { table->Write(text); });
     }
     else

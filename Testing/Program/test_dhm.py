@@ -6,6 +6,7 @@ same things, and what it says and leaves behind where something is wrong.
 The environment variable DHM is the path of the program. The path of the folder of real data is
 DHM_SHARED_DATA, or ../shared/data seen from the repository; without it, its tests are skipped."""
 
+import base64
 import collections
 import csv
 import io
@@ -509,9 +510,81 @@ class Map(ProgramTest):
             images = interpolate(source, self.pair)
             self.assert_near(numbers, images if name == "table.txt" else images[:, ::-1], 1e-15)
             self.assertEqual(out.err, "")
-        for columns in ("4,1", "up", "0,1", "x,y", "1,2,3,1"):
+        for columns in ("4,1", "up", "0,1", "x,y", "1,2,3,1", "up,up", "up,1"):
             self.refuse(WRONG_USAGE, "map", "pair.json", "named.csv", "--columns", columns, "-o", "n.csv",
                         says="--columns")
+        self.refuse(WRONG_USAGE, "map", "pair.json", "named.csv", "--columns", "left,up", "-o", "n.csv",
+                    says=('"left"', '"up", "right", "id"'))
+        # Neither case nor blanks matter, except between names that differ in nothing else.
+        self.path("cases.csv").write_text("RIGHT, Up ,up\n0.25,0.5,9\n")
+        out = self.run_dhm("map", "pair.json", "cases.csv", "--columns", " right,UP", "-o", "-").out
+        self.assertEqual(out.decode().splitlines()[1].split(",")[2:], ["9", "1"])
+        self.refuse(REFUSED, "map", "pair.json", "cases.csv", "--columns", "right,up", "-o", "n.csv",
+                    "--require-inside", says="1 point is outside")
+
+    def test_usual_names_of_columns(self):
+        expected = interpolate(numpy.array([[0.25, 0.5]]), self.pair)[0]
+        for x, y in (("x", "y"), ("E", "N"), ("Easting", "Northing"), ("East", "North"), ("X_Coord", "Y_Coord"),
+                     ("Rechtswert", "Hochwert"), ("lon", "lat"), ("Longitude", "Latitude"), (" X", "y ")):
+            self.path("table.csv").write_text(f"id;{y};{x}\n7;0.5;0.25\n")
+            out = self.run_dhm("map", "pair.json", "table.csv", "-s", "linear", "-o", "-").out.decode()
+            self.assertEqual(out.splitlines()[0], f"id;{y};{x};ValidPointMask")
+            image = [float(word) for word in out.splitlines()[1].split(";")]
+            self.assert_near(image, [7, expected[1], expected[0], 1], 1e-15)
+        # Guessing would carry something else than points.
+        self.path("table.csv").write_text("height,a,b\n0.5,0.25,0.5\n")
+        self.refuse(FILE_TROUBLE, "map", "pair.json", "table.csv", "-o", "new.csv",
+                    says=("table.csv", '"height", "a", "b"', "--columns"))
+
+    def test_decimal_commas(self):
+        for text, line in (("x;y\n0,5;0,25\n", 2), ("0,5;0,25\n", 1), ("x y\n0.5 1\n0,5 0,25\n", 3),
+                           ("0,5 0,25\n", 1), ("id\tx\ty\n1\t0,5\t1\n", 2), ("P1;0,5;0,25\n", 1)):
+            self.path("table.csv").write_text(text)
+            self.refuse(FILE_TROUBLE, "map", "pair.json", "table.csv", "-o", "new.csv",
+                        says=("table.csv", f"line {line}", "decimal commas"))
+        # Where the coordinates are numbers, other columns are nobody's business.
+        self.path("table.csv").write_text("0.5,0.25,12 30\n")
+        self.assertEqual(self.run_dhm("map", "pair.json", "table.csv", "-o", "-").out.decode().strip()[-8:],
+                         ",12 30,1")
+
+    def test_tables_keep_their_columns_in_vtk_files(self):
+        self.path("table.csv").write_text('id,x,y,name,x\n7,0.5,0.25,"Old, Oak",1\n8,0.25,0.5,Stone,2\n'
+                                          ',0.125,0.5,"",3\n')
+        for command, mesh in (("map", "pair.json"), ("coordinates", "pair.json")):
+            self.run_dhm(command, mesh, "table.csv", "-f", "-o", "table.vtp")
+            document = xml.etree.ElementTree.parse(self.path("table.vtp"))
+            arrays = {array.get("Name"): array for array in document.find(".//PointData")}
+            self.assertEqual(arrays["id"].get("type"), "Float64")
+            self.assertEqual([float(arrays["id"].get(f"Range{end}")) for end in ("Min", "Max")], [7, 8])
+            self.assertEqual([float(arrays["x"].get(f"Range{end}")) for end in ("Min", "Max")], [1, 3])
+            self.assertEqual(arrays["name"].get("type"), "String")
+            text = "".join(arrays["name"].itertext()).strip()
+            # A header of its own, then the texts, each with a zero at its end.
+            self.assertEqual(zlib.decompress(base64.b64decode(text[24:])), b"Old, Oak\0Stone\0\0")
+        self.path("plain.txt").write_text("0.5 0.25 3\n0.25 0.5 4\n")
+        self.run_dhm("map", "pair.json", "plain.txt", "-o", "plain.vtk")
+        self.assertEqual(read_legacy(self.path("plain.vtk"))[1]["Column3"].tolist(), [3, 4])
+
+    def test_points_that_are_nowhere(self):
+        self.path("table.csv").write_text("x,y\n0.5,0.5\nnan,0.5\n3,3\n0.2,inf\n")
+        result = self.run_dhm("map", "pair.json", "table.csv", "-o", "-")
+        self.assertIn("3 points are outside the domain (of 2, the coordinates are no finite numbers; the "
+                      "first is point 1,", result.err)
+        self.assertEqual(read_csv(result.out.decode())["ValidPointMask"].tolist(), [1, 0, 0, 0])
+
+    def test_tables_that_are_mapped_again(self):
+        """What a column of the same name said before is replaced."""
+        write_csv(self.path("points.csv"), [[0.5, 0.5], [1.5, 0.5]])
+        self.run_dhm("map", "pair.json", "points.csv", "--triangle-id", "-o", "once.csv")
+        out = self.run_dhm("map", "-i", "pair.json", "once.csv", "--triangle-id", "--jacobian", "-o", "-").out
+        names = out.decode().splitlines()[0].split(",")
+        self.assertEqual(len(names), len(set(names)))
+        self.assertEqual(names[:4], self.path("once.csv").read_text().splitlines()[0].split(","))
+        table = read_csv(out.decode())
+        self.assertEqual(table["ValidPointMask"].tolist(), [1, 0])
+        self.assert_near(places(table)[0], [0.5, 0.5], 1e-12)
+        for name in set(names) - {"ValidPointMask", "TriangleId", "x", "y"}:
+            self.assertTrue(name.startswith("Jacobian_"))
 
     def test_empty_table(self):
         self.path("empty.csv").write_text("x,y,name\n")
