@@ -39,6 +39,9 @@ std::string Format(const char* format, ...)
   return text;
 }
 
+/// How invalid triangles are left out, which is nothing that a check would do.
+const char* const leaveOut = ", or leave them out (--mask-invalid of dhm map, warp and others)";
+
 // --- For machines
 
 Json ToJson(const Extreme& extreme)
@@ -92,7 +95,7 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   {
     json["problems"].push_back(
       { { "kind", NameOf(problem.What) }, { "where", problem.Where }, { "count", problem.Count },
-        { "first_cells", problem.FirstCells }, { "message", Describe(problem) } });
+        { "first_cells", problem.FirstCells }, { "message", Describe(problem, leaveOut) } });
   }
   const char* const sides[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
@@ -269,7 +272,7 @@ void Print(const PairReport& report, const MeshPair& pair)
             << "\n";
   for (const MeshProblem& problem : report.Problems)
   {
-    std::cout << "  - " << Describe(problem) << "\n";
+    std::cout << "  - " << Describe(problem, leaveOut) << "\n";
   }
   std::cout << "\n";
   PrintMeshes(report);

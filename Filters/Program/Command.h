@@ -51,8 +51,8 @@ struct MapOptions
   bool MaskInvalid = false;
   double Tolerance = 0.0;
 
-  /// Adds `--system` and the like.
-  void AddTo(CLI::App& command);
+  /// Adds `--system` and the like; `--mask-invalid` only if invalid triangles can be left out.
+  void AddTo(CLI::App& command, bool canMask = true);
 
   /// Sets them in a filter or transform of the module.
   template <typename Filter>
@@ -74,6 +74,8 @@ struct InputFiles
   std::vector<std::string> Files;
   MeshPairOptions Pair;
   std::string WorkingSize;
+  /// What the files are called in texts.
+  std::string Names;
 
   /// Adds the positional arguments, called @a names in texts, and the options for reading them.
   void AddTo(

@@ -261,7 +261,7 @@ bool IsPicture(const std::string& format)
   return IsOneOf(format, pictureFormats);
 }
 
-vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file)
+vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file, const std::string& others)
 {
   const std::string& format = file.GetFormat();
   if (IsOneOf(format, xmlFormats) || IsOneOf(format, xmlTreeFormats))
@@ -278,9 +278,9 @@ vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file)
     return ReadImage(file);
   }
   throw Failure(WRONG_USAGE,
-    "Cannot read " + file.GetName() +
-      ": the formats of data are .csv, .txt and .xyz (points), .vtp, .vtu, .vts, .vtr, .vti, .vtm, "
-      ".vtk, and pictures (.png, .jpg, .tif, .ppm).");
+    "Cannot read " + file.GetName() + " as data: the formats are " +
+      (others.empty() ? "" : others + ", ") +
+      ".vtp, .vtu, .vts, .vtr, .vti, .vtm, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
 }
 
 vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file)
@@ -318,15 +318,13 @@ vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file)
   return image;
 }
 
-void CheckOutputFormat(const std::string& format)
+void CheckOutputFormat(const std::string& format, const std::string& others)
 {
   if (!IsOneOf(format, xmlFormats) && !IsPicture(format) && format != "vtk")
   {
     throw Failure(WRONG_USAGE,
-      (format.empty() ? std::string("The output's name has no extension")
-                      : "Cannot write ." + format) +
-        ": the formats are .csv and .txt (if the data came from such a file), .vtp, .vtu, .vts, "
-        ".vtr, .vti, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
+      CannotWrite("data", format) + ": the formats are " + (others.empty() ? "" : others + ", ") +
+        ".vtp, .vtu, .vts, .vtr, .vti, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
   }
 }
 

@@ -240,7 +240,7 @@ void MakeFigure(const Options& options)
     throw Failure(WRONG_USAGE, "Figures are .png, .svg or .pdf: " + output.GetName() + " is none.");
   }
   MeshPair pair = options.Inputs.ReadPair(0);
-  RequireMap(pair, options.Map.MaskInvalid);
+  RequireMap(pair, options.Map);
   vtkSmartPointer<vtkImageData> image;
   if (!options.Image.empty())
   {

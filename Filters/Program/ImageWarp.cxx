@@ -7,6 +7,7 @@
 #include "DataFile.h"
 #include "Failure.h"
 #include "Numbers.h"
+#include "OutputFile.h"
 
 #include "vtkDataArray.h"
 #include "vtkNew.h"
@@ -134,7 +135,7 @@ Background ReadBackgroundFor(const std::string& format, const std::string& text)
   if (!IsPicture(format) && format != "vti")
   {
     throw Failure(WRONG_USAGE,
-      "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
+      CannotWrite("an image", format) + ": .png, .jpg, .tif, .ppm and .vti are images.");
   }
   const bool opaque = format[0] == 'j' || (format[0] == 'p' && format != "png");
   const Background background = ReadBackground(!text.empty() ? text
@@ -160,13 +161,14 @@ std::array<int, 2> ReadSize(const std::string& text)
   {
     const auto width = ToNumber<int>(text.substr(0, x));
     const auto height = ToNumber<int>(text.substr(x + 1));
-    if (width && height && *width >= 1 && *height >= 1 && *width <= 100000 && *height <= 100000)
+    constexpr int largest = 100000;
+    if (width && height && *width >= 1 && *height >= 1 && *width <= largest && *height <= largest)
     {
       return { *width, *height };
     }
   }
-  throw Failure(
-    WRONG_USAGE, "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, such as 640x480.");
+  throw Failure(WRONG_USAGE,
+    "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, each from 1 to 100000, such as 640x480.");
 }
 
 vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int, 2>& size)

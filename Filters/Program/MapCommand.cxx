@@ -94,16 +94,18 @@ struct DataOptions
     const InputFile file(dataName, this->DataFormat);
     std::unique_ptr<PointTable> table;
     vtkSmartPointer<vtkDataObject> data;
-    if (PointTable::IsFormat(file.GetFormat()))
-    {
-      std::ifstream text(file.GetPath(), std::ios::binary);
-      table = std::make_unique<PointTable>(text, file.GetName(), this->Columns);
-      data = table->ToPoints();
-    }
-    else
-    {
-      data = ReadData(file);
-    }
+    ReadFrom(file, "--data-format", [&] {
+      if (PointTable::IsFormat(file.GetFormat()))
+      {
+        std::ifstream text(file.GetPath(), std::ios::binary);
+        table = std::make_unique<PointTable>(text, file.GetName(), this->Columns);
+        data = table->ToPoints();
+      }
+      else
+      {
+        data = ReadData(file, ".csv, .txt and .xyz (points)");
+      }
+    });
     const bool asTable = PointTable::IsFormat(output.GetFormat());
     if (asTable && !table)
     {
@@ -113,7 +115,7 @@ struct DataOptions
     }
     if (!asTable)
     {
-      CheckOutputFormat(output.GetFormat());
+      CheckOutputFormat(output.GetFormat(), ".csv and .txt (if the data came from such a file)");
     }
     if (IsPicture(output.GetFormat()) && this->MovesPoints)
     {

@@ -70,7 +70,7 @@ vtkSmartPointer<vtkPolyData> ToPolygons(vtkUnstructuredGrid* grid, const std::st
   return mesh;
 }
 
-vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
+vtkSmartPointer<vtkPolyData> ReadMeshAsNamed(const InputFile& file)
 {
   const std::string& format = file.GetFormat();
   using Read = vtkSmartPointer<vtkPolyData> (*)(std::istream & text, const std::string& name);
@@ -86,7 +86,7 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
   {
     throw Failure(WRONG_USAGE,
       "Cannot read " + file.GetName() +
-        ": the formats of meshes are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, "
+        " as a mesh: the formats are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, "
         ".off, .ply, .stl, and .mesh (xmorph).");
   }
   const vtkSmartPointer<vtkDataObject> data = ReadData(file);
@@ -100,6 +100,20 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
   }
   throw Failure(FILE_TROUBLE,
     file.GetName() + " holds a " + data->GetClassName() + ", which is no mesh of triangles.");
+}
+
+const char* const formatOption = "--input-format";
+
+vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
+{
+  return ReadFrom(file, formatOption, [&file] { return ReadMeshAsNamed(file); });
+}
+
+XmorphMesh ReadXmorphMesh(const InputFile& file)
+{
+  std::ifstream text(file.GetPath());
+  return ReadFrom(file, formatOption,
+    [&] { return ReadXmorph([&] { return ::ReadXmorphMesh(text, file.GetName()); }); });
 }
 
 /// Of two meshes whose triangles have points of their own: makes those one that are in the same
@@ -153,7 +167,8 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
   if (file.GetFormat() == "json")
   {
     std::ifstream text(file.GetPath());
-    TriangulationFile read = ReadTriangulationFile(text, file.GetName());
+    TriangulationFile read =
+      ReadFrom(file, formatOption, [&] { return ReadTriangulationFile(text, file.GetName()); });
     if (read.ShiftsHeights)
     {
       Warn(file.GetName() + " shifts heights, too: that is left alone.");
@@ -209,7 +224,7 @@ MeshPair ReadAnyPair(const std::vector<std::string>& files, const MeshPairOption
   {
     pair.FromXmorph = true;
     pair.Meshes = ReadXmorph([&] {
-      std::array<XmorphMesh, 2> grids{ ReadXmorphMesh(files[0]), ReadXmorphMesh(files[1]) };
+      std::array<XmorphMesh, 2> grids{ ReadXmorphMesh(source), ReadXmorphMesh(target) };
       for (std::size_t side = 0; side < 2; ++side)
       {
         auto& extent = pair.XmorphExtents[side];
@@ -276,7 +291,7 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::st
   if (file.GetFormat() == "mesh")
   {
     return ReadXmorph([&] {
-      XmorphMesh mesh = ReadXmorphMesh(fileName);
+      XmorphMesh mesh = ReadXmorphMesh(file);
       TurnUpright(mesh, GetExtent(mesh)[1]);
       return CutIntoTriangles(mesh, mesh)[0];
     });
@@ -317,8 +332,20 @@ void FitToPictures(
   }
 }
 
+void CheckPairFormat(const std::string& format)
+{
+  if (format != "json" && format != "vtp" && format != "vtk")
+  {
+    throw Failure(WRONG_USAGE,
+      CannotWrite("a pair", format) +
+        ": the formats are .json, .vtp and .vtk; with the target in a file of its own "
+        "(--target-output of dhm convert) .vtp, .vtk, .obj and .off.");
+  }
+}
+
 void WritePair(const MeshPair& pair, const std::string& targetArray, const OutputFile& file)
 {
+  CheckPairFormat(file.GetFormat());
   if (file.GetFormat() == "json")
   {
     for (int side = 0; side < 2; ++side)
@@ -336,13 +363,6 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
       WriteTriangulationFile(pair.Metadata, pair.Source(), pair.Target(), text);
     });
     return;
-  }
-  if (file.GetFormat() != "vtp" && file.GetFormat() != "vtk")
-  {
-    throw Failure(WRONG_USAGE,
-      "Cannot write a pair as ." + file.GetFormat() +
-        ": the formats are .json, .vtp and .vtk; with the target in a file of its own "
-        "(--target-output of dhm convert) .vtp, .vtk, .obj and .off.");
   }
   vtkNew<vtkPolyData> both;
   both->ShallowCopy(pair.Source());
@@ -363,8 +383,7 @@ void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
   if (file.GetFormat() != "obj" && file.GetFormat() != "off")
   {
     throw Failure(WRONG_USAGE,
-      "Cannot write a mesh as ." + file.GetFormat() +
-        ": the formats are .vtp, .vtk, .obj and .off.");
+      CannotWrite("a mesh", file.GetFormat()) + ": the formats are .vtp, .vtk, .obj and .off.");
   }
   const auto write = file.GetFormat() == "obj" ? &WriteObj : &WriteOff;
   file.Write([mesh, write](std::ostream& text) { write(mesh, text); });

@@ -93,6 +93,9 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::st
 void FitToPictures(
   MeshPair& pair, const std::array<int, 2>& sourceSize, const std::array<int, 2>& targetSize);
 
+/// Throws Failure if WritePair does not know the format.
+void CheckPairFormat(const std::string& format);
+
 /// Writes a pair: json (a triangulation file; planar meshes only), or vtp, vtk and vtu with the
 /// target's positions as the point array @a targetArray. Throws Failure.
 void WritePair(const MeshPair& pair, const std::string& targetArray, const OutputFile& file);

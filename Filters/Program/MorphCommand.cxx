@@ -11,6 +11,7 @@
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairReport.h"
+#include "PointTable.h"
 
 #include "vtkNew.h"
 
@@ -40,6 +41,11 @@ public:
     }
     this->Before = found.prefix();
     this->After = found.suffix();
+    if (std::regex_search(this->After, place))
+    {
+      throw Failure(WRONG_USAGE,
+        "The output's name has more than one place for the frame's number: " + pattern + ".");
+    }
     this->Width = found[1].length() > 0 ? static_cast<std::size_t>(found[1].str()[0] - '0') : 1;
   }
 
@@ -114,6 +120,20 @@ void Morph(const Options& options)
   {
     CheckOutputFormat(format);
   }
+  if (!images && IsPicture(format))
+  {
+    throw Failure(WRONG_USAGE,
+      "Meshes and data on their way are no pictures (." + format +
+        "): give images (--source-image, --target-image), or write .vtp.");
+  }
+  if (PointTable::IsFormat(FormatOf(options.Data)))
+  {
+    throw Failure(WRONG_USAGE,
+      options.Data +
+        " is a point table, which has to become a .vtp before it is morphed: dhm coordinates "
+        "SOURCE " +
+        options.Data + " -o points.vtp makes one of it.");
+  }
   if (!options.Replace)
   {
     // None is written if not all can be.
@@ -153,7 +173,7 @@ void Morph(const Options& options)
   {
     data = ReadData(InputFile(options.Data, "vtp"));
   }
-  RequireMap(pair, options.Map.MaskInvalid);
+  RequireMap(pair, options.Map);
   WorkWith(pair, [&] { CheckFolds(pair, options.Frames); });
 
   ProgressBar bar("Morphing", options.Frames);

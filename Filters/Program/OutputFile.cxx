@@ -35,6 +35,12 @@ std::string OutputFormatOf(const std::string& name, const std::string& format)
   return own.empty() && IsWrittenThrough(name) ? format : own;
 }
 
+std::string CannotWrite(const std::string& what, const std::string& format)
+{
+  return format.empty() ? "The output's name has no extension that says what to write"
+                        : "Cannot write " + what + " as ." + format;
+}
+
 OutputFile::OutputFile(const std::string& name, const std::string& format, bool replace)
   : Name(name)
   , Format(OutputFormatOf(name, format))

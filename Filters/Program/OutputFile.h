@@ -62,6 +62,9 @@ private:
 /// devices without an extension, @a format.
 std::string OutputFormatOf(const std::string& name, const std::string& format);
 
+/// The beginning of a message about a format that is not known, or is not there.
+std::string CannotWrite(const std::string& what, const std::string& format);
+
 } // namespace dhm
 
 #endif

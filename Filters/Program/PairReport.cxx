@@ -532,7 +532,10 @@ PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent)
   return report;
 }
 
-void RequireMap(const MeshPair& pair, bool maskInvalid)
+namespace
+{
+
+void RequireMap(const MeshPair& pair, bool maskInvalid, const std::string& advice)
 {
   MeshProblems problems;
   if (!TriangulationPair::Read(pair.Source(), pair.Target(), maskInvalid, problems))
@@ -542,18 +545,37 @@ void RequireMap(const MeshPair& pair, bool maskInvalid)
     {
       if (problem.Result == MeshProblem::Outcome::Refused)
       {
-        text += (text.empty() ? "" : "\n") + Describe(problem);
+        text += (text.empty() ? "" : "\n") + Describe(problem, advice);
       }
     }
     throw Failure(REFUSED, pair.GetName() + ": " + text);
   }
 }
 
-std::string Describe(const MeshProblem& problem)
+} // namespace
+
+void RequireMap(const MeshPair& pair, const MapOptions& map)
+{
+  RequireMap(pair, map.MaskInvalid, ", or use --mask-invalid to leave them out");
+}
+
+void RequireMap(const MeshPair& pair)
+{
+  RequireMap(pair, false, "");
+}
+
+std::string Describe(const MeshProblem& problem, const std::string& advice)
 {
   MeshProblem refused = problem;
   refused.Result = MeshProblem::Outcome::Refused;
-  return NameOptions(refused.Message());
+  std::string message = refused.Message();
+  const std::string setter = ", or turn MaskInvalidTriangles on to leave them out";
+  const std::size_t at = message.find(setter);
+  if (at != std::string::npos)
+  {
+    message.replace(at, setter.size(), advice);
+  }
+  return NameOptions(message);
 }
 
 } // namespace dhm

@@ -19,6 +19,8 @@
 namespace dhm
 {
 
+struct MapOptions;
+
 /// A number and where it occurs; nowhere (-1) if there was nothing to measure.
 struct Extreme
 {
@@ -108,11 +110,15 @@ struct CheckExtent
 /// Checks a pair. Invalid triangles are left out of the measurements.
 PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent);
 
-/// Throws Failure, naming what is wrong, if the pair defines no map.
-void RequireMap(const MeshPair& pair, bool maskInvalid);
+/// Throws Failure, naming what is wrong, if the pair defines no map, not even without its invalid
+/// triangles if these are left out.
+void RequireMap(const MeshPair& pair, const MapOptions& map);
+/// The same where no triangle can be left out.
+void RequireMap(const MeshPair& pair);
 
-/// A defect as a sentence, in which the program's options have their own names.
-std::string Describe(const homeomorphism::MeshProblem& problem);
+/// A defect as a sentence, in which the program's options have their own names. @a advice says how
+/// triangles are left out, if they can be.
+std::string Describe(const homeomorphism::MeshProblem& problem, const std::string& advice);
 
 } // namespace dhm
 

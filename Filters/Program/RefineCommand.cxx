@@ -96,12 +96,13 @@ void AddRefine(CLI::App& program)
     ->check(PositiveNumber())
     ->type_name("NUMBER")
     ->group("Results");
-  options->Map.AddTo(*command);
+  options->Map.AddTo(*command, false);
   command->callback([options] {
     OutputFile output(
       options->Output.Output.Name, options->Output.Output.Format, options->Output.Output.Replace);
+    CheckPairFormat(output.GetFormat());
     const MeshPair pair = options->Inputs.ReadPair(0);
-    RequireMap(pair, false);
+    RequireMap(pair);
     RequirePlane(pair);
     Refinement refined = Refine(pair, options->Map, options->Tolerance, options->MostTriangles);
     Remark(std::to_string(pair.Source()->GetNumberOfPolys()) + " triangles became " +
@@ -177,7 +178,7 @@ void AddConvert(CLI::App& program)
     if (output.GetFormat() == "json")
     {
       // Nobody else will look.
-      RequireMap(pair, false);
+      RequireMap(pair);
     }
     else if (output.GetFormat() == "obj" || output.GetFormat() == "off")
     {

@@ -50,7 +50,8 @@ void AddWarp(CLI::App& program)
     const Background background = ReadBackgroundFor(format, options->Picture.Background);
     OutputFile output(options->Output.Name, options->Output.Format, options->Output.Replace);
     MeshPair pair = options->Inputs.ReadPair(1);
-    const auto image = ReadImage(InputFile(options->Inputs.Files.back(), options->ImageFormat));
+    const InputFile file(options->Inputs.Files.back(), options->ImageFormat);
+    const auto image = ReadFrom(file, "--image-format", [&file] { return ReadImage(file); });
     const auto grid = MakeGrid(image, size);
     const int* from = image->GetDimensions();
     const int* to = grid->GetDimensions();

@@ -1053,7 +1053,7 @@ class Warp(ProgramTest):
             if colour:
                 refuse("--background", colour, says=(colour, "#rrggbb"))
         for size in ("0x5", "5", "x", "5x", "-3x4", "3x4x5", "1e3x2", "200000x2", "4.5x3"):
-            refuse("--size=" + size, says=(size, "WIDTHxHEIGHT"))
+            refuse("--size=" + size, says=(size, "WIDTHxHEIGHT", "from 1 to 100000"))
         refuse("--background", "transparent", output="new.ppm", says=("transparent", ".ppm"))
         refuse("--background", "transparent", output="new.jpg", says=("transparent", ".jpg"))
         for name in ("new", "new.gif", "new.csv", "new.vtp"):
@@ -1154,7 +1154,10 @@ class Morph(ProgramTest):
         images = ("--source-image", "0.ppm", "--target-image", "1.ppm")
         refuse(WRONG_USAGE, *images, output="new.png", says="%03d")
         refuse(WRONG_USAGE, *images, output="new%d.gif", says=".png")
-        refuse(WRONG_USAGE, output="new%d.png")
+        refuse(WRONG_USAGE, output="new%d.png", says=("--source-image", ".vtp"))
+        refuse(WRONG_USAGE, output="new%d-%d.vtp", says=("more than one place", "new%d-%d.vtp"))
+        self.path("points.csv").write_text("x,y\n1,2\n")
+        refuse(WRONG_USAGE, "--data", "points.csv", output="new%d.vtp", says=("points.csv", "dhm coordinates"))
         refuse(WRONG_USAGE, *images, "--data", "0.ppm", says="--data")
         for frames in ("1", "0", "-1", "x", "nan", "2.5", "1000000"):
             refuse(WRONG_USAGE, *images, "--frames", frames, says=("--frames", frames))
@@ -1286,7 +1289,13 @@ class Refine(ProgramTest):
             refuse(WRONG_USAGE, "--within=" + value, says=("--within", value))
             refuse(WRONG_USAGE, "--within", "1", "--most-triangles=" + value, says="--most-triangles")
         refuse(WRONG_USAGE, says="--within")
+        # Before the work, which would say something.
+        for output in ("new.obj", "new"):
+            result = self.refuse(WRONG_USAGE, "refine", "pair.json", "--within", "1", "-o", output,
+                                 says=".json")
+            self.assertNotIn("triangles became", result.err)
         refuse(WRONG_USAGE, "--within", "1", output="new.obj", says=(".obj", ".json"))
+        refuse(WRONG_USAGE, "--within", "1", "--mask-invalid", says="--mask-invalid")
         refuse(WRONG_USAGE, "--within", "1", output="new", says=".json")
         points, triangles = make_grid(2, 2)
         write_off(self.path("bent.off"), numpy.column_stack((points, points[:, 0] ** 2)), triangles)
@@ -1402,6 +1411,7 @@ class Convert(ProgramTest):
 
 OPTIONS = {
     "pair": "--target-array --input-format --working-size",
+    "system": "--system --incenter --linear-where-discordant --tolerance",
     "map options": "--system --incenter --linear-where-discordant --mask-invalid --tolerance",
     "output": "--output --force --output-format",
     "data": "--columns --data-format --require-inside",
@@ -1417,7 +1427,7 @@ OPTIONS_OF = {
     "figure": f"{OPTIONS['pair']} {OPTIONS['map options']} {OPTIONS['output']} --all-systems --grid "
               "--contours --image --close-up --width",
     "coordinates": f"--input-format {OPTIONS['map options']} {OPTIONS['output']} {OPTIONS['data']}",
-    "refine": f"{OPTIONS['pair']} {OPTIONS['map options']} {OPTIONS['output']} --within --most-triangles "
+    "refine": f"{OPTIONS['pair']} {OPTIONS['system']} {OPTIONS['output']} --within --most-triangles "
               "--input-crs --output-crs",
     "convert": f"{OPTIONS['pair']} {OPTIONS['output']} --target-output --output-array --input-crs "
                "--output-crs",
@@ -1467,6 +1477,34 @@ class CommandLine(ProgramTest):
         self.refuse(WRONG_USAGE, "map", "pair.json", "-o", "new.csv", says="SOURCE [TARGET] DATA")
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", says="--output")
 
+    def test_files_in_the_place_of_others(self):
+        pair = make_pair(2, 2)
+        write_off(self.path("a.off"), pair.source, pair.triangles)
+        write_off(self.path("b.off"), pair.target, pair.triangles)
+        write_pnm(self.path("image.pgm"), numpy.zeros((2, 2)))
+        for files, said in ((("a.off", "b.off"), "b.off was taken for DATA"),
+                            (("points.csv", "pair.json"), "pair.json was taken for DATA"),
+                            (("pair.json", "b.off", "points.csv"), "points.csv was taken for DATA")):
+            self.refuse(WRONG_USAGE, "map", *files, "-o", "new.vtp", says=("SOURCE [TARGET] DATA", said))
+        self.refuse(WRONG_USAGE, "warp", "image.pgm", "pair.json", "-o", "new.png",
+                    says=("image.pgm as a mesh", "SOURCE [TARGET] IMAGE", "pair.json was taken for IMAGE"))
+
+    def test_advice_names_only_what_there_is(self):
+        pair = make_pair(3, 3, move=0)
+        target = pair.target.copy()
+        target[5] = [0.95, 0.5]
+        write_json(self.path("bad.json"), pair._replace(target=target))
+        commands = {"map": ["points.csv", "-o", "new.csv"], "figure": ["-o", "new.png"],
+                    "morph": ["-o", "new%d.vtp"], "refine": ["--within", "1", "-o", "new.json"],
+                    "convert": ["-o", "new.json"]}
+        for command, arguments in commands.items():
+            result = self.refuse(REFUSED, command, "bad.json", *arguments, says=("bad.json", "flipped"))
+            known = "--mask-invalid" in OPTIONS_OF[command]
+            self.assertEqual("use --mask-invalid to leave them out" in result.err, known, command)
+            self.assertEqual("--mask-invalid" in result.err, known, command)
+        out = self.run_dhm("check", "--quick", "bad.json", status=REFUSED).out.decode()
+        self.assertIn("--mask-invalid of dhm map", out)
+
     def test_out_of_range(self):
         arguments = ("map", "pair.json", "points.csv", "-o", "new.csv")
         self.refuse(WRONG_USAGE, *arguments, "--system=", says="--system")
@@ -1477,7 +1515,17 @@ class CommandLine(ProgramTest):
             self.refuse(WRONG_USAGE, *arguments, "--tolerance=" + tolerance, says=("--tolerance", tolerance))
 
     def test_names_of_formats(self):
-        self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new", says=".csv")
+        no_extension = "The output's name has no extension"
+        write_pnm(self.path("image.pgm"), numpy.zeros((2, 2)))
+        self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new", says=(no_extension, ".csv"))
+        self.refuse(WRONG_USAGE, "warp", "pair.json", "image.pgm", "-o", "new", says=(no_extension, ".png"))
+        self.refuse(WRONG_USAGE, "morph", "pair.json", "-o", "new%d", says=(no_extension, ".vtp"))
+        self.refuse(WRONG_USAGE, "morph", "pair.json", "--source-image", "image.pgm", "-o", "new%d",
+                    says=(no_extension, ".png"))
+        self.refuse(WRONG_USAGE, "figure", "pair.json", "-o", "new", says=("new", ".svg"))
+        self.refuse(WRONG_USAGE, "convert", "pair.json", "-o", "new", says=(no_extension, ".json"))
+        self.refuse(WRONG_USAGE, "convert", "pair.json", "-o", "new", "--target-output", "other",
+                    says=(no_extension, ".off"))
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new.xyzzy", says=(".xyzzy", ".csv"))
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new.vtu", says=(".vtu", ".vtp"))
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "", says="empty")
@@ -1698,6 +1746,17 @@ class InputFiles(ProgramTest):
         self.assertEqual(out, expected)
         out = self.run_dhm("map", "pair.json", "-", "-o", "-", "--output-format", "vtp", input=points).out
         self.assertIn(b"<VTKFile", out)
+        out = self.run_dhm("coordinates", "-", "points.csv", "--input-format", "mesh", "-o", "-",
+                           input=b"M2\n2 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n").out
+        self.assertIn(b"EdgeLabel", out)
+        # Of another kind than expected.
+        self.refuse(FILE_TROUBLE, "check", "-", input=off, says=("standard input", ".json", "--input-format"))
+        self.refuse(FILE_TROUBLE, "map", "source.off", "-", "points.csv", "-o", "new.csv", "--input-format",
+                    "ply", input=off, says=("standard input", ".ply", "--input-format"))
+        self.refuse(FILE_TROUBLE, "map", "pair.json", "-", "-o", "new.csv", input=off,
+                    says=("standard input", ".csv", "--data-format"))
+        self.refuse(FILE_TROUBLE, "warp", "pair.json", "-", "-o", "new.png", input=off,
+                    says=("standard input", ".png", "--image-format"))
         # Damaged and missing.
         self.refuse(FILE_TROUBLE, "check", "-", input=pair[:500], says=("standard input", "line"))
         self.refuse(FILE_TROUBLE, "check", "-", says="standard input")
