@@ -3,6 +3,7 @@
 
 #include "Canvas.h"
 #include "Command.h"
+#include "Console.h"
 #include "Failure.h"
 #include "InputFile.h"
 #include "OutputFile.h"
@@ -207,7 +208,7 @@ void PrintMeshes(const PairReport& report)
     [](const MeshReport& mesh) { return AtCell("%.4g", mesh.LargestAreaRatio); });
 }
 
-void PrintMap(const PairReport& report)
+void PrintPair(const PairReport& report)
 {
   std::cout << "\n";
   Row("mirrored", { report.Mirrored ? "yes" : "no" });
@@ -221,7 +222,10 @@ void PrintMap(const PairReport& report)
   Row("lengths change by factors of",
     { AtCell("%.6g", report.SmallestStretch) + " to " + AtCell("%.6g", report.LargestStretch) });
   Row("worst distortion (ratio of the two)", { AtCell("%.6g", report.WorstDistortion) });
+}
 
+void PrintSystems(const PairReport& report)
+{
   // What was not measured has no columns.
   const bool hasColumns = report.Systems[0].Samples > 0 || report.Systems[0].ContinuityMeasured;
   if (!hasColumns)
@@ -266,7 +270,8 @@ void PrintMap(const PairReport& report)
   std::cout << "\n";
 }
 
-void Print(const PairReport& report, const MeshPair& pair)
+/// All but what the map is like in the three systems.
+void PrintAllOfMeshes(const PairReport& report, const MeshPair& pair)
 {
   std::cout << pair.GetName() << ": " << (report.Valid ? "a valid pair" : "NOT a valid pair")
             << "\n";
@@ -278,8 +283,10 @@ void Print(const PairReport& report, const MeshPair& pair)
   PrintMeshes(report);
   if (report.Measured)
   {
-    PrintMap(report);
+    PrintPair(report);
   }
+  // What follows may take long.
+  std::cout.flush();
 }
 
 } // namespace
@@ -328,14 +335,29 @@ void AddCheck(CLI::App& program)
     const MeshPair pair = options->Inputs.ReadPair(0);
     CheckExtent extent;
     extent.Determinants = extent.Continuity = !options->Quick;
-    const PairReport report = CheckPair(pair, extent);
+    const PairReport report = CheckPair(pair, extent, [&](const PairReport& known) {
+      if (!options->Machine)
+      {
+        PrintAllOfMeshes(known, pair);
+      }
+    });
     if (options->Machine)
     {
       std::cout << ToJson(report, pair).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     }
     else
     {
-      Print(report, pair);
+      PrintSystems(report);
+    }
+    if (IsUnwelded(report))
+    {
+      Warn("the triangles share hardly any points: in the source, " +
+        Count(report.Meshes[0].DuplicatePoints, "point", "is in the place of another",
+          "are in the places of others") +
+        ", and " + Count(report.InteriorEdges, "edge", "joins", "join") +
+        " two triangles. If they are to be one mesh, join such points, in both meshes alike: for "
+        "example, write one file that has both (dhm convert -o both.vtp) and apply VTK's "
+        "vtkCleanPolyData (ParaView's Clean) to that. Else each triangle is mapped by itself.");
     }
     if (!std::cout.flush())
     {

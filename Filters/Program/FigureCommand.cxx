@@ -247,6 +247,7 @@ void MakeFigure(const Options& options)
     image = ReadImage(InputFile(options.Image, "png"));
     const std::array<int, 2> size{ image->GetDimensions()[0], image->GetDimensions()[1] };
     FitToPictures(pair, size, size);
+    RequireOverlap(image, options.Image, pair.Source(), pair.GetNameOf(0));
   }
   for (vtkPolyData* mesh : { pair.Source(), pair.Target() })
   {

@@ -4,6 +4,7 @@
 #include "ImageWarp.h"
 
 #include "Command.h"
+#include "Console.h"
 #include "DataFile.h"
 #include "Failure.h"
 #include "Numbers.h"
@@ -15,6 +16,7 @@
 #include "vtkPolyData.h"
 #include "vtkResampleThroughHomeomorphism.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -72,6 +74,13 @@ void BlendPixels(const Value* first, const Value* second, vtkIdType count, doubl
     result[i] = ToValue<Value>(
       (1.0 - t) * static_cast<double>(first[i]) + t * static_cast<double>(second[i]));
   }
+}
+
+/// "x from 0 to 3, y from 0 to 2".
+std::string DescribeBox(const double* bounds)
+{
+  return "x from " + ToText(bounds[0]) + " to " + ToText(bounds[1]) + ", y from " +
+    ToText(bounds[2]) + " to " + ToText(bounds[3]);
 }
 
 /// The pixels of a warped image.
@@ -179,6 +188,41 @@ vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int
     grid->SetExtent(0, size[0] - 1, 0, size[1] - 1, 0, 0);
   }
   return grid;
+}
+
+void RequireOverlap(
+  vtkImageData* image, const std::string& imageName, vtkPolyData* mesh, const std::string& meshName)
+{
+  double pixels[6];
+  double domain[6];
+  image->GetBounds(pixels);
+  mesh->GetBounds(domain);
+  double covered = 1.0;
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    // A pixel is as wide as the distance to the next.
+    const double half = 0.5 * image->GetSpacing()[axis];
+    const double low = pixels[2 * axis] - half;
+    const double high = pixels[2 * axis + 1] + half;
+    const double common = std::min(high, domain[2 * axis + 1]) - std::max(low, domain[2 * axis]);
+    covered *= std::max(common, 0.0) / (high - low);
+  }
+  const std::string boxes =
+    imageName + " (" + DescribeBox(pixels) + ") and " + meshName + " (" + DescribeBox(domain) + ")";
+  if (covered == 0.0)
+  {
+    throw Failure(REFUSED,
+      boxes +
+        " do not overlap: meshes must be in the image's coordinates (a picture's are its pixels, y "
+        "upwards).");
+  }
+  if (covered < 0.01)
+  {
+    Warn(boxes +
+      " overlap in less than a hundredth of the image: are the meshes in the image's coordinates "
+      "(a "
+      "picture's are its pixels, y upwards)?");
+  }
 }
 
 vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source,

@@ -45,6 +45,14 @@ struct MeshPair
                                             : this->Names[0] + " and " + this->Names[1];
   }
 
+  /// What to call one of the meshes in messages.
+  std::string GetNameOf(std::size_t side) const
+  {
+    return this->Names[0] != this->Names[1] ? this->Names[side]
+      : side == 0                           ? "the source of " + this->Names[0]
+                                            : "the target of " + this->Names[0];
+  }
+
   vtkPolyData* Source() const { return this->Meshes[0]; }
   vtkPolyData* Target() const { return this->Meshes[1]; }
 };

@@ -167,6 +167,14 @@ void Morph(const Options& options)
       sizes[side] = { dimensions[0], dimensions[1] };
     }
     FitToPictures(pair, sizes[0], sizes[1]);
+    for (std::size_t side = 0; side < 2; ++side)
+    {
+      if (pictures[side])
+      {
+        RequireOverlap(
+          pictures[side], *pictureNames[side], pair.Meshes[side], pair.GetNameOf(side));
+      }
+    }
   }
   vtkSmartPointer<vtkDataObject> data = pair.Source();
   if (!options.Data.empty())

@@ -466,75 +466,6 @@ void MeasureContinuity(const MeshPair& pair, PairReport& report)
   }
 }
 
-} // namespace
-
-PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent)
-{
-  PairReport report;
-  for (std::size_t side = 0; side < 2; ++side)
-  {
-    CountPoints(pair.Meshes[side], report.Meshes[side]);
-  }
-  // Leaving defective triangles out finds all kinds of defects, and lets the rest be measured.
-  const auto read = TriangulationPair::Read(pair.Source(), pair.Target(), true, report.Problems);
-  report.Valid = report.Problems.empty() && read;
-  if (!read)
-  {
-    for (const MeshProblem& problem : report.Problems)
-    {
-      report.InvalidTriangles.insert(
-        report.InvalidTriangles.end(), problem.FirstCells.begin(), problem.FirstCells.end());
-    }
-    std::sort(report.InvalidTriangles.begin(), report.InvalidTriangles.end());
-    return report;
-  }
-  const Triangulation& triangulation = read->GetTriangulation();
-  for (std::size_t side = 0; side < 2; ++side)
-  {
-    report.Meshes[side].Planar = read->GetEmbedding(static_cast<Side>(side)).IsPlanar();
-    MeasureTriangles(pair.Meshes[side], triangulation, report.Meshes[side]);
-  }
-  for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
-  {
-    if (triangulation.IsMasked(triangle))
-    {
-      report.InvalidTriangles.push_back(triangulation.GetCellId(triangle));
-    }
-  }
-  report.ReorderedTriangles = CountReordered(pair.Source(), pair.Target());
-  CountConnections(triangulation, report);
-  report.BoundaryLoops = CountBoundaryLoops(triangulation);
-  if (report.Components == 0)
-  {
-    return report;
-  }
-  if (report.Meshes[0].Planar && report.Meshes[1].Planar)
-  {
-    TriangleIndex first = 0;
-    while (triangulation.IsMasked(first))
-    {
-      ++first;
-    }
-    const auto& corners = triangulation.GetCorners(first);
-    report.Mirrored = read->GetEmbedding(Side::Source).GetOrientation(corners) !=
-      read->GetEmbedding(Side::Target).GetOrientation(corners);
-  }
-  MeasureShapes(pair, triangulation, report);
-  if (extent.Determinants)
-  {
-    MeasureDeterminants(pair, triangulation, report);
-  }
-  if (extent.Continuity)
-  {
-    MeasureContinuity(pair, report);
-  }
-  report.Measured = true;
-  return report;
-}
-
-namespace
-{
-
 void RequireMap(const MeshPair& pair, bool maskInvalid, const std::string& advice)
 {
   MeshProblems problems;
@@ -552,7 +483,88 @@ void RequireMap(const MeshPair& pair, bool maskInvalid, const std::string& advic
   }
 }
 
+/// What there is to know about the meshes of a pair, some of whose triangles may be left out.
+void DescribePair(const MeshPair& pair, const TriangulationPair& read, PairReport& report)
+{
+  const Triangulation& triangulation = read.GetTriangulation();
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    report.Meshes[side].Planar = read.GetEmbedding(static_cast<Side>(side)).IsPlanar();
+    MeasureTriangles(pair.Meshes[side], triangulation, report.Meshes[side]);
+  }
+  for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
+  {
+    if (triangulation.IsMasked(triangle))
+    {
+      report.InvalidTriangles.push_back(triangulation.GetCellId(triangle));
+    }
+  }
+  report.ReorderedTriangles = CountReordered(pair.Source(), pair.Target());
+  CountConnections(triangulation, report);
+  report.BoundaryLoops = CountBoundaryLoops(triangulation);
+  if (report.Components == 0)
+  {
+    return;
+  }
+  if (report.Meshes[0].Planar && report.Meshes[1].Planar)
+  {
+    TriangleIndex first = 0;
+    while (triangulation.IsMasked(first))
+    {
+      ++first;
+    }
+    const auto& corners = triangulation.GetCorners(first);
+    report.Mirrored = read.GetEmbedding(Side::Source).GetOrientation(corners) !=
+      read.GetEmbedding(Side::Target).GetOrientation(corners);
+  }
+  MeasureShapes(pair, triangulation, report);
+  report.Measured = true;
+}
+
 } // namespace
+
+PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent,
+  const std::function<void(const PairReport& report)>& onMeshes)
+{
+  PairReport report;
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    CountPoints(pair.Meshes[side], report.Meshes[side]);
+  }
+  // Leaving defective triangles out finds all kinds of defects, and lets the rest be measured.
+  const auto read = TriangulationPair::Read(pair.Source(), pair.Target(), true, report.Problems);
+  report.Valid = report.Problems.empty() && read;
+  if (read)
+  {
+    DescribePair(pair, *read, report);
+  }
+  else
+  {
+    for (const MeshProblem& problem : report.Problems)
+    {
+      report.InvalidTriangles.insert(
+        report.InvalidTriangles.end(), problem.FirstCells.begin(), problem.FirstCells.end());
+    }
+    std::sort(report.InvalidTriangles.begin(), report.InvalidTriangles.end());
+  }
+  onMeshes(report);
+  if (report.Measured && extent.Determinants)
+  {
+    MeasureDeterminants(pair, read->GetTriangulation(), report);
+  }
+  if (report.Measured && extent.Continuity)
+  {
+    MeasureContinuity(pair, report);
+  }
+  return report;
+}
+
+bool IsUnwelded(const PairReport& report)
+{
+  // A mesh has about three edges for two triangles, and even a strip has one for each.
+  return report.Measured && report.Meshes[0].DuplicatePoints > 0 &&
+    report.Meshes[1].DuplicatePoints > 0 && 2 * report.InteriorEdges < report.Meshes[0].Triangles;
+}
 
 void RequireMap(const MeshPair& pair, const MapOptions& map)
 {

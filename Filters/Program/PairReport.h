@@ -14,6 +14,7 @@
 #include "vtkType.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace dhm
@@ -107,8 +108,14 @@ struct CheckExtent
   bool Continuity = true;
 };
 
-/// Checks a pair. Invalid triangles are left out of the measurements.
-PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent);
+/// Checks a pair. Invalid triangles are left out of the measurements. All but what takes long, the
+/// measurements of the map, is shown to @a onMeshes before these begin.
+PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent,
+  const std::function<void(const PairReport& report)>& onMeshes);
+
+/// Whether hardly any triangles share an edge though points of both meshes are in the places of
+/// others: as if each triangle had points of its own.
+bool IsUnwelded(const PairReport& report);
 
 /// Throws Failure, naming what is wrong, if the pair defines no map, not even without its invalid
 /// triangles if these are left out.

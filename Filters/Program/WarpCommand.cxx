@@ -57,6 +57,9 @@ void AddWarp(CLI::App& program)
     const int* to = grid->GetDimensions();
     const std::array<int, 2> sizes[2] = { { from[0], from[1] }, { to[0], to[1] } };
     FitToPictures(pair, sizes[options->Inverse], sizes[!options->Inverse]);
+    const std::size_t side = options->Inverse ? 1 : 0;
+    RequireOverlap(image, file.GetName(), pair.Meshes[side], pair.GetNameOf(side));
+    RequireOverlap(grid, "the result", pair.Meshes[1 - side], pair.GetNameOf(1 - side));
     const auto warped = WorkWith(pair, [&] {
       return WarpImage(
         image, pair.Source(), pair.Target(), grid, options->Inverse, options->Map, "Warping");

@@ -911,6 +911,42 @@ class Check(ProgramTest):
         self.refuse(FILE_TROUBLE, "check", "pair.json", "--picture", "pair.png", says="--force")
         self.run_dhm("check", "--quick", "pair.json", "--picture", "pair.png", "--force")
 
+    def test_triangles_that_share_no_points(self):
+        """They are no fault, but hardly meant."""
+        def check(name):
+            return self.run_dhm("check", "--quick", "--json", *name)
+        pair = make_pair(4, 4)
+        separate = numpy.arange(pair.triangles.size).reshape(-1, 3)
+        for side, points in ((0, pair.source), (1, pair.target)):
+            write_off(self.path(f"{side}.off"), points[pair.triangles].reshape(-1, 2), separate)
+        result = check(["0.off", "1.off"])
+        report = json.loads(result.out)
+        self.assertEqual((report["interior_edges"], report["components"]), (0, 32))
+        for words in (f"{96 - 25} points", "0 edges join two triangles", "vtkCleanPolyData", "dhm convert"):
+            self.assertIn(words, result.err)
+        # Points of one place that are joined by triangles all the same are none of this: a cut.
+        points, triangles = make_grid(4, 4)
+        cut = triangles.copy()
+        upper = points[triangles].mean(axis=1)[:, 1] > 0.5
+        twins = {k: len(points) + i for i, k in enumerate(numpy.flatnonzero(points[:, 1] == 0.5))}
+        cut[upper] = numpy.vectorize(lambda k: twins.get(k, k))(cut[upper])
+        write_off(self.path("cut.off"), numpy.vstack((points, points[list(twins)])), cut)
+        result = check(["cut.off", "cut.off"])
+        self.assertEqual(json.loads(result.out)["source"]["duplicate_points"], 5)
+        self.assertEqual(result.err, "")
+
+    def test_the_meshes_are_reported_before_the_map_is_measured(self):
+        write_json(self.path("pair.json"), make_pair(80, 80, move=0.2))
+        expected = self.run_dhm("check", "pair.json").out
+        with subprocess.Popen([PROGRAM, "check", "pair.json"], cwd=self.folder, env=self.environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+            first = os.read(process.stdout.fileno(), 1 << 16)
+            self.assertIsNone(process.poll())
+            rest = process.stdout.read()
+        self.assertIn(b"worst distortion", first)
+        self.assertNotIn(b"det J", first)
+        self.assertEqual(first + rest, expected)
+
     def test_surfaces_and_empty_meshes(self):
         points, triangles = make_grid(4, 4)
         bent = [numpy.column_stack((points, h * points[:, 0] ** 2)) for h in (0.3, 0.7)]
@@ -1059,6 +1095,29 @@ class Warp(ProgramTest):
         for name in ("new", "new.gif", "new.csv", "new.vtp"):
             refuse(output=name, says=".png")
         self.refuse(WRONG_USAGE, "warp", "pair.json", "-o", "new.png")
+
+    def test_meshes_beside_the_image(self):
+        boxes = ("x from 0 to 23, y from 0 to 17", "x from 1000 to 1001, y from 0 to 1")
+        small = make_pair(2, 2)
+        beside = Pair(small.source + [1000, 0], small.target + [1000, 0], small.triangles)
+        write_json(self.path("beside.json"), beside)
+        source, target = "the source of beside.json", "the target of beside.json"
+        for command, name in ((["warp", "beside.json", "image.ppm", "-o", "new.png"], source),
+                              (["warp", "-i", "beside.json", "image.ppm", "-o", "new.png"], target),
+                              (["figure", "beside.json", "--image", "image.ppm", "-o", "new.png"], source),
+                              (["morph", "beside.json", "--source-image", "image.ppm", "-o", "new%d.png"], source),
+                              (["morph", "beside.json", "--target-image", "image.ppm", "-o", "new%d.png"], target)):
+            self.refuse(REFUSED, *command, says=("image.ppm", name, *boxes, "do not overlap"))
+        # An image that is seen nowhere.
+        write_json(self.path("away.json"), Pair(self.pair.source, self.pair.target + 500, self.pair.triangles))
+        self.refuse(REFUSED, "warp", "away.json", "image.ppm", "-o", "new.png",
+                    says=("the result", "the target of away.json", "do not overlap"))
+        # Perhaps from 0 to 1 instead of in pixels.
+        write_json(self.path("unit.json"), small)
+        result = self.run_dhm("warp", "unit.json", "image.ppm", "-o", "unit.png")
+        self.assertIn("less than a hundredth", result.err)
+        write_json(self.path("pair.json"), self.pair)
+        self.assertEqual(self.run_dhm("warp", "pair.json", "image.ppm", "-o", "pair.png").err, "")
 
     def test_xmorph_meshes(self):
         # In xmorph's own units, ten to a pixel; the middle of the rim does not touch the picture's end.
