@@ -117,6 +117,12 @@ struct DataOptions
     {
       CheckOutputFormat(output.GetFormat(), ".csv and .txt (if the data came from such a file)");
     }
+    if (IsMesh(output.GetFormat()) && !this->MovesPoints)
+    {
+      throw Failure(WRONG_USAGE,
+        "Coordinates are arrays of points, which a ." + output.GetFormat() +
+          " file does not have: write a .vtp.");
+    }
     if (IsPicture(output.GetFormat()) && this->MovesPoints)
     {
       throw Failure(WRONG_USAGE,
@@ -175,7 +181,7 @@ void AddMap(CLI::App& program)
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "SOURCE [TARGET] DATA", 1,
     "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu .vts .vtr .vti .vtm .vtk, "
-    "or a picture, whose pixels move as points (to warp it, use dhm warp)");
+    ".obj .off .ply .stl, or a picture, whose pixels move as points (to warp it, use dhm warp)");
   options->Data.MovesPoints = true;
   options->Data.AddTo(*command);
   options->Map.AddTo(*command);

@@ -8,9 +8,6 @@
 #include "Failure.h"
 #include "InputFile.h"
 #include "OutputFile.h"
-#include "PlyMesh.h"
-#include "StlMesh.h"
-#include "TextMesh.h"
 #include "TriangulationFile.h"
 #include "XmorphMesh.h"
 
@@ -73,16 +70,7 @@ vtkSmartPointer<vtkPolyData> ToPolygons(vtkUnstructuredGrid* grid, const std::st
 vtkSmartPointer<vtkPolyData> ReadMeshAsNamed(const InputFile& file)
 {
   const std::string& format = file.GetFormat();
-  using Read = vtkSmartPointer<vtkPolyData> (*)(std::istream & text, const std::string& name);
-  static const std::map<std::string, Read> readers{ { "obj", ReadObj }, { "off", ReadOff },
-    { "ply", ReadPly }, { "stl", ReadStl } };
-  const auto reader = readers.find(format);
-  if (reader != readers.end())
-  {
-    std::ifstream bytes(file.GetPath(), std::ios::binary);
-    return reader->second(bytes, file.GetName());
-  }
-  if (format != "vtp" && format != "vtk" && format != "vtu")
+  if (!IsMesh(format) && format != "vtp" && format != "vtk" && format != "vtu")
   {
     throw Failure(WRONG_USAGE,
       "Cannot read " + file.GetName() +
@@ -375,18 +363,13 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
 
 void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
 {
-  if (file.GetFormat() == "vtp" || file.GetFormat() == "vtk")
+  const std::string& format = file.GetFormat();
+  if (format != "vtp" && format != "vtk" && format != "obj" && format != "off")
   {
-    WriteData(mesh, file);
-    return;
+    throw Failure(
+      WRONG_USAGE, CannotWrite("a mesh", format) + ": the formats are .vtp, .vtk, .obj and .off.");
   }
-  if (file.GetFormat() != "obj" && file.GetFormat() != "off")
-  {
-    throw Failure(WRONG_USAGE,
-      CannotWrite("a mesh", file.GetFormat()) + ": the formats are .vtp, .vtk, .obj and .off.");
-  }
-  const auto write = file.GetFormat() == "obj" ? &WriteObj : &WriteOff;
-  file.Write([mesh, write](std::ostream& text) { write(mesh, text); });
+  WriteData(mesh, file);
 }
 
 } // namespace dhm

@@ -606,6 +606,29 @@ class Map(ProgramTest):
         points, _ = read_legacy(self.path("back-data2.vtk"))
         self.assert_near(points[:, :2], self.points, 1e-13)
 
+    def test_meshes_as_data(self):
+        """The source's own mesh goes where the target is, in all formats."""
+        source, target, triangles = self.pair
+        writers = {"obj": write_obj, "off": write_off, "ply": write_ply,
+                   "stl": lambda path, p, t: write_stl(path, p, t, False)}
+        for extension, write in writers.items():
+            write(self.path(f"mesh.{extension}"), source, triangles)
+            write(self.path(f"expected.{extension}"), target, triangles)
+            for output in ("obj", "off"):
+                for side in ("mesh", "expected"):
+                    pair = "pair.json" if side == "mesh" else "same.json"
+                    write_json(self.path("same.json"), Pair(target, target, triangles))
+                    result = self.run_dhm("map", pair, f"{side}.{extension}", "-o", f"{side}-out.{output}", "-f")
+                    self.assertEqual(result.err, "")
+                numbers = [numpy.array(re.findall(r"-?\d[\d.e-]*", self.path(f"{side}-out.{output}").read_text()),
+                                       float) for side in ("mesh", "expected")]
+                self.assert_near(*numbers, 1e-15)
+        self.assertIn("without Jacobian", self.run_dhm("map", "pair.json", "mesh.off", "--jacobian", "-o",
+                                                       "jacobian.obj").err)
+        write_off(self.path("outside.off"), source + 0.5, triangles)
+        self.refuse(REFUSED, "map", "pair.json", "outside.off", "-o", "new.obj", says=("outside", ".vtp"))
+        self.refuse(WRONG_USAGE, "coordinates", "pair.json", "mesh.off", "-o", "new.obj", says=(".obj", ".vtp"))
+
     def test_pictures_become_curved_grids(self):
         write_pnm(self.path("gray.pgm"), numpy.zeros((2, 2)))
         self.run_dhm("map", "pair.json", "gray.pgm", "-o", "gray.vts")
@@ -936,7 +959,7 @@ class Check(ProgramTest):
         self.assertEqual(result.err, "")
 
     def test_the_meshes_are_reported_before_the_map_is_measured(self):
-        write_json(self.path("pair.json"), make_pair(80, 80, move=0.2))
+        write_json(self.path("pair.json"), make_pair(40, 40, move=0.2))
         expected = self.run_dhm("check", "pair.json").out
         with subprocess.Popen([PROGRAM, "check", "pair.json"], cwd=self.folder, env=self.environment,
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
