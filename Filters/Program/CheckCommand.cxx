@@ -320,7 +320,8 @@ void AddCheck(CLI::App& program)
   command->footer(
     "Exit status: 0 the pair defines a map, 1 it does not.\n"
     "Invalid triangles are left out of what is measured. Continuity: at each interior edge, "
-    "whether the map's derivative is the same on both sides, as measured from the map's values.");
+    "whether the map's derivative is the same on both sides, as measured from the map's values. "
+    "(Smooth is twice continuously differentiable except at the meshes' points, where edges end.)");
   command->callback([options] {
     std::unique_ptr<OutputFile> picture;
     if (!options->Picture.empty())
