@@ -161,6 +161,7 @@ Background ReadBackgroundFor(const std::string& format, const std::string& text)
 
 std::array<int, 2> ReadSize(const std::string& text)
 {
+  constexpr int largest = 100000;
   if (text.empty())
   {
     return { 0, 0 };
@@ -170,14 +171,14 @@ std::array<int, 2> ReadSize(const std::string& text)
   {
     const auto width = ToNumber<int>(text.substr(0, x));
     const auto height = ToNumber<int>(text.substr(x + 1));
-    constexpr int largest = 100000;
     if (width && height && *width >= 1 && *height >= 1 && *width <= largest && *height <= largest)
     {
       return { *width, *height };
     }
   }
   throw Failure(WRONG_USAGE,
-    "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, each from 1 to 100000, such as 640x480.");
+    "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, each from 1 to " +
+      std::to_string(largest) + ", such as 640x480.");
 }
 
 vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int, 2>& size)
@@ -219,9 +220,8 @@ void RequireOverlap(
   if (covered < 0.01)
   {
     Warn(boxes +
-      " overlap in less than a hundredth of the image: are the meshes in the image's coordinates "
-      "(a "
-      "picture's are its pixels, y upwards)?");
+      " overlap in less than a hundredth of the image: meshes must be in its coordinates (a "
+      "picture's are its pixels, y upwards).");
   }
 }
 
