@@ -65,6 +65,14 @@ char FindSeparator(const std::string& line)
   return count(most) > 0 ? most : ' ';
 }
 
+constexpr const char* byteOrderMark = "\xEF\xBB\xBF";
+
+/// Whether a line that begins with the field would be taken for something else than a row.
+bool MisleadsAtBegin(const std::string& field)
+{
+  return field.compare(0, 1, "#") == 0 || field.compare(0, 3, byteOrderMark) == 0;
+}
+
 bool NeedsQuotes(const std::string& field, char separator)
 {
   return field.find_first_of("\"\n\r") != std::string::npos ||
@@ -88,21 +96,21 @@ PointTable::PointTable(std::istream& file, const std::string& fileName, const st
   for (std::string line; std::getline(file, line);)
   {
     ++number;
-    if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+    if (number == 1 && line.compare(0, 3, byteOrderMark) == 0)
     {
-      // A byte order mark, as some programs put it there.
+      // As some programs put it there.
       line.erase(0, 3);
     }
-    if (!line.empty() && line.back() == '\r')
-    {
-      line.pop_back();
-    }
-    if (line.find_first_not_of(" \t") == std::string::npos)
+    if (line.find_first_not_of(" \t\r") == std::string::npos)
     {
       continue;
     }
     if (line[0] == '#')
     {
+      if (line.back() == '\r')
+      {
+        line.pop_back();
+      }
       this->Comments.push_back(line);
       continue;
     }
@@ -147,6 +155,10 @@ PointTable::PointTable(std::istream& file, const std::string& fileName, const st
         {
           quoted = false;
         }
+      }
+      else if (c == '\r' && i + 1 == line.size())
+      {
+        // Part of the line's end, which it is not within quotes.
       }
       else if (c == '"')
       {
@@ -476,7 +488,7 @@ void PointTable::Write(std::ostream& file) const
       {
         file << this->Separator;
       }
-      if (!NeedsQuotes(row[i], this->Separator))
+      if (!NeedsQuotes(row[i], this->Separator) && !(i == 0 && MisleadsAtBegin(row[i])))
       {
         file << row[i];
         continue;

@@ -496,6 +496,23 @@ class Map(ProgramTest):
         expected = interpolate(numpy.array([[0.5, 0.25], [0.125, 0.5]]), self.pair)
         self.assert_near(images, expected, 1e-15)
 
+    def test_rows_are_no_comments(self):
+        self.path("table.csv").write_text('id,x,y\n"#1",0.5,0.25\n2,0.25,0.5\n')
+        for table in ("table.csv", "once.csv"):
+            self.run_dhm("map", "pair.json", table, "-f", "-o", "once.csv")
+            lines = list(csv.reader(self.path("once.csv").read_text().splitlines()))
+            self.assertEqual([line[0] for line in lines], ["id", "#1", "2"])
+
+    def test_ends_of_lines(self):
+        """Those of a table become \\n, those within quotes stay."""
+        self.path("table.csv").write_bytes(b'# old\r\nx,y,name\r\n0.5,0.25,"two\r\nlines\r"\r\n\r\n0.25,0.5,\r\n')
+        out = self.run_dhm("coordinates", "pair.json", "table.csv", "-o", "-").out
+        lines = out.split(b"\n")
+        self.assertEqual(lines[0], b"# old")
+        self.assertTrue(lines[1].startswith(b"x,y,name,"))
+        self.assertEqual(lines[2] + b"\n" + lines[3][:7], b'0.5,0.25,"two\r\nlines\r"')
+        self.assertTrue(lines[4].startswith(b"0.25,0.5,,"))
+
     def test_columns_by_number_and_name(self):
         self.path("table.txt").write_text("0.5 a 0.25\n0.125\tb 0.5\n")
         self.path("named.csv").write_text("up,right,id\n0.5,0.25,1\n0.125,0.5,2\n")
