@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Sourced by Testing/run, Examples/run, Examples/figures and ParaViewPlugin/prepare.sh.
+# Sourced by the scripts in Testing and Examples, and by ParaViewPlugin/prepare.sh.
 
 # The distribution's compilers, CMake and Python, which go with the distribution's VTK, even if
 # others come first on the caller's PATH.
@@ -35,4 +35,23 @@ install_missing()
   "${as_root[@]}" apt-get update
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install --yes --no-install-recommends "${missing[@]}"
+}
+
+# build_program: builds the program dhm and nothing else, in the repository's folder.
+build_program()
+{
+  echo "Configuring"
+  cmake --log-level=WARNING -G Ninja -S . -B build/program \
+    -DDIFFERENTIABLEHOMEOMORPHISM_BUILD_TESTING=OFF -DDIFFERENTIABLEHOMEOMORPHISM_BUILD_EXAMPLES=OFF \
+    -DDIFFERENTIABLEHOMEOMORPHISM_WRAP_PYTHON=OFF
+  echo "Building"
+  cmake --build build/program
+  program="$PWD/build/program/bin/dhm"
+}
+
+# dhm ARGUMENT...: says and does it, with the program that build_program has built.
+dhm()
+{
+  echo "+ dhm $*"
+  "$program" "$@"
 }

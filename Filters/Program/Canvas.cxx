@@ -4,10 +4,10 @@
 #include "Canvas.h"
 
 #include "Failure.h"
+#include "ImageWarp.h"
+#include "MeshParts.h"
 #include "OutputFile.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
@@ -92,19 +92,6 @@ public:
     cairo_restore(this->Context);
   }
 
-  template <typename Draw>
-  static void ForEachCell(vtkCellArray* cells, Draw&& draw)
-  {
-    const auto iterator = vtk::TakeSmartPointer(cells->NewIterator());
-    for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
-    {
-      vtkIdType count;
-      const vtkIdType* points;
-      iterator->GetCurrentCell(count, points);
-      draw(iterator->GetCurrentCellId(), count, points);
-    }
-  }
-
   /// Cairo's own files are closed without a look at whether all could be written.
   static cairo_status_t Keep(void* self, const unsigned char* bytes, unsigned int count)
   {
@@ -164,10 +151,9 @@ void Canvas::DrawFrame(const Area& area, const Color& color)
 void Canvas::DrawLines(vtkPolyData* data, const Color& color, double width)
 {
   this->Internal->SetColor(color);
-  Internals::ForEachCell(
-    data->GetLines(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
-      this->Internal->AddPath(data, count, points, false);
-    });
+  ForEachCell(data->GetLines(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
+    this->Internal->AddPath(data, count, points, false);
+  });
   this->Internal->Stroke(width);
 }
 
@@ -175,14 +161,13 @@ void Canvas::DrawEdges(vtkPolyData* mesh, const Color& color, double width)
 {
   // Each edge once: twice would look darker where it is not opaque.
   std::vector<std::array<vtkIdType, 2>> edges;
-  Internals::ForEachCell(
-    mesh->GetPolys(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
-      for (vtkIdType k = 0; k < count; ++k)
-      {
-        const vtkIdType next = points[(k + 1) % count];
-        edges.push_back({ std::min(points[k], next), std::max(points[k], next) });
-      }
-    });
+  ForEachCell(mesh->GetPolys(), [&](vtkIdType, vtkIdType count, const vtkIdType* points) {
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      const vtkIdType next = points[(k + 1) % count];
+      edges.push_back({ std::min(points[k], next), std::max(points[k], next) });
+    }
+  });
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   this->Internal->SetColor(color);
@@ -197,15 +182,14 @@ void Canvas::FillCells(
   vtkPolyData* mesh, const std::function<bool(vtkIdType cell)>& isShown, const Color& color)
 {
   this->Internal->SetColor(color);
-  const vtkIdType first = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines();
-  Internals::ForEachCell(
-    mesh->GetPolys(), [&](vtkIdType cell, vtkIdType count, const vtkIdType* points) {
-      if (isShown(first + cell))
-      {
-        this->Internal->AddPath(mesh, count, points, true);
-        cairo_fill(this->Internal->Context);
-      }
-    });
+  const vtkIdType first = FirstPolygon(mesh);
+  ForEachCell(mesh->GetPolys(), [&](vtkIdType cell, vtkIdType count, const vtkIdType* points) {
+    if (isShown(first + cell))
+    {
+      this->Internal->AddPath(mesh, count, points, true);
+      cairo_fill(this->Internal->Context);
+    }
+  });
 }
 
 void Canvas::DrawDot(double x, double y, double radius, const Color& color)
@@ -230,8 +214,7 @@ void Canvas::DrawImage(vtkImageData* image)
   }
   const int components = pixels->GetNumberOfComponents();
   const bool hasAlpha = components == 2 || components == 4;
-  const bool isFloating = pixels->GetDataType() == VTK_FLOAT || pixels->GetDataType() == VTK_DOUBLE;
-  const double full = isFloating ? 1.0 : pixels->GetDataTypeMax();
+  const double brightest = Brightest(pixels);
   cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size[0], size[1]);
   cairo_surface_flush(surface);
   unsigned char* rows = cairo_image_surface_get_data(surface);
@@ -244,7 +227,7 @@ void Canvas::DrawImage(vtkImageData* image)
     {
       const vtkIdType pixel = static_cast<vtkIdType>(y) * size[0] + x;
       const auto value = [&](int component) {
-        return std::clamp(pixels->GetComponent(pixel, component) / full, 0.0, 1.0);
+        return std::clamp(pixels->GetComponent(pixel, component) / brightest, 0.0, 1.0);
       };
       const double alpha = hasAlpha ? value(components - 1) : 1.0;
       std::uint32_t packed = static_cast<std::uint32_t>(std::lround(255.0 * alpha));

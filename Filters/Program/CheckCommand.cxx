@@ -3,6 +3,7 @@
 
 #include "Canvas.h"
 #include "Command.h"
+#include "Console.h"
 #include "Failure.h"
 #include "InputFile.h"
 #include "OutputFile.h"
@@ -39,11 +40,14 @@ std::string Format(const char* format, ...)
   return text;
 }
 
+/// How invalid triangles are left out, which is nothing that a check would do.
+const char* const leaveOut = ", or leave them out (--mask-invalid of dhm map, warp and others)";
+
 // --- For machines
 
 Json ToJson(const Extreme& extreme)
 {
-  return { { "value", extreme.Value }, { "cell", extreme.Cell } };
+  return extreme.Cell < 0 ? Json() : Json{ { "value", extreme.Value }, { "cell", extreme.Cell } };
 }
 
 const char* NameOf(MeshProblem::Kind kind)
@@ -92,7 +96,7 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   {
     json["problems"].push_back(
       { { "kind", NameOf(problem.What) }, { "where", problem.Where }, { "count", problem.Count },
-        { "first_cells", problem.FirstCells }, { "message", Describe(problem) } });
+        { "first_cells", problem.FirstCells }, { "message", Describe(problem, leaveOut) } });
   }
   const char* const sides[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
@@ -164,7 +168,9 @@ void Row(const std::string& name, const std::vector<std::string>& columns)
 
 std::string AtCell(const char* format, const Extreme& extreme)
 {
-  return Format(format, extreme.Value) + " (cell " + std::to_string(extreme.Cell) + ")";
+  return extreme.Cell < 0
+    ? "none"
+    : Format(format, extreme.Value) + " (cell " + std::to_string(extreme.Cell) + ")";
 }
 
 void PrintMeshes(const PairReport& report)
@@ -202,7 +208,7 @@ void PrintMeshes(const PairReport& report)
     [](const MeshReport& mesh) { return AtCell("%.4g", mesh.LargestAreaRatio); });
 }
 
-void PrintMap(const PairReport& report)
+void PrintPair(const PairReport& report)
 {
   std::cout << "\n";
   Row("mirrored", { report.Mirrored ? "yes" : "no" });
@@ -216,7 +222,10 @@ void PrintMap(const PairReport& report)
   Row("lengths change by factors of",
     { AtCell("%.6g", report.SmallestStretch) + " to " + AtCell("%.6g", report.LargestStretch) });
   Row("worst distortion (ratio of the two)", { AtCell("%.6g", report.WorstDistortion) });
+}
 
+void PrintSystems(const PairReport& report)
+{
   // What was not measured has no columns.
   const bool hasColumns = report.Systems[0].Samples > 0 || report.Systems[0].ContinuityMeasured;
   if (!hasColumns)
@@ -261,20 +270,23 @@ void PrintMap(const PairReport& report)
   std::cout << "\n";
 }
 
-void Print(const PairReport& report, const MeshPair& pair)
+/// All but what the map is like in the three systems.
+void PrintAllOfMeshes(const PairReport& report, const MeshPair& pair)
 {
   std::cout << pair.GetName() << ": " << (report.Valid ? "a valid pair" : "NOT a valid pair")
             << "\n";
   for (const MeshProblem& problem : report.Problems)
   {
-    std::cout << "  - " << Describe(problem) << "\n";
+    std::cout << "  - " << Describe(problem, leaveOut) << "\n";
   }
   std::cout << "\n";
   PrintMeshes(report);
   if (report.Measured)
   {
-    PrintMap(report);
+    PrintPair(report);
   }
+  // What follows may take long.
+  std::cout.flush();
 }
 
 } // namespace
@@ -308,8 +320,8 @@ void AddCheck(CLI::App& program)
   command->footer(
     "Exit status: 0 the pair defines a map, 1 it does not.\n"
     "Invalid triangles are left out of what is measured. Continuity: at each interior edge, "
-    "whether "
-    "the map's derivative is the same on both sides, as measured from the map's values.");
+    "whether the map's derivative is the same on both sides, as measured from the map's values. "
+    "(Smooth is twice continuously differentiable except at the meshes' points, where edges end.)");
   command->callback([options] {
     std::unique_ptr<OutputFile> picture;
     if (!options->Picture.empty())
@@ -324,14 +336,29 @@ void AddCheck(CLI::App& program)
     const MeshPair pair = options->Inputs.ReadPair(0);
     CheckExtent extent;
     extent.Determinants = extent.Continuity = !options->Quick;
-    const PairReport report = CheckPair(pair, extent);
+    const PairReport report = CheckPair(pair, extent, [&](const PairReport& known) {
+      if (!options->Machine)
+      {
+        PrintAllOfMeshes(known, pair);
+      }
+    });
     if (options->Machine)
     {
       std::cout << ToJson(report, pair).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     }
     else
     {
-      Print(report, pair);
+      PrintSystems(report);
+    }
+    if (IsUnwelded(report))
+    {
+      Warn("the triangles share hardly any points: in the source, " +
+        Count(report.Meshes[0].DuplicatePoints, "point", "is in the place of another",
+          "are in the places of others") +
+        ", and " + Count(report.InteriorEdges, "edge", "joins", "join") +
+        " two triangles. If they are to be one mesh, join such points, in both meshes alike: for "
+        "example, write one file that has both (dhm convert -o both.vtp) and apply VTK's "
+        "vtkCleanPolyData (ParaView's Clean) to that. Else each triangle is mapped by itself.");
     }
     if (!std::cout.flush())
     {

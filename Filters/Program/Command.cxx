@@ -68,13 +68,13 @@ CLI::Validator NumberFrom(double least, double largest)
 
 const char* const SystemNames[3] = { "Linear", "Contour", "Smooth" };
 
-void MapOptions::AddTo(CLI::App& command)
+void MapOptions::AddTo(CLI::App& command, bool canMask)
 {
   command
     .add_option_function<std::string>(
       "-s,--system", [this](const std::string& name) { this->System = ReadSystem(name); },
-      "Coordinate system: smooth (default; twice continuously differentiable), contour (the "
-      "published construction) or linear (the piecewise linear map)")
+      "Coordinate system: smooth (default; twice continuously differentiable except at the meshes' "
+      "points), contour (the published construction) or linear (the piecewise linear map)")
     ->type_name("NAME")
     ->group("Map");
   command
@@ -85,15 +85,17 @@ void MapOptions::AddTo(CLI::App& command)
     .add_flag("--linear-where-discordant", this->LinearWhereDiscordant,
       "Let Linear carry the triangles in which Contour does not exist, instead of refusing them")
     ->group("Map");
-  command
-    .add_flag("--mask-invalid", this->MaskInvalid,
-      "Leave invalid triangles out, as holes, instead of refusing the meshes")
-    ->group("Map");
+  if (canMask)
+  {
+    command
+      .add_flag("--mask-invalid", this->MaskInvalid,
+        "Leave invalid triangles out, as holes, instead of refusing the meshes")
+      ->group("Map");
+  }
   command
     .add_option("--tolerance", this->Tolerance,
       "How far outside a point may be and still be taken to the nearest point of the domain, as a "
-      "proportion "
-      "of the domain's diagonal (default: rounding only)")
+      "proportion of the domain's diagonal (default: rounding only)")
     ->check(NonNegativeNumber())
     ->type_name("NUMBER")
     ->group("Map");
@@ -102,6 +104,7 @@ void MapOptions::AddTo(CLI::App& command)
 void InputFiles::AddTo(
   CLI::App& command, const std::string& names, int others, const std::string& description)
 {
+  this->Names = names;
   command.add_option("FILES", this->Files, description)
     ->expected(1 + others, 2 + others)
     ->required()
@@ -119,8 +122,7 @@ void InputFiles::AddTo(
   command
     .add_option("--working-size", this->WorkingSize,
       "Of xmorph's meshes that do not fill their pictures: the size of its working picture "
-      "(resulting_size in a "
-      "session's file)")
+      "(resulting_size in a session's file)")
     ->type_name("WIDTHxHEIGHT")
     ->group("Files");
 }
@@ -135,7 +137,21 @@ MeshPair InputFiles::ReadPair(std::size_t others) const
   }
   const std::vector<std::string> files(
     this->Files.begin(), this->Files.end() - static_cast<std::ptrdiff_t>(others));
-  return ReadMeshPair(files, reading);
+  try
+  {
+    return ReadMeshPair(files, reading);
+  }
+  catch (const Failure& failure)
+  {
+    if (failure.GetStatus() != WRONG_USAGE || others == 0)
+    {
+      throw;
+    }
+    // A file may be missing, or in the place of another.
+    throw Failure(WRONG_USAGE,
+      std::string(failure.what()) + " (The files are " + this->Names + ": " + this->Files.back() +
+        " was taken for " + this->Names.substr(this->Names.rfind(' ') + 1) + ".)");
+  }
 }
 
 void OutputOptions::AddTo(
@@ -153,6 +169,19 @@ void OutputOptions::AddTo(
         defaultFormat + ")")
     ->type_name("EXTENSION")
     ->group("Files");
+}
+
+void PictureOptions::AddTo(CLI::App& command, const std::string& sizeDescription)
+{
+  command.add_option("--size", this->Size, sizeDescription)
+    ->type_name("WIDTHxHEIGHT")
+    ->group("Results");
+  command
+    .add_option("--background", this->Background,
+      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
+      "or #rrggbb")
+    ->type_name("COLOUR")
+    ->group("Results");
 }
 
 void Run(vtkAlgorithm* filter, const std::string& what, bool showWarnings)

@@ -51,8 +51,8 @@ struct MapOptions
   bool MaskInvalid = false;
   double Tolerance = 0.0;
 
-  /// Adds `--system` and the like.
-  void AddTo(CLI::App& command);
+  /// Adds `--system` and the like; `--mask-invalid` only if invalid triangles can be left out.
+  void AddTo(CLI::App& command, bool canMask = true);
 
   /// Sets them in a filter or transform of the module.
   template <typename Filter>
@@ -74,6 +74,8 @@ struct InputFiles
   std::vector<std::string> Files;
   MeshPairOptions Pair;
   std::string WorkingSize;
+  /// What the files are called in texts.
+  std::string Names;
 
   /// Adds the positional arguments, called @a names in texts, and the options for reading them.
   void AddTo(
@@ -92,6 +94,17 @@ struct OutputOptions
 
   /// Adds `--output`, `--force`, and for standard output `--output-format` with a default.
   void AddTo(CLI::App& command, const std::string& description, const std::string& defaultFormat);
+};
+
+/// What a warped image is to be like.
+struct PictureOptions
+{
+  /// See ReadSize and ReadBackground.
+  std::string Size;
+  std::string Background;
+
+  /// Adds `--size`, which @a sizeDescription describes, and `--background`.
+  void AddTo(CLI::App& command, const std::string& sizeDescription);
 };
 
 /// Runs a filter with a progress bar. Throws Failure with its errors; shows its warnings, if

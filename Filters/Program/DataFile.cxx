@@ -8,8 +8,12 @@
 #include "InputFile.h"
 #include "OutputFile.h"
 #include "PictureFile.h"
+#include "PlyMesh.h"
+#include "StlMesh.h"
+#include "TextMesh.h"
 
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkErrorCode.h"
 #include "vtkGenericDataObjectReader.h"
 #include "vtkGenericDataObjectWriter.h"
@@ -28,6 +32,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <fstream>
 #include <initializer_list>
 #include <new>
 #include <vector>
@@ -46,6 +51,18 @@ constexpr std::array<const char*, 8> pictureFormats{ "png", "jpg", "jpeg", "tif"
   "ppm", "pgm" };
 constexpr std::array<const char*, 5> xmlFormats{ "vtp", "vtu", "vts", "vti", "vtr" };
 constexpr std::array<const char*, 4> xmlTreeFormats{ "vtm", "vtmb", "vtpd", "vtpc" };
+
+using MeshReader = vtkSmartPointer<vtkPolyData> (*)(std::istream& file, const std::string& name);
+
+/// Nothing, if the format is not one of meshes.
+MeshReader FindMeshReader(const std::string& format)
+{
+  return format == "obj" ? &ReadObj
+    : format == "off"    ? &ReadOff
+    : format == "ply"    ? &ReadPly
+    : format == "stl"    ? &ReadStl
+                         : nullptr;
+}
 
 template <typename Value, typename Values>
 bool IsOneOf(const Value& value, const Values& values)
@@ -155,8 +172,8 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const InputFile& file)
   return ReadWith(reader.Get(), file);
 }
 
-/// Lets a writer write. Most are asked to do so to memory (see WriteText and WriteBytes): of
-/// VTK 9.1's, some crash on full disks, and others do not notice.
+/// Lets a writer write. All are asked to do so to memory: of VTK 9.1's, some crash on full disks,
+/// and others do not notice.
 template <typename Writer>
 void WriteWith(Writer* writer, vtkDataObject* data, const OutputFile& file)
 {
@@ -237,6 +254,36 @@ void WritePicture(vtkDataObject* data, const OutputFile& file)
   }
 }
 
+void WriteTextMesh(vtkPolyData* mesh, const OutputFile& file)
+{
+  vtkDataArray* mask = mesh->GetPointData()->GetArray("ValidPointMask");
+  if (mask && mesh->GetNumberOfPoints() > 0 && mask->GetRange()[0] == 0.0)
+  {
+    throw Failure(REFUSED,
+      "Points are outside the domain, which a ." + file.GetFormat() +
+        " file cannot say: write a .vtp.");
+  }
+  std::string lost;
+  for (vtkDataSetAttributes* arrays :
+    std::initializer_list<vtkDataSetAttributes*>{ mesh->GetPointData(), mesh->GetCellData() })
+  {
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+    {
+      const char* name = arrays->GetAbstractArray(i)->GetName();
+      if (name && name != std::string("ValidPointMask"))
+      {
+        lost += (lost.empty() ? "" : ", ") + std::string(name);
+      }
+    }
+  }
+  if (!lost.empty())
+  {
+    Warn(file.GetName() + " holds points and polygons only: it is without " + lost + ".");
+  }
+  const auto write = file.GetFormat() == "obj" ? &WriteObj : &WriteOff;
+  file.Write([mesh, write](std::ostream& text) { write(mesh, text); });
+}
+
 vtkSmartPointer<vtkImageData> ReadJpeg(const InputFile& file)
 {
   vtkNew<vtkJPEGReader> reader;
@@ -262,7 +309,12 @@ bool IsPicture(const std::string& format)
   return IsOneOf(format, pictureFormats);
 }
 
-vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file)
+bool IsMesh(const std::string& format)
+{
+  return FindMeshReader(format) != nullptr;
+}
+
+vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file, const std::string& others)
 {
   const std::string& format = file.GetFormat();
   if (IsOneOf(format, xmlFormats) || IsOneOf(format, xmlTreeFormats))
@@ -278,11 +330,16 @@ vtkSmartPointer<vtkDataObject> ReadData(const InputFile& file)
   {
     return ReadImage(file);
   }
+  if (const MeshReader read = FindMeshReader(format))
+  {
+    std::ifstream bytes(file.GetPath(), std::ios::binary);
+    return read(bytes, file.GetName());
+  }
   throw Failure(WRONG_USAGE,
-    "Cannot read " + file.GetName() +
-      ": the formats of data are .csv, .txt and .xyz (points), .vtp, .vtu, .vts, .vtr, .vti, .vtm, "
-      ".vtk, and "
-      "pictures (.png, .jpg, .tif, .ppm).");
+    "Cannot read " + file.GetName() + " as data: the formats are " +
+      (others.empty() ? "" : others + ", ") +
+      ".vtp, .vtu, .vts, .vtr, .vti, .vtm, .vtk, .obj, .off, .ply, .stl, and pictures (.png, .jpg, "
+      ".tif, .ppm).");
 }
 
 vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file)
@@ -320,16 +377,14 @@ vtkSmartPointer<vtkImageData> ReadImage(const InputFile& file)
   return image;
 }
 
-void CheckOutputFormat(const std::string& format)
+void CheckOutputFormat(const std::string& format, const std::string& others)
 {
-  if (!IsOneOf(format, xmlFormats) && !IsPicture(format) && format != "vtk")
+  if (!IsOneOf(format, xmlFormats) && !IsPicture(format) && format != "vtk" && format != "obj" &&
+    format != "off")
   {
     throw Failure(WRONG_USAGE,
-      (format.empty() ? std::string("The output's name has no extension")
-                      : "Cannot write ." + format) +
-        ": the formats are .csv and .txt (if the data came from such a file), .vtp, .vtu, .vts, "
-        ".vtr, "
-        ".vti, .vtk, and pictures (.png, .jpg, .tif, .ppm).");
+      CannotWrite("data", format) + ": the formats are " + (others.empty() ? "" : others + ", ") +
+        ".vtp, .vtu, .vts, .vtr, .vti, .vtk, .obj, .off, and pictures (.png, .jpg, .tif, .ppm).");
   }
 }
 
@@ -350,6 +405,11 @@ void WriteData(vtkDataObject* data, const OutputFile& file)
     WriteWith(writer.Get(), data, file);
     file.Write(
       { writer->GetOutputString(), static_cast<std::size_t>(writer->GetOutputStringLength()) });
+    return;
+  }
+  if (auto* mesh = vtkPolyData::SafeDownCast(data); mesh && (format == "obj" || format == "off"))
+  {
+    WriteTextMesh(mesh, file);
     return;
   }
   const auto writer =

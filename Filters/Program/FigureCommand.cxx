@@ -7,6 +7,7 @@
 #include "Failure.h"
 #include "ImageWarp.h"
 #include "InputFile.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairPicture.h"
@@ -185,9 +186,7 @@ double MeanBrightness(vtkImageData* image)
       sum += pixels->GetComponent(i, k);
     }
   }
-  const bool isFloating = pixels->GetDataType() == VTK_FLOAT || pixels->GetDataType() == VTK_DOUBLE;
-  const double full = isFloating ? 1.0 : pixels->GetDataTypeMax();
-  return sum / (full * colors * static_cast<double>(pixels->GetNumberOfTuples()));
+  return sum / (Brightest(pixels) * colors * static_cast<double>(pixels->GetNumberOfTuples()));
 }
 
 void Draw(const std::vector<Panel>& panels, bool closeUps, double width, const OutputFile& file)
@@ -241,19 +240,18 @@ void MakeFigure(const Options& options)
     throw Failure(WRONG_USAGE, "Figures are .png, .svg or .pdf: " + output.GetName() + " is none.");
   }
   MeshPair pair = options.Inputs.ReadPair(0);
-  RequireMap(pair, options.Map.MaskInvalid);
+  RequireMap(pair, options.Map);
   vtkSmartPointer<vtkImageData> image;
   if (!options.Image.empty())
   {
     image = ReadImage(InputFile(options.Image, "png"));
     const std::array<int, 2> size{ image->GetDimensions()[0], image->GetDimensions()[1] };
     FitToPictures(pair, size, size);
+    RequireOverlap(image, options.Image, pair.Source(), pair.GetNameOf(0));
   }
   for (vtkPolyData* mesh : { pair.Source(), pair.Target() })
   {
-    double bounds[6];
-    mesh->GetBounds(bounds);
-    if (bounds[4] != bounds[5])
+    if (!IsFlat(mesh))
     {
       throw Failure(REFUSED, "Figures are drawn of meshes in planes parallel to x and y only.");
     }

@@ -4,9 +4,11 @@
 #include "ImageWarp.h"
 
 #include "Command.h"
+#include "Console.h"
 #include "DataFile.h"
 #include "Failure.h"
 #include "Numbers.h"
+#include "OutputFile.h"
 
 #include "vtkDataArray.h"
 #include "vtkNew.h"
@@ -14,23 +16,14 @@
 #include "vtkPolyData.h"
 #include "vtkResampleThroughHomeomorphism.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace dhm
 {
 namespace
 {
-
-/// The value that is fully opaque, or the brightest.
-template <typename Value>
-constexpr double Full()
-{
-  return std::is_floating_point<Value>::value
-    ? 1.0
-    : static_cast<double>(std::numeric_limits<Value>::max());
-}
 
 template <typename Value>
 Value ToValue(double value)
@@ -40,8 +33,10 @@ Value ToValue(double value)
 
 template <typename Value>
 void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, int components,
-  int colors, bool hasAlpha, const Background& background, Value* to, int newComponents)
+  int colors, bool hasAlpha, const Background& background, double brightest, Value* to,
+  int newComponents)
 {
+  const auto opaque = ToValue<Value>(brightest);
   for (vtkIdType i = 0; i < count; ++i, from += components, to += newComponents)
   {
     const bool inside = mask[i] != 0;
@@ -50,7 +45,7 @@ void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, i
       const bool isAlpha = k == colors;
       if (inside)
       {
-        to[k] = isAlpha && !hasAlpha ? ToValue<Value>(Full<Value>()) : from[k];
+        to[k] = isAlpha && !hasAlpha ? opaque : from[k];
       }
       else if (!background)
       {
@@ -58,14 +53,14 @@ void FillPixels(const Value* from, const unsigned char* mask, vtkIdType count, i
       }
       else if (isAlpha)
       {
-        to[k] = ToValue<Value>(Full<Value>());
+        to[k] = opaque;
       }
       else
       {
         const auto& color = *background;
         const double gray = (color[0] + color[1] + color[2]) / 3.0;
         to[k] =
-          ToValue<Value>(Full<Value>() * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
+          ToValue<Value>(brightest * (colors == 3 ? color[static_cast<std::size_t>(k)] : gray));
       }
     }
   }
@@ -79,6 +74,13 @@ void BlendPixels(const Value* first, const Value* second, vtkIdType count, doubl
     result[i] = ToValue<Value>(
       (1.0 - t) * static_cast<double>(first[i]) + t * static_cast<double>(second[i]));
   }
+}
+
+/// "x from 0 to 3, y from 0 to 2".
+std::string DescribeBox(const double* bounds)
+{
+  return "x from " + ToText(bounds[0]) + " to " + ToText(bounds[1]) + ", y from " +
+    ToText(bounds[2]) + " to " + ToText(bounds[3]);
 }
 
 /// The pixels of a warped image.
@@ -100,6 +102,12 @@ vtkSmartPointer<vtkImageData> LikeWithout(vtkImageData* image)
 }
 
 } // namespace
+
+double Brightest(vtkDataArray* pixels)
+{
+  const int type = pixels->GetDataType();
+  return type == VTK_FLOAT || type == VTK_DOUBLE ? 1.0 : pixels->GetDataTypeMax();
+}
 
 Background ReadBackground(const std::string& text)
 {
@@ -136,7 +144,7 @@ Background ReadBackgroundFor(const std::string& format, const std::string& text)
   if (!IsPicture(format) && format != "vti")
   {
     throw Failure(WRONG_USAGE,
-      "Cannot write an image as ." + format + ": .png, .jpg, .tif, .ppm or .vti are images.");
+      CannotWrite("an image", format) + ": .png, .jpg, .tif, .ppm and .vti are images.");
   }
   const bool opaque = format[0] == 'j' || (format[0] == 'p' && format != "png");
   const Background background = ReadBackground(!text.empty() ? text
@@ -153,6 +161,7 @@ Background ReadBackgroundFor(const std::string& format, const std::string& text)
 
 std::array<int, 2> ReadSize(const std::string& text)
 {
+  constexpr int largest = 100000;
   if (text.empty())
   {
     return { 0, 0 };
@@ -162,13 +171,14 @@ std::array<int, 2> ReadSize(const std::string& text)
   {
     const auto width = ToNumber<int>(text.substr(0, x));
     const auto height = ToNumber<int>(text.substr(x + 1));
-    if (width && height && *width >= 1 && *height >= 1 && *width <= 100000 && *height <= 100000)
+    if (width && height && *width >= 1 && *height >= 1 && *width <= largest && *height <= largest)
     {
       return { *width, *height };
     }
   }
-  throw Failure(
-    WRONG_USAGE, "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, such as 640x480.");
+  throw Failure(WRONG_USAGE,
+    "\"" + text + "\" is no size: WIDTHxHEIGHT in pixels, each from 1 to " +
+      std::to_string(largest) + ", such as 640x480.");
 }
 
 vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int, 2>& size)
@@ -179,6 +189,40 @@ vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int
     grid->SetExtent(0, size[0] - 1, 0, size[1] - 1, 0, 0);
   }
   return grid;
+}
+
+void RequireOverlap(
+  vtkImageData* image, const std::string& imageName, vtkPolyData* mesh, const std::string& meshName)
+{
+  double pixels[6];
+  double domain[6];
+  image->GetBounds(pixels);
+  mesh->GetBounds(domain);
+  double covered = 1.0;
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    // A pixel is as wide as the distance to the next.
+    const double half = 0.5 * image->GetSpacing()[axis];
+    const double low = pixels[2 * axis] - half;
+    const double high = pixels[2 * axis + 1] + half;
+    const double common = std::min(high, domain[2 * axis + 1]) - std::max(low, domain[2 * axis]);
+    covered *= std::max(common, 0.0) / (high - low);
+  }
+  const std::string boxes =
+    imageName + " (" + DescribeBox(pixels) + ") and " + meshName + " (" + DescribeBox(domain) + ")";
+  if (covered == 0.0)
+  {
+    throw Failure(REFUSED,
+      boxes +
+        " do not overlap: meshes must be in the image's coordinates (a picture's are its pixels, y "
+        "upwards).");
+  }
+  if (covered < 0.01)
+  {
+    Warn(boxes +
+      " overlap in less than a hundredth of the image: meshes must be in its coordinates (a "
+      "picture's are its pixels, y upwards).");
+  }
 }
 
 vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source,
@@ -255,8 +299,8 @@ vtkSmartPointer<vtkImageData> Finish(vtkImageData* warped, const Background& bac
   {
     vtkTemplateMacro(FillPixels(static_cast<const VTK_TT*>(from->GetVoidPointer(0)),
       static_cast<const unsigned char*>(mask->GetVoidPointer(0)), from->GetNumberOfTuples(),
-      components, colors, hasAlpha, background, static_cast<VTK_TT*>(pixels->GetVoidPointer(0)),
-      newComponents));
+      components, colors, hasAlpha, background, Brightest(from),
+      static_cast<VTK_TT*>(pixels->GetVoidPointer(0)), newComponents));
   }
   vtkSmartPointer<vtkImageData> result = LikeWithout(warped);
   result->GetPointData()->SetScalars(pixels);

@@ -14,12 +14,16 @@
 #include <optional>
 #include <string>
 
+class vtkDataArray;
 class vtkPolyData;
 
 namespace dhm
 {
 
 struct MapOptions;
+
+/// The brightest, or the fully opaque, value of pixels of this type.
+double Brightest(vtkDataArray* pixels);
 
 /// What pixels outside the domain get: a colour, red, green and blue from 0 to 1, or none, which is
 /// transparent.
@@ -37,6 +41,11 @@ std::array<int, 2> ReadSize(const std::string& text);
 
 /// A grid of pixels like @a image's, or of another size if that is not zero.
 vtkSmartPointer<vtkImageData> MakeGrid(vtkImageData* image, const std::array<int, 2>& size);
+
+/// Throws Failure, naming both boxes, if no pixel of an image is over the mesh's box; warns if
+/// hardly any is. The names are for the message.
+void RequireOverlap(vtkImageData* image, const std::string& imageName, vtkPolyData* mesh,
+  const std::string& meshName);
 
 /// The image over the source's domain, seen on a grid over the target's (the other way round if @a
 /// inverse); its point data are the image's pixels and `ValidPointMask`. Throws Failure.

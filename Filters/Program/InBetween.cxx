@@ -3,8 +3,8 @@
 
 #include "InBetween.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
+#include "MeshParts.h"
+
 #include "vtkPoints.h"
 
 #include <algorithm>
@@ -46,25 +46,12 @@ Vector Side(vtkPolyData* mesh, vtkIdType from, vtkIdType to)
   return { b[0] - a[0], b[1] - a[1] };
 }
 
-/// Whether z is the same everywhere.
-bool IsFlat(vtkPolyData* mesh)
-{
-  double bounds[6];
-  mesh->GetBounds(bounds);
-  return bounds[4] == bounds[5];
-}
-
 /// Calls work(cell, area) for each triangle.
 template <typename Work>
 void ForEachTriangle(vtkPolyData* source, vtkPolyData* target, Work&& work)
 {
-  const auto cells = vtk::TakeSmartPointer(source->GetPolys()->NewIterator());
-  const vtkIdType first = source->GetNumberOfVerts() + source->GetNumberOfLines();
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType count;
-    const vtkIdType* corners;
-    cells->GetCurrentCell(count, corners);
+  const vtkIdType first = FirstPolygon(source);
+  ForEachCell(source->GetPolys(), [&](vtkIdType number, vtkIdType, const vtkIdType* corners) {
     const Vector u[2] = { Side(source, corners[0], corners[1]),
       Side(target, corners[0], corners[1]) };
     const Vector v[2] = { Side(source, corners[0], corners[2]),
@@ -76,8 +63,8 @@ void ForEachTriangle(vtkPolyData* source, vtkPolyData* target, Work&& work)
     {
       area = { -area.Start, -area.Middle, -area.End };
     }
-    work(first + cells->GetCurrentCellId(), area);
-  }
+    work(first + number, area);
+  });
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #ifndef dhm_InputFile_h
 #define dhm_InputFile_h
 
+#include "Failure.h"
 #include "TemporaryFile.h"
 
 #include <optional>
@@ -33,12 +34,35 @@ public:
   /// The extension in lower case, without the dot.
   const std::string& GetFormat() const { return this->Format; }
 
+  bool IsStandardInput() const { return this->Temporary.has_value(); }
+
 private:
   std::string Name;
   std::string Path;
   std::string Format;
   std::optional<TemporaryFile> Temporary;
 };
+
+/// Reads what a file holds. If it is standard input and cannot be read, the message says what it
+/// was taken for, and which option says what it is.
+template <typename Read>
+auto ReadFrom(const InputFile& file, const std::string& option, Read&& read)
+{
+  try
+  {
+    return read();
+  }
+  catch (const Failure& failure)
+  {
+    if (!file.IsStandardInput())
+    {
+      throw;
+    }
+    throw Failure(failure.GetStatus(),
+      std::string(failure.what()) + " Standard input was read as ." + file.GetFormat() + ": " +
+        option + " says what it is.");
+  }
+}
 
 /// The extension of a file name in lower case, without the dot; empty if it has none.
 std::string FormatOf(const std::string& fileName);

@@ -11,10 +11,13 @@
 
 #include "vtkDataSet.h"
 #include "vtkNew.h"
+#include "vtkPointSet.h"
 #include "vtkTriangularCoordinates.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -23,6 +26,28 @@ namespace dhm
 {
 namespace
 {
+
+/// Of points whose coordinates are no finite numbers, how many there are; empty if there are none.
+std::string DescribeNowhere(vtkDataObject* data)
+{
+  auto* set = vtkPointSet::SafeDownCast(data);
+  vtkIdType count = 0;
+  vtkIdType first = -1;
+  for (vtkIdType i = 0; set && i < set->GetNumberOfPoints(); ++i)
+  {
+    double point[3];
+    set->GetPoint(i, point);
+    if (!std::all_of(point, point + 3, [](double x) { return std::isfinite(x); }))
+    {
+      ++count;
+      first = first < 0 ? i : first;
+    }
+  }
+  return count == 0 ? std::string()
+                    : " (of " + std::to_string(count) +
+      ", the coordinates are no finite numbers; the first is point " + std::to_string(first) +
+      ", counted from 0)";
+}
 
 /// What `map` and `coordinates` have in common: data in, the same data with moved points or more
 /// arrays out.
@@ -44,8 +69,8 @@ struct DataOptions
     command
       .add_option("--columns", this->Columns,
         "Names or numbers (from 1) of the coordinate columns of a point table, separated by commas "
-        "(default: "
-        "x,y,z or x,y or E,N or easting,northing, else the first two)")
+        "(default: those with usual names, such as x,y,z, or E,N, or lon,lat; of a table without "
+        "names, the first two)")
       ->type_name("LIST")
       ->group("Files");
     command
@@ -69,16 +94,18 @@ struct DataOptions
     const InputFile file(dataName, this->DataFormat);
     std::unique_ptr<PointTable> table;
     vtkSmartPointer<vtkDataObject> data;
-    if (PointTable::IsFormat(file.GetFormat()))
-    {
-      std::ifstream text(file.GetPath(), std::ios::binary);
-      table = std::make_unique<PointTable>(text, file.GetName(), this->Columns);
-      data = table->ToPoints();
-    }
-    else
-    {
-      data = ReadData(file);
-    }
+    ReadFrom(file, "--data-format", [&] {
+      if (PointTable::IsFormat(file.GetFormat()))
+      {
+        std::ifstream text(file.GetPath(), std::ios::binary);
+        table = std::make_unique<PointTable>(text, file.GetName(), this->Columns);
+        data = table->ToPoints();
+      }
+      else
+      {
+        data = ReadData(file, ".csv, .txt and .xyz (points)");
+      }
+    });
     const bool asTable = PointTable::IsFormat(output.GetFormat());
     if (asTable && !table)
     {
@@ -88,7 +115,13 @@ struct DataOptions
     }
     if (!asTable)
     {
-      CheckOutputFormat(output.GetFormat());
+      CheckOutputFormat(output.GetFormat(), ".csv and .txt (if the data came from such a file)");
+    }
+    if (IsMesh(output.GetFormat()) && !this->MovesPoints)
+    {
+      throw Failure(WRONG_USAGE,
+        "Coordinates are arrays of points, which a ." + output.GetFormat() +
+          " file does not have: write a .vtp.");
     }
     if (IsPicture(output.GetFormat()) && this->MovesPoints)
     {
@@ -97,11 +130,17 @@ struct DataOptions
           "): of images, write a .vts, or use dhm warp.");
     }
 
+    if (table && !asTable)
+    {
+      table->AddColumnsTo(vtkPolyData::SafeDownCast(data));
+    }
+
     vtkSmartPointer<vtkDataObject> result;
     const vtkIdType outside = work(data, result);
     if (outside > 0)
     {
-      const std::string message = Count(outside, "point", "is", "are") + " outside the domain";
+      const std::string message =
+        Count(outside, "point", "is", "are") + " outside the domain" + DescribeNowhere(data);
       if (this->RequireInside)
       {
         throw Failure(REFUSED, message + ".");
@@ -110,15 +149,8 @@ struct DataOptions
     }
     if (asTable)
     {
-      table->Update(
-        vtkDataSet::SafeDownCast(data), vtkDataSet::SafeDownCast(result), this->MovesPoints);
-      std::ofstream text(output.GetTemporaryName(), std::ios::binary);
-      table->Write(text);
-      text.close();
-      if (!text)
-      {
-        output.FailForWantOfRoom();
-      }
+      table->Update(vtkDataSet::SafeDownCast(result), this->MovesPoints);
+      output.Write([&table](std::ostream& text) { table->Write(text); });
     }
     else
     {
@@ -148,9 +180,8 @@ void AddMap(CLI::App& program)
     program.add_subcommand("map", "Carry data from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "SOURCE [TARGET] DATA", 1,
-    "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu "
-    ".vts .vtr .vti "
-    ".vtm .vtk, or a picture, whose pixels move as points (to warp it, use dhm warp)");
+    "The pair, and the data to carry: .csv .txt .xyz (points), .vtp .vtu .vts .vtr .vti .vtm .vtk, "
+    ".obj .off .ply .stl, or a picture, whose pixels move as points (to warp it, use dhm warp)");
   options->Data.MovesPoints = true;
   options->Data.AddTo(*command);
   options->Map.AddTo(*command);
@@ -171,8 +202,7 @@ void AddMap(CLI::App& program)
   command
     ->add_flag("--carry-all-vectors", options->CarryAllVectors,
       "Carry all arrays of 3, 6 and 9 components by the derivative, not only the active vectors, "
-      "normals and "
-      "tensors")
+      "normals and tensors")
     ->group("Results");
   command
     ->add_flag(
@@ -214,8 +244,7 @@ void AddCoordinates(CLI::App& program)
   const auto options = std::make_shared<Options>();
   command
     ->add_option("FILES", options->Files,
-      "The triangulation (of a triangulation file the source), and the data: as for dhm "
-      "map")
+      "The triangulation (of a triangulation file the source), and the data: as for dhm map")
     ->expected(2)
     ->required()
     ->type_name("MESH DATA");

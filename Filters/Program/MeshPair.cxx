@@ -8,9 +8,6 @@
 #include "Failure.h"
 #include "InputFile.h"
 #include "OutputFile.h"
-#include "PlyMesh.h"
-#include "StlMesh.h"
-#include "TextMesh.h"
 #include "TriangulationFile.h"
 #include "XmorphMesh.h"
 
@@ -70,25 +67,15 @@ vtkSmartPointer<vtkPolyData> ToPolygons(vtkUnstructuredGrid* grid, const std::st
   return mesh;
 }
 
-vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
+vtkSmartPointer<vtkPolyData> ReadMeshAsNamed(const InputFile& file)
 {
   const std::string& format = file.GetFormat();
-  using Read = vtkSmartPointer<vtkPolyData> (*)(std::istream & text, const std::string& name);
-  static const std::map<std::string, Read> readers{ { "obj", ReadObj }, { "off", ReadOff },
-    { "ply", ReadPly }, { "stl", ReadStl } };
-  const auto reader = readers.find(format);
-  if (reader != readers.end())
-  {
-    std::ifstream bytes(file.GetPath(), std::ios::binary);
-    return reader->second(bytes, file.GetName());
-  }
-  if (format != "vtp" && format != "vtk" && format != "vtu")
+  if (!IsMesh(format) && format != "vtp" && format != "vtk" && format != "vtu")
   {
     throw Failure(WRONG_USAGE,
       "Cannot read " + file.GetName() +
-        ": the formats of meshes are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, "
-        ".off, .ply, "
-        ".stl, and .mesh (xmorph).");
+        " as a mesh: the formats are .json (PROJ's triangulation files), .vtp, .vtk, .vtu, .obj, "
+        ".off, .ply, .stl, and .mesh (xmorph).");
   }
   const vtkSmartPointer<vtkDataObject> data = ReadData(file);
   if (auto* mesh = vtkPolyData::SafeDownCast(data))
@@ -101,6 +88,20 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
   }
   throw Failure(FILE_TROUBLE,
     file.GetName() + " holds a " + data->GetClassName() + ", which is no mesh of triangles.");
+}
+
+const char* const formatOption = "--input-format";
+
+vtkSmartPointer<vtkPolyData> ReadMesh(const InputFile& file)
+{
+  return ReadFrom(file, formatOption, [&file] { return ReadMeshAsNamed(file); });
+}
+
+XmorphMesh ReadXmorphMesh(const InputFile& file)
+{
+  std::ifstream text(file.GetPath());
+  return ReadFrom(file, formatOption,
+    [&] { return ReadXmorph([&] { return ::ReadXmorphMesh(text, file.GetName()); }); });
 }
 
 /// Of two meshes whose triangles have points of their own: makes those one that are in the same
@@ -154,7 +155,8 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
   if (file.GetFormat() == "json")
   {
     std::ifstream text(file.GetPath());
-    TriangulationFile read = ReadTriangulationFile(text, file.GetName());
+    TriangulationFile read =
+      ReadFrom(file, formatOption, [&] { return ReadTriangulationFile(text, file.GetName()); });
     if (read.ShiftsHeights)
     {
       Warn(file.GetName() + " shifts heights, too: that is left alone.");
@@ -171,8 +173,7 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
     throw Failure(WRONG_USAGE,
       file.GetName() + " has no point array \"" + options.TargetArray +
         "\" of 2 or 3 components that would be the target's positions: give the target's file, "
-        "too, or name "
-        "the array (--target-array).");
+        "too, or name the array (--target-array).");
   }
   vtkNew<vtkPoints> points;
   points->SetDataType(positions->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
@@ -189,11 +190,6 @@ MeshPair ReadTwoInOne(const std::string& fileName, const MeshPairOptions& option
   pair.Meshes[1]->SetLines(pair.Source()->GetLines());
   return pair;
 }
-
-} // namespace
-
-namespace
-{
 
 MeshPair ReadAnyPair(const std::vector<std::string>& files, const MeshPairOptions& options)
 {
@@ -216,7 +212,7 @@ MeshPair ReadAnyPair(const std::vector<std::string>& files, const MeshPairOption
   {
     pair.FromXmorph = true;
     pair.Meshes = ReadXmorph([&] {
-      std::array<XmorphMesh, 2> grids{ ReadXmorphMesh(files[0]), ReadXmorphMesh(files[1]) };
+      std::array<XmorphMesh, 2> grids{ ReadXmorphMesh(source), ReadXmorphMesh(target) };
       for (std::size_t side = 0; side < 2; ++side)
       {
         auto& extent = pair.XmorphExtents[side];
@@ -283,7 +279,7 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::st
   if (file.GetFormat() == "mesh")
   {
     return ReadXmorph([&] {
-      XmorphMesh mesh = ReadXmorphMesh(fileName);
+      XmorphMesh mesh = ReadXmorphMesh(file);
       TurnUpright(mesh, GetExtent(mesh)[1]);
       return CutIntoTriangles(mesh, mesh)[0];
     });
@@ -309,8 +305,7 @@ void FitToPictures(
       throw Failure(WRONG_USAGE,
         pair.Names[static_cast<std::size_t>(side)] +
           " does not fill its picture, and does not say how large that is: give the size of "
-          "xmorph's working "
-          "picture (--working-size; in a session's file, resulting_size).");
+          "xmorph's working picture (--working-size; in a session's file, resulting_size).");
     }
     // Xmorph's units end at the last pixel.
     const double factors[2] = { (size[0] - 1) / extent[0], (size[1] - 1) / extent[1] };
@@ -325,8 +320,20 @@ void FitToPictures(
   }
 }
 
+void CheckPairFormat(const std::string& format)
+{
+  if (format != "json" && format != "vtp" && format != "vtk")
+  {
+    throw Failure(WRONG_USAGE,
+      CannotWrite("a pair", format) +
+        ": the formats are .json, .vtp and .vtk; with the target in a file of its own "
+        "(--target-output of dhm convert) .vtp, .vtk, .obj and .off.");
+  }
+}
+
 void WritePair(const MeshPair& pair, const std::string& targetArray, const OutputFile& file)
 {
+  CheckPairFormat(file.GetFormat());
   if (file.GetFormat() == "json")
   {
     for (int side = 0; side < 2; ++side)
@@ -340,27 +347,14 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
             pair.Names[side] + ".");
       }
     }
-    std::ofstream text(file.GetTemporaryName(), std::ios::binary);
-    WriteTriangulationFile(pair.Metadata, pair.Source(), pair.Target(), text);
-    text.close();
-    if (!text)
-    {
-      file.FailForWantOfRoom();
-    }
+    file.Write([&pair](std::ostream& text) {
+      WriteTriangulationFile(pair.Metadata, pair.Source(), pair.Target(), text);
+    });
     return;
-  }
-  if (file.GetFormat() != "vtp" && file.GetFormat() != "vtk")
-  {
-    throw Failure(WRONG_USAGE,
-      "Cannot write a pair as ." + file.GetFormat() +
-        ": the formats are .json, .vtp and .vtk; with the target in a file of its own "
-        "(--target-output of dhm convert) .vtp, .vtk, .obj and .off.");
   }
   vtkNew<vtkPolyData> both;
   both->ShallowCopy(pair.Source());
   vtkNew<vtkDoubleArray> positions;
-  positions->SetName(targetArray.c_str());
-  positions->SetNumberOfComponents(3);
   positions->DeepCopy(pair.Target()->GetPoints()->GetData());
   positions->SetName(targetArray.c_str());
   both->GetPointData()->AddArray(positions);
@@ -369,31 +363,13 @@ void WritePair(const MeshPair& pair, const std::string& targetArray, const Outpu
 
 void WriteMesh(vtkPolyData* mesh, const OutputFile& file)
 {
-  if (file.GetFormat() == "vtp" || file.GetFormat() == "vtk")
+  const std::string& format = file.GetFormat();
+  if (format != "vtp" && format != "vtk" && format != "obj" && format != "off")
   {
-    WriteData(mesh, file);
-    return;
+    throw Failure(
+      WRONG_USAGE, CannotWrite("a mesh", format) + ": the formats are .vtp, .vtk, .obj and .off.");
   }
-  if (file.GetFormat() != "obj" && file.GetFormat() != "off")
-  {
-    throw Failure(WRONG_USAGE,
-      "Cannot write a mesh as ." + file.GetFormat() +
-        ": the formats are .vtp, .vtk, .obj and .off.");
-  }
-  std::ofstream text(file.GetTemporaryName(), std::ios::binary);
-  if (file.GetFormat() == "obj")
-  {
-    WriteObj(mesh, text);
-  }
-  else
-  {
-    WriteOff(mesh, text);
-  }
-  text.close();
-  if (!text)
-  {
-    file.FailForWantOfRoom();
-  }
+  WriteData(mesh, file);
 }
 
 } // namespace dhm

@@ -45,6 +45,14 @@ struct MeshPair
                                             : this->Names[0] + " and " + this->Names[1];
   }
 
+  /// What to call one of the meshes in messages.
+  std::string GetNameOf(std::size_t side) const
+  {
+    return this->Names[0] != this->Names[1] ? this->Names[side]
+      : side == 0                           ? "the source of " + this->Names[0]
+                                            : "the target of " + this->Names[0];
+  }
+
   vtkPolyData* Source() const { return this->Meshes[0]; }
   vtkPolyData* Target() const { return this->Meshes[1]; }
 };
@@ -92,6 +100,9 @@ vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::st
 /// Failure if the extent of the meshes' pictures is not known.
 void FitToPictures(
   MeshPair& pair, const std::array<int, 2>& sourceSize, const std::array<int, 2>& targetSize);
+
+/// Throws Failure if WritePair does not know the format.
+void CheckPairFormat(const std::string& format);
 
 /// Writes a pair: json (a triangulation file; planar meshes only), or vtp, vtk and vtu with the
 /// target's positions as the point array @a targetArray. Throws Failure.

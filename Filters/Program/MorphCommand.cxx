@@ -11,6 +11,7 @@
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairReport.h"
+#include "PointTable.h"
 
 #include "vtkNew.h"
 
@@ -40,6 +41,11 @@ public:
     }
     this->Before = found.prefix();
     this->After = found.suffix();
+    if (std::regex_search(this->After, place))
+    {
+      throw Failure(WRONG_USAGE,
+        "The output's name has more than one place for the frame's number: " + pattern + ".");
+    }
     this->Width = found[1].length() > 0 ? static_cast<std::size_t>(found[1].str()[0] - '0') : 1;
   }
 
@@ -66,8 +72,7 @@ struct Options
   std::string TargetImage;
   std::string Data;
   int Frames = 11;
-  std::string Size;
-  std::string Background;
+  PictureOptions Picture;
 };
 
 /// Refuses frames whose meshes are folded, and says at which times others would be.
@@ -94,8 +99,7 @@ void CheckFolds(const MeshPair& pair, int frames)
       throw Failure(REFUSED,
         where + ", frame " + std::to_string(frame) + " (at " + ToText(t) +
           ") among them: points must move so that no triangle is turned over. Put a mesh in "
-          "between and morph in "
-          "two steps.");
+          "between and morph in two steps.");
     }
   }
   Warn(where + ", but at none of the frames.");
@@ -111,10 +115,24 @@ void Morph(const Options& options)
     throw Failure(WRONG_USAGE, "Morph either images or data (--data), not both.");
   }
   const Background background =
-    images ? ReadBackgroundFor(format, options.Background) : Background();
+    images ? ReadBackgroundFor(format, options.Picture.Background) : Background();
   if (!images)
   {
     CheckOutputFormat(format);
+  }
+  if (!images && IsPicture(format))
+  {
+    throw Failure(WRONG_USAGE,
+      "Meshes and data on their way are no pictures (." + format +
+        "): give images (--source-image, --target-image), or write .vtp.");
+  }
+  if (PointTable::IsFormat(FormatOf(options.Data)))
+  {
+    throw Failure(WRONG_USAGE,
+      options.Data +
+        " is a point table, which has to become a .vtp before it is morphed: dhm coordinates "
+        "SOURCE " +
+        options.Data + " -o points.vtp makes one of it.");
   }
   if (!options.Replace)
   {
@@ -141,7 +159,7 @@ void Morph(const Options& options)
   vtkSmartPointer<vtkImageData> grid;
   if (images)
   {
-    grid = MakeGrid(pictures[0] ? pictures[0] : pictures[1], ReadSize(options.Size));
+    grid = MakeGrid(pictures[0] ? pictures[0] : pictures[1], ReadSize(options.Picture.Size));
     std::array<int, 2> sizes[2];
     for (int side = 0; side < 2; ++side)
     {
@@ -149,13 +167,21 @@ void Morph(const Options& options)
       sizes[side] = { dimensions[0], dimensions[1] };
     }
     FitToPictures(pair, sizes[0], sizes[1]);
+    for (std::size_t side = 0; side < 2; ++side)
+    {
+      if (pictures[side])
+      {
+        RequireOverlap(
+          pictures[side], *pictureNames[side], pair.Meshes[side], pair.GetNameOf(side));
+      }
+    }
   }
   vtkSmartPointer<vtkDataObject> data = pair.Source();
   if (!options.Data.empty())
   {
     data = ReadData(InputFile(options.Data, "vtp"));
   }
-  RequireMap(pair, options.Map.MaskInvalid);
+  RequireMap(pair, options.Map);
   WorkWith(pair, [&] { CheckFolds(pair, options.Frames); });
 
   ProgressBar bar("Morphing", options.Frames);
@@ -230,23 +256,11 @@ void AddMorph(CLI::App& program)
     ->check(NumberFrom(2, 100000))
     ->type_name("NUMBER")
     ->group("Results");
-  command
-    ->add_option(
-      "--size", options->Size, "Size of the frames in pixels (default: the source image's)")
-    ->type_name("WIDTHxHEIGHT")
-    ->group("Results");
-  command
-    ->add_option("--background", options->Background,
-      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
-      "or "
-      "#rrggbb")
-    ->type_name("COLOUR")
-    ->group("Results");
+  options->Picture.AddTo(*command, "Size of the frames in pixels (default: the source image's)");
   options->Map.AddTo(*command);
-  command->footer(
-    "In frame t, from 0 to 1, each point of the meshes has gone the proportion t of its way along "
-    "a "
-    "straight line. If a triangle would be turned over in a frame, nothing is written (status 1).");
+  command->footer("In frame t, from 0 to 1, each point of the meshes has gone the proportion t of "
+                  "its way along a straight line. If a triangle would be turned over in a frame, "
+                  "nothing is written (status 1).");
   command->callback([options] { Morph(*options); });
 }
 

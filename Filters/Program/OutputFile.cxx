@@ -35,6 +35,12 @@ std::string OutputFormatOf(const std::string& name, const std::string& format)
   return own.empty() && IsWrittenThrough(name) ? format : own;
 }
 
+std::string CannotWrite(const std::string& what, const std::string& format)
+{
+  return format.empty() ? "The output's name has no extension that says what to write"
+                        : "Cannot write " + what + " as ." + format;
+}
+
 OutputFile::OutputFile(const std::string& name, const std::string& format, bool replace)
   : Name(name)
   , Format(OutputFormatOf(name, format))
@@ -125,8 +131,15 @@ void OutputFile::Commit()
 
 void OutputFile::Write(std::string_view contents) const
 {
+  this->Write([contents](std::ostream& file) {
+    file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  });
+}
+
+void OutputFile::Write(const std::function<void(std::ostream& file)>& write) const
+{
   std::ofstream file(this->GetTemporaryName(), std::ios::binary);
-  file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  write(file);
   file.close();
   if (!file)
   {

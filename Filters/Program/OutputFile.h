@@ -9,6 +9,8 @@
 
 #include "TemporaryFile.h"
 
+#include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,6 +40,8 @@ public:
 
   /// Writes all of it. Throws Failure.
   void Write(std::string_view contents) const;
+  /// The same of what @a write puts into a stream.
+  void Write(const std::function<void(std::ostream& file)>& write) const;
 
   /// Throws the Failure to say that the disk is full.
   [[noreturn]] void FailForWantOfRoom() const;
@@ -57,6 +61,9 @@ private:
 /// The format of an output of this name: its extension or, of standard output, and of pipes and
 /// devices without an extension, @a format.
 std::string OutputFormatOf(const std::string& name, const std::string& format);
+
+/// The beginning of a message about a format that is not known, or is not there.
+std::string CannotWrite(const std::string& what, const std::string& format);
 
 } // namespace dhm
 

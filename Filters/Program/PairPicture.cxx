@@ -5,10 +5,10 @@
 
 #include "Canvas.h"
 #include "MeshPair.h"
+#include "MeshParts.h"
 #include "PairReport.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
@@ -75,16 +75,11 @@ vtkSmartPointer<vtkPolyData> Flatten(vtkPolyData* mesh)
       shown ? places[i][y] : 0.5 * (low[y] + high[y]), 0.0);
   }
   vtkNew<vtkCellArray> polygons;
-  const auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType size;
-    const vtkIdType* ids;
-    cells->GetCurrentCell(size, ids);
+  ForEachCell(mesh->GetPolys(), [&](vtkIdType, vtkIdType size, const vtkIdType* ids) {
     const bool shown = std::all_of(ids, ids + size,
       [&](vtkIdType id) { return id >= 0 && id < count && finite[static_cast<std::size_t>(id)]; });
     polygons->InsertNextCell(shown ? size : 0, ids);
-  }
+  });
   auto flat = vtkSmartPointer<vtkPolyData>::New();
   flat->SetPoints(points);
   flat->SetPolys(polygons);

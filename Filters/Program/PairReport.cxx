@@ -5,6 +5,7 @@
 
 #include "Command.h"
 #include "Failure.h"
+#include "MeshParts.h"
 
 #include "Mesh/TriangulationPair.h"
 
@@ -61,19 +62,14 @@ void CountPoints(vtkPolyData* mesh, MeshReport& report)
   report.Triangles = mesh->GetNumberOfPolys();
 
   std::vector<bool> used(static_cast<std::size_t>(report.Points), false);
-  const auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType count;
-    const vtkIdType* points;
-    cells->GetCurrentCell(count, points);
+  ForEachCell(mesh->GetPolys(), [&used](vtkIdType, vtkIdType count, const vtkIdType* points) {
     std::for_each(points, points + count, [&used](vtkIdType point) {
       if (point >= 0 && point < static_cast<vtkIdType>(used.size()))
       {
         used[static_cast<std::size_t>(point)] = true;
       }
     });
-  }
+  });
   report.UnusedPoints = std::count(used.begin(), used.end(), false);
 
   std::vector<vtkIdType> order(static_cast<std::size_t>(report.Points));
@@ -301,28 +297,44 @@ void MeasureShapes(const MeshPair& pair, const Triangulation& triangulation, Pai
   }
 }
 
+/// Concordance and angles, of the triangles that are valid in the pair. Those that are not have no
+/// part in it: in one mesh alone, such a triangle may cover others, which would then be left out.
 void MeasureTriangles(vtkPolyData* mesh, const Triangulation& triangulation, MeshReport& report)
 {
+  vtkNew<vtkCellArray> polygons;
+  std::vector<vtkIdType> cells;
+  for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
+  {
+    if (!triangulation.IsMasked(triangle))
+    {
+      const auto& corners = triangulation.GetCorners(triangle);
+      polygons->InsertNextCell({ corners[0], corners[1], corners[2] });
+      cells.push_back(triangulation.GetCellId(triangle));
+    }
+  }
+  if (cells.empty())
+  {
+    return;
+  }
+  vtkNew<vtkPolyData> valid;
+  valid->SetPoints(mesh->GetPoints());
+  valid->SetPolys(polygons);
   vtkNew<vtkTriangularCoordinates> coordinates;
-  coordinates->SetInputDataObject(0, mesh);
+  coordinates->SetInputDataObject(0, valid);
   coordinates->MaskInvalidTrianglesOn();
   coordinates->GenerateLinesOff();
   Run(coordinates, "Measuring triangles", false);
   vtkPolyData* measured = coordinates->GetTriangulation();
   vtkDataArray* concordant = measured->GetCellData()->GetArray("Concordant");
   vtkDataArray* angles = measured->GetCellData()->GetArray("SmallestAngle");
-  for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
+  for (std::size_t i = 0; i < cells.size(); ++i)
   {
-    if (triangulation.IsMasked(triangle))
+    const auto triangle = static_cast<vtkIdType>(i);
+    if (concordant->GetTuple1(triangle) == 0.0)
     {
-      continue;
+      report.DiscordantTriangles.push_back(cells[i]);
     }
-    const vtkIdType cell = triangulation.GetCellId(triangle);
-    if (concordant->GetTuple1(cell) == 0.0)
-    {
-      report.DiscordantTriangles.push_back(cell);
-    }
-    TakeSmaller(report.SmallestAngle, angles->GetTuple1(cell), cell);
+    TakeSmaller(report.SmallestAngle, angles->GetTuple1(triangle), cells[i]);
   }
 }
 
@@ -377,103 +389,107 @@ void MakeSamples(vtkPolyData* mesh, const Triangulation& triangulation, Samples&
   samples.Points->SetPoints(points);
 }
 
-void MeasureSystems(const MeshPair& pair, const Triangulation& triangulation,
-  const CheckExtent& extent, PairReport& report)
+/// How the map is measured in each system: what Contour lacks is Linear's, invalid triangles are
+/// holes.
+MapOptions MeasuredMap()
 {
   MapOptions options;
   options.LinearWhereDiscordant = true;
   options.MaskInvalid = true;
   // On surfaces, points between the corners are off the surface by rounding.
   options.Tolerance = 1e-12;
+  return options;
+}
+
+void MeasureDeterminants(
+  const MeshPair& pair, const Triangulation& triangulation, PairReport& report)
+{
   Samples samples;
-  if (extent.Determinants)
-  {
-    MakeSamples(pair.Source(), triangulation, samples);
-  }
+  MakeSamples(pair.Source(), triangulation, samples);
+  // One filter for all systems: it reads the meshes once.
+  vtkNew<vtkDifferentiableHomeomorphism> map;
+  MeasuredMap().ApplyTo(map.Get());
+  map->SetSourceData(pair.Source());
+  map->SetTargetData(pair.Target());
+  map->SetDataObject(samples.Points);
+  map->ComputeJacobianDeterminantOn();
   vtkSmartPointer<vtkPoints> linear;
   for (int system = 0; system < 3; ++system)
   {
     SystemReport& result = report.Systems[static_cast<std::size_t>(system)];
-    options.System = system;
-    if (extent.Determinants)
+    map->SetCoordinateSystem(system);
+    Run(map, std::string("Mapping with ") + SystemNames[system], false);
+    auto* output = vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
+    vtkDataArray* determinants = output->GetPointData()->GetArray("JacobianDeterminant");
+    if (!linear)
     {
-      vtkNew<vtkDifferentiableHomeomorphism> map;
-      options.ApplyTo(map.Get());
-      map->SetSourceData(pair.Source());
-      map->SetTargetData(pair.Target());
-      map->SetDataObject(samples.Points);
-      map->ComputeJacobianDeterminantOn();
-      Run(map, std::string("Mapping with ") + SystemNames[system], false);
-      auto* output = vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
-      vtkDataArray* determinants = output->GetPointData()->GetArray("JacobianDeterminant");
-      if (!linear)
-      {
-        linear = output->GetPoints();
-      }
-      for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
-      {
-        const double determinant = determinants->GetTuple1(i);
-        if (std::isnan(determinant))
-        {
-          continue;
-        }
-        const vtkIdType cell = samples.Cells[static_cast<std::size_t>(i)];
-        ++result.Samples;
-        result.NotPositive += !(report.Mirrored ? determinant < 0.0 : determinant > 0.0);
-        TakeSmaller(result.SmallestDeterminant, std::abs(determinant), cell);
-        TakeLarger(result.LargestDeterminant, std::abs(determinant), cell);
-        double a[3];
-        double b[3];
-        output->GetPoint(i, a);
-        linear->GetPoint(i, b);
-        TakeLarger(
-          result.DistanceFromLinear, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)), cell);
-      }
+      linear = output->GetPoints();
     }
-    if (extent.Continuity)
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
-      vtkNew<vtkJacobianContinuity> continuity;
-      continuity->SetCoordinateSystem(system);
-      continuity->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
-      continuity->MaskInvalidTrianglesOn();
-      continuity->SetSourceData(pair.Source());
-      continuity->SetTargetData(pair.Target());
-      Run(continuity, std::string("Measuring the continuity of ") + SystemNames[system], false);
-      result.ContinuityMeasured = true;
-      result.DifferentiableEdges = continuity->GetNumberOfDifferentiableEdges();
-      result.Kinks = continuity->GetNumberOfKinks();
-      result.UndecidedEdges = continuity->GetNumberOfUndecidedEdges();
-      result.LargestJump = continuity->GetLargestJump();
+      const double determinant = determinants->GetTuple1(i);
+      if (std::isnan(determinant))
+      {
+        continue;
+      }
+      const vtkIdType cell = samples.Cells[static_cast<std::size_t>(i)];
+      ++result.Samples;
+      result.NotPositive += !(report.Mirrored ? determinant < 0.0 : determinant > 0.0);
+      TakeSmaller(result.SmallestDeterminant, std::abs(determinant), cell);
+      TakeLarger(result.LargestDeterminant, std::abs(determinant), cell);
+      double a[3];
+      double b[3];
+      output->GetPoint(i, a);
+      linear->GetPoint(i, b);
+      TakeLarger(result.DistanceFromLinear, std::sqrt(vtkMath::Distance2BetweenPoints(a, b)), cell);
     }
   }
 }
 
-} // namespace
-
-PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent)
+void MeasureContinuity(const MeshPair& pair, PairReport& report)
 {
-  PairReport report;
-  for (std::size_t side = 0; side < 2; ++side)
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
+  continuity->MaskInvalidTrianglesOn();
+  continuity->SetSourceData(pair.Source());
+  continuity->SetTargetData(pair.Target());
+  for (int system = 0; system < 3; ++system)
   {
-    CountPoints(pair.Meshes[side], report.Meshes[side]);
+    SystemReport& result = report.Systems[static_cast<std::size_t>(system)];
+    continuity->SetCoordinateSystem(system);
+    Run(continuity, std::string("Measuring the continuity of ") + SystemNames[system], false);
+    result.ContinuityMeasured = true;
+    result.DifferentiableEdges = continuity->GetNumberOfDifferentiableEdges();
+    result.Kinks = continuity->GetNumberOfKinks();
+    result.UndecidedEdges = continuity->GetNumberOfUndecidedEdges();
+    result.LargestJump = continuity->GetLargestJump();
   }
-  // Leaving defective triangles out finds all kinds of defects, and lets the rest be measured.
-  const auto read = TriangulationPair::Read(pair.Source(), pair.Target(), true, report.Problems);
-  report.Valid = report.Problems.empty() && read;
-  if (!read)
+}
+
+void RequireMap(const MeshPair& pair, bool maskInvalid, const std::string& advice)
+{
+  MeshProblems problems;
+  if (!TriangulationPair::Read(pair.Source(), pair.Target(), maskInvalid, problems))
   {
-    for (const MeshProblem& problem : report.Problems)
+    std::string text;
+    for (const MeshProblem& problem : problems)
     {
-      report.InvalidTriangles.insert(
-        report.InvalidTriangles.end(), problem.FirstCells.begin(), problem.FirstCells.end());
+      if (problem.Result == MeshProblem::Outcome::Refused)
+      {
+        text += (text.empty() ? "" : "\n") + Describe(problem, advice);
+      }
     }
-    std::sort(report.InvalidTriangles.begin(), report.InvalidTriangles.end());
-    return report;
+    throw Failure(REFUSED, pair.GetName() + ": " + text);
   }
-  const Triangulation& triangulation = read->GetTriangulation();
+}
+
+/// What there is to know about the meshes of a pair, some of whose triangles may be left out.
+void DescribePair(const MeshPair& pair, const TriangulationPair& read, PairReport& report)
+{
+  const Triangulation& triangulation = read.GetTriangulation();
   for (std::size_t side = 0; side < 2; ++side)
   {
-    report.Meshes[side].Planar = read->GetEmbedding(static_cast<Side>(side)).IsPlanar();
+    report.Meshes[side].Planar = read.GetEmbedding(static_cast<Side>(side)).IsPlanar();
     MeasureTriangles(pair.Meshes[side], triangulation, report.Meshes[side]);
   }
   for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
@@ -488,7 +504,7 @@ PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent)
   report.BoundaryLoops = CountBoundaryLoops(triangulation);
   if (report.Components == 0)
   {
-    return report;
+    return;
   }
   if (report.Meshes[0].Planar && report.Meshes[1].Planar)
   {
@@ -498,37 +514,80 @@ PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent)
       ++first;
     }
     const auto& corners = triangulation.GetCorners(first);
-    report.Mirrored = read->GetEmbedding(Side::Source).GetOrientation(corners) !=
-      read->GetEmbedding(Side::Target).GetOrientation(corners);
+    report.Mirrored = read.GetEmbedding(Side::Source).GetOrientation(corners) !=
+      read.GetEmbedding(Side::Target).GetOrientation(corners);
   }
   MeasureShapes(pair, triangulation, report);
-  MeasureSystems(pair, triangulation, extent, report);
   report.Measured = true;
+}
+
+} // namespace
+
+PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent,
+  const std::function<void(const PairReport& report)>& onMeshes)
+{
+  PairReport report;
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    CountPoints(pair.Meshes[side], report.Meshes[side]);
+  }
+  // Leaving defective triangles out finds all kinds of defects, and lets the rest be measured.
+  const auto read = TriangulationPair::Read(pair.Source(), pair.Target(), true, report.Problems);
+  report.Valid = report.Problems.empty() && read;
+  if (read)
+  {
+    DescribePair(pair, *read, report);
+  }
+  else
+  {
+    for (const MeshProblem& problem : report.Problems)
+    {
+      report.InvalidTriangles.insert(
+        report.InvalidTriangles.end(), problem.FirstCells.begin(), problem.FirstCells.end());
+    }
+    std::sort(report.InvalidTriangles.begin(), report.InvalidTriangles.end());
+  }
+  onMeshes(report);
+  if (report.Measured && extent.Determinants)
+  {
+    MeasureDeterminants(pair, read->GetTriangulation(), report);
+  }
+  if (report.Measured && extent.Continuity)
+  {
+    MeasureContinuity(pair, report);
+  }
   return report;
 }
 
-void RequireMap(const MeshPair& pair, bool maskInvalid)
+bool IsUnwelded(const PairReport& report)
 {
-  MeshProblems problems;
-  if (!TriangulationPair::Read(pair.Source(), pair.Target(), maskInvalid, problems))
-  {
-    std::string text;
-    for (const MeshProblem& problem : problems)
-    {
-      if (problem.Result == MeshProblem::Outcome::Refused)
-      {
-        text += (text.empty() ? "" : "\n") + Describe(problem);
-      }
-    }
-    throw Failure(REFUSED, pair.GetName() + ": " + text);
-  }
+  // A mesh has about three edges for two triangles, and even a strip has one for each.
+  return report.Measured && report.Meshes[0].DuplicatePoints > 0 &&
+    report.Meshes[1].DuplicatePoints > 0 && 2 * report.InteriorEdges < report.Meshes[0].Triangles;
 }
 
-std::string Describe(const MeshProblem& problem)
+void RequireMap(const MeshPair& pair, const MapOptions& map)
+{
+  RequireMap(pair, map.MaskInvalid, ", or use --mask-invalid to leave them out");
+}
+
+void RequireMap(const MeshPair& pair)
+{
+  RequireMap(pair, false, "");
+}
+
+std::string Describe(const MeshProblem& problem, const std::string& advice)
 {
   MeshProblem refused = problem;
   refused.Result = MeshProblem::Outcome::Refused;
-  return NameOptions(refused.Message());
+  std::string message = refused.Message();
+  const std::string setter = ", or turn MaskInvalidTriangles on to leave them out";
+  const std::size_t at = message.find(setter);
+  if (at != std::string::npos)
+  {
+    message.replace(at, setter.size(), advice);
+  }
+  return NameOptions(message);
 }
 
 } // namespace dhm

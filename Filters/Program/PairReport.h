@@ -14,12 +14,15 @@
 #include "vtkType.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace dhm
 {
 
-/// A number and where it occurs.
+struct MapOptions;
+
+/// A number and where it occurs; nowhere (-1) if there was nothing to measure.
 struct Extreme
 {
   double Value = 0.0;
@@ -105,14 +108,24 @@ struct CheckExtent
   bool Continuity = true;
 };
 
-/// Checks a pair. Invalid triangles are left out of the measurements.
-PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent);
+/// Checks a pair. Invalid triangles are left out of the measurements. All but what takes long, the
+/// measurements of the map, is shown to @a onMeshes before these begin.
+PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent,
+  const std::function<void(const PairReport& report)>& onMeshes);
 
-/// Throws Failure, naming what is wrong, if the pair defines no map.
-void RequireMap(const MeshPair& pair, bool maskInvalid);
+/// Whether hardly any triangles share an edge though points of both meshes are in the places of
+/// others: as if each triangle had points of its own.
+bool IsUnwelded(const PairReport& report);
 
-/// A defect as a sentence, in which the program's options have their own names.
-std::string Describe(const homeomorphism::MeshProblem& problem);
+/// Throws Failure, naming what is wrong, if the pair defines no map, not even without its invalid
+/// triangles if these are left out.
+void RequireMap(const MeshPair& pair, const MapOptions& map);
+/// The same where no triangle can be left out.
+void RequireMap(const MeshPair& pair);
+
+/// A defect as a sentence, in which the program's options have their own names. @a advice says how
+/// triangles are left out, if they can be.
+std::string Describe(const homeomorphism::MeshProblem& problem, const std::string& advice);
 
 } // namespace dhm
 

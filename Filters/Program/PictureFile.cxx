@@ -165,6 +165,15 @@ void KeepTiffError(const char*, const char* format, va_list arguments)
   tiffError = text;
 }
 
+/// Keeps libtiff's messages from the terminal; the last error is in tiffError.
+void KeepTiffMessages()
+{
+  TIFFSetErrorHandler(KeepTiffError);
+  // Cameras and scanners put fields into their files that libtiff does not know.
+  TIFFSetWarningHandler(nullptr);
+  tiffError = "it is cut off";
+}
+
 /// The type of a TIFF's numbers; 0 if they have none of VTK's.
 int TypeOfSamples(int bits, int format)
 {
@@ -213,14 +222,6 @@ bool ReadShownTiff(TIFF* tiff, vtkImageData* image)
     *to++ = static_cast<unsigned char>(opacity);
   }
   return true;
-}
-
-template <typename Value>
-void Append(std::string& bytes, Value value)
-{
-  char own[sizeof value];
-  std::memcpy(own, &value, sizeof value);
-  bytes.append(own, sizeof value);
 }
 
 } // namespace
@@ -338,10 +339,7 @@ vtkSmartPointer<vtkImageData> ReadPnm(const InputFile& file)
 
 vtkSmartPointer<vtkImageData> ReadTiff(const InputFile& file)
 {
-  TIFFSetErrorHandler(KeepTiffError);
-  // Cameras and scanners put fields into their files that libtiff does not know.
-  TIFFSetWarningHandler(nullptr);
-  tiffError = "it is cut off";
+  KeepTiffMessages();
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(
     TIFFOpen(file.GetPath().c_str(), "r"), &TIFFClose);
   if (!tiff)
@@ -434,78 +432,50 @@ void WriteTiff(vtkImageData* image, const OutputFile& file)
   const auto height = static_cast<std::size_t>(size[1]);
   const std::size_t rowSize = width * static_cast<std::size_t>(components) *
     static_cast<std::size_t>(pixels->GetDataTypeSize());
-  // What is said of each component does not fit into the entries: it comes behind them.
-  struct Entry
-  {
-    std::uint16_t Tag;
-    std::size_t Value;
-    bool OfEachComponent = false;
-  };
-  const bool hasAlpha = components == 2 || components == 4;
-  std::vector<Entry> entries{ { TIFFTAG_IMAGEWIDTH, width }, { TIFFTAG_IMAGELENGTH, height },
-    { TIFFTAG_BITSPERSAMPLE, 8 * static_cast<std::size_t>(pixels->GetDataTypeSize()), true },
-    { TIFFTAG_COMPRESSION, COMPRESSION_NONE },
-    { TIFFTAG_PHOTOMETRIC,
-      static_cast<std::size_t>(components < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) },
-    { TIFFTAG_STRIPOFFSETS, 0 }, { TIFFTAG_SAMPLESPERPIXEL, static_cast<std::size_t>(components) },
-    { TIFFTAG_ROWSPERSTRIP, height }, { TIFFTAG_STRIPBYTECOUNTS, rowSize * height },
-    { TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG } };
-  if (hasAlpha)
-  {
-    entries.push_back({ TIFFTAG_EXTRASAMPLES, EXTRASAMPLE_UNASSALPHA });
-  }
-  entries.push_back({ TIFFTAG_SAMPLEFORMAT,
-    static_cast<std::size_t>(isFloating ? SAMPLEFORMAT_IEEEFP
-        : isSigned                      ? SAMPLEFORMAT_INT
-                                        : SAMPLEFORMAT_UINT),
-    true });
-  const std::size_t behind = 8 + 2 + 12 * entries.size() + 4;
-  const auto eachSize = 2 * static_cast<std::size_t>(components);
-  const std::size_t start = behind + 2 * eachSize;
-  if (start + rowSize * height > std::numeric_limits<std::uint32_t>::max())
+  // Room for where the strips are: eight bytes for each, which has four thousand at least.
+  constexpr std::size_t room = 16 << 20;
+  if (rowSize * height > std::numeric_limits<std::uint32_t>::max() - room)
   {
     throw Failure(REFUSED, "A ." + file.GetFormat() + " picture is at most 4 GiB: write a .vti.");
   }
-  std::string bytes = IsLittleEndian() ? "II" : "MM";
-  std::string each;
-  Append<std::uint16_t>(bytes, 42);
-  Append<std::uint32_t>(bytes, 8);
-  Append(bytes, static_cast<std::uint16_t>(entries.size()));
-  for (const Entry& entry : entries)
+  KeepTiffMessages();
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(
+    TIFFOpen(file.GetTemporaryName().c_str(), "w"), &TIFFClose);
+  if (!tiff)
   {
-    const std::size_t value = entry.Tag == TIFFTAG_STRIPOFFSETS ? start : entry.Value;
-    Append(bytes, entry.Tag);
-    if (!entry.OfEachComponent && entry.Tag != TIFFTAG_EXTRASAMPLES)
-    {
-      Append<std::uint16_t>(bytes, TIFF_LONG);
-      Append<std::uint32_t>(bytes, 1);
-      Append(bytes, static_cast<std::uint32_t>(value));
-      continue;
-    }
-    Append<std::uint16_t>(bytes, TIFF_SHORT);
-    const int count = entry.OfEachComponent ? components : 1;
-    Append(bytes, static_cast<std::uint32_t>(count));
-    if (count <= 2)
-    {
-      Append(bytes, static_cast<std::uint16_t>(value));
-      Append(bytes, static_cast<std::uint16_t>(count == 2 ? value : 0));
-    }
-    else
-    {
-      Append(bytes, static_cast<std::uint32_t>(behind + each.size()));
-    }
-    for (int k = 0; entry.OfEachComponent && k < components; ++k)
-    {
-      Append(each, static_cast<std::uint16_t>(value));
-    }
+    file.FailForWantOfRoom();
   }
-  Append<std::uint32_t>(bytes, 0);
-  bytes += each;
+  const auto set = [&tiff](std::uint32_t tag, auto value) { TIFFSetField(tiff.get(), tag, value); };
+  set(TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(width));
+  set(TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(height));
+  set(TIFFTAG_BITSPERSAMPLE, 8 * pixels->GetDataTypeSize());
+  set(TIFFTAG_SAMPLESPERPIXEL, components);
+  set(TIFFTAG_SAMPLEFORMAT,
+    isFloating   ? SAMPLEFORMAT_IEEEFP
+      : isSigned ? SAMPLEFORMAT_INT
+                 : SAMPLEFORMAT_UINT);
+  set(TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+  set(TIFFTAG_PHOTOMETRIC, components < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
+  set(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  if (components == 2 || components == 4)
+  {
+    const std::uint16_t opacity = EXTRASAMPLE_UNASSALPHA;
+    TIFFSetField(tiff.get(), TIFFTAG_EXTRASAMPLES, 1, &opacity);
+  }
+  set(TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff.get(), 0));
   for (int row = 0; row < size[1]; ++row)
   {
-    bytes.append(reinterpret_cast<const char*>(RowFromTop(image, row)), rowSize);
+    if (TIFFWriteScanline(tiff.get(), RowFromTop(image, row), static_cast<std::uint32_t>(row), 0) !=
+      1)
+    {
+      file.FailForWantOfRoom();
+    }
   }
-  file.Write(bytes);
+  // Closing the file would not tell whether all could be written.
+  if (TIFFWriteDirectory(tiff.get()) != 1)
+  {
+    file.FailForWantOfRoom();
+  }
 }
 
 } // namespace dhm

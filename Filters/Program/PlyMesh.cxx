@@ -4,6 +4,7 @@
 #include "PlyMesh.h"
 
 #include "Failure.h"
+#include "LineReader.h"
 #include "WordReader.h"
 
 #include "vtkCellArray.h"
@@ -18,7 +19,6 @@
 #include <istream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <vector>
 
 namespace dhm
@@ -162,6 +162,7 @@ public:
   PlyReader(std::istream& file, std::string fileName)
     : File(file)
     , FileName(std::move(fileName))
+    , Header(file, this->FileName, "")
   {
   }
 
@@ -188,68 +189,54 @@ public:
   }
 
 private:
-  [[noreturn]] void Fail(const std::string& expected) const
-  {
-    throw Failure(FILE_TROUBLE,
-      this->FileName + ", line " + std::to_string(this->Line) + ": expected " + expected + ".");
-  }
-
   Type ToType(const std::string& word) const
   {
     const auto found = std::find_if(typeNames.begin(), typeNames.end(),
       [&word](const TypeName& type) { return type.Name == word; });
     if (found == typeNames.end())
     {
-      this->Fail("a type (char to double) instead of \"" + word + "\"");
+      this->Header.Fail("a type (char to double) instead of \"" + word + "\"");
     }
     return found->What;
   }
 
   /// The words of the header's next line that is no comment.
-  std::vector<std::string> NextLine()
+  const std::vector<std::string>& NextLine(const std::string& expected)
   {
-    for (std::string line; std::getline(this->File, line);)
+    do
     {
-      ++this->Line;
-      std::istringstream text(line);
-      std::vector<std::string> words;
-      for (std::string word; text >> word;)
-      {
-        words.push_back(word);
-      }
-      if (!words.empty() && words[0] != "comment" && words[0] != "obj_info")
-      {
-        return words;
-      }
-    }
-    throw Failure(FILE_TROUBLE,
-      this->FileName + " ends after line " + std::to_string(this->Line) +
-        ", in its header: it has been cut off, or is no PLY mesh.");
+      this->Header.Require(expected);
+    } while (this->Header.Words[0] == "comment" || this->Header.Words[0] == "obj_info");
+    return this->Header.Words;
   }
 
   void ReadHeader()
   {
-    if (this->NextLine()[0] != "ply")
+    const std::string magic = "\"ply\", the first line of a PLY mesh";
+    if (this->NextLine(magic)[0] != "ply")
     {
-      this->Fail("\"ply\", the first line of a PLY mesh");
+      this->Header.Fail(magic);
     }
-    const std::vector<std::string> format = this->NextLine();
+    const std::string formats =
+      "\"format ascii 1.0\", or binary_little_endian or binary_big_endian";
+    const std::vector<std::string>& format = this->NextLine(formats);
     const std::string encoding =
       format.size() == 3 && format[0] == "format" ? format[1] : std::string();
     const bool bigEndian = encoding == "binary_big_endian";
     const bool text = encoding == "ascii";
     if (!bigEndian && !text && encoding != "binary_little_endian")
     {
-      this->Fail("\"format ascii 1.0\", or binary_little_endian or binary_big_endian");
+      this->Header.Fail(formats);
     }
-    for (auto words = this->NextLine(); words[0] != "end_header"; words = this->NextLine())
+    const std::string more = "an element, a property or end_header";
+    for (auto words = this->NextLine(more); words[0] != "end_header"; words = this->NextLine(more))
     {
       if (words[0] == "element" && words.size() == 3)
       {
         const auto count = ToNumber<std::int64_t>(words[2]);
         if (!count || *count < 0)
         {
-          this->Fail("a number of elements instead of \"" + words[2] + "\"");
+          this->Header.Fail("a number of elements instead of \"" + words[2] + "\"");
         }
         this->Elements.push_back({ words[1], *count, {} });
       }
@@ -265,12 +252,13 @@ private:
       }
       else
       {
-        this->Fail("an element, a property or end_header");
+        this->Header.Fail(more);
       }
     }
     if (text)
     {
-      this->Content = std::make_unique<TextValues>(this->File, this->FileName, this->Line + 1);
+      this->Content =
+        std::make_unique<TextValues>(this->File, this->FileName, this->Header.GetNumber() + 1);
     }
     else
     {
@@ -346,7 +334,7 @@ private:
 
   std::istream& File;
   std::string FileName;
-  int Line = 0;
+  LineReader Header;
   std::vector<Element> Elements;
   std::unique_ptr<Values> Content;
   vtkNew<vtkPoints> Points;

@@ -4,6 +4,7 @@
 #include "Command.h"
 #include "Console.h"
 #include "Failure.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 #include "OutputFile.h"
 #include "PairReport.h"
@@ -57,9 +58,7 @@ void RequirePlane(const MeshPair& pair)
 {
   for (std::size_t side = 0; side < 2; ++side)
   {
-    double bounds[6];
-    pair.Meshes[side]->GetBounds(bounds);
-    if (bounds[4] != bounds[5])
+    if (!IsFlat(pair.Meshes[side]))
     {
       throw Failure(REFUSED, pair.Names[side] + " is not in a plane parallel to x and y.");
     }
@@ -97,12 +96,13 @@ void AddRefine(CLI::App& program)
     ->check(PositiveNumber())
     ->type_name("NUMBER")
     ->group("Results");
-  options->Map.AddTo(*command);
+  options->Map.AddTo(*command, false);
   command->callback([options] {
     OutputFile output(
       options->Output.Output.Name, options->Output.Output.Format, options->Output.Output.Replace);
+    CheckPairFormat(output.GetFormat());
     const MeshPair pair = options->Inputs.ReadPair(0);
-    RequireMap(pair, false);
+    RequireMap(pair);
     RequirePlane(pair);
     Refinement refined = Refine(pair, options->Map, options->Tolerance, options->MostTriangles);
     Remark(std::to_string(pair.Source()->GetNumberOfPolys()) + " triangles became " +
@@ -142,8 +142,7 @@ void AddConvert(CLI::App& program)
   options->Inputs.AddTo(*command, "SOURCE [TARGET]", 0, "The pair");
   options->Output.AddTo(*command,
     "The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a "
-    "point array; with "
-    "--target-output the source alone: .vtp .vtk .obj .off");
+    "point array; with --target-output the source alone: .vtp .vtk .obj .off");
   command
     ->add_option("--target-output", options->TargetOutput, "Write the target to a file of its own")
     ->type_name("FILE")
@@ -179,14 +178,13 @@ void AddConvert(CLI::App& program)
     if (output.GetFormat() == "json")
     {
       // Nobody else will look.
-      RequireMap(pair, false);
+      RequireMap(pair);
     }
     else if (output.GetFormat() == "obj" || output.GetFormat() == "off")
     {
       throw Failure(WRONG_USAGE,
         "A ." + output.GetFormat() +
-          " file cannot hold both meshes: name another for the target "
-          "(--target-output).");
+          " file cannot hold both meshes: name another for the target (--target-output).");
     }
     WritePair(pair, options->Output.TargetArray, output);
     output.Commit();

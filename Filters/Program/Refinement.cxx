@@ -6,10 +6,10 @@
 #include "Command.h"
 #include "Console.h"
 #include "Failure.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkDataArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -81,16 +81,12 @@ public:
         this->Points[side][i] = { p[0], p[1] };
       }
     }
-    const auto cells = vtk::TakeSmartPointer(pair.Source()->GetPolys()->NewIterator());
-    for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-    {
-      vtkIdType count;
-      const vtkIdType* corners;
-      cells->GetCurrentCell(count, corners);
-      this->Triangles.push_back({ corners[0], corners[1], corners[2] });
-      this->Add({ this->Triangles.back(), { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
-        static_cast<vtkIdType>(this->Triangles.size()) - 1 });
-    }
+    ForEachCell(
+      pair.Source()->GetPolys(), [this](vtkIdType number, vtkIdType, const vtkIdType* corners) {
+        this->Triangles.push_back({ corners[0], corners[1], corners[2] });
+        this->Add(
+          { this->Triangles.back(), { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } }, number });
+      });
   }
 
   vtkIdType GetNumberOfParts() const { return this->NumberOfParts; }
@@ -144,6 +140,7 @@ public:
       }
       return point;
     };
+    this->Samples = 0;
     std::vector<Distance> distances;
     // Some at a time: the samples of all would take a lot of memory.
     constexpr std::size_t atOnce = 2000;
@@ -193,6 +190,9 @@ public:
     return distances;
   }
 
+  /// At how many points the last distances were measured.
+  vtkIdType GetNumberOfSamples() const { return this->Samples; }
+
   bool IsDivided(std::size_t index) const { return this->Parts[index].Divided; }
 
   /// Halves edges of a part that is too far from the map: those that are too far themselves or, if
@@ -237,8 +237,6 @@ public:
     }
     this->Unmapped.clear();
   }
-
-  vtkIdType Samples = 0;
 
   std::array<vtkSmartPointer<vtkPolyData>, 2> MakeMeshes() const
   {
@@ -497,6 +495,7 @@ private:
   vtkIdType NumberOfParts = 0;
   std::unordered_map<std::array<vtkIdType, 2>, std::array<std::size_t, 2>, EdgeHash> PartsOfEdge;
   std::vector<std::size_t> Unmapped;
+  vtkIdType Samples = 0;
 };
 
 } // namespace
@@ -523,7 +522,6 @@ Refinement Refine(
   std::vector<std::size_t> parts = refiner.GetParts();
   for (std::size_t look = 0; look < divisions.size();)
   {
-    refiner.Samples = 0;
     const auto distances = refiner.MeasureDistances(parts, divisions[look]);
     double largest = 0.0;
     for (const auto& distance : distances)
@@ -563,7 +561,7 @@ Refinement Refine(
       look = 1;
     }
   }
-  result.Samples = refiner.Samples;
+  result.Samples = refiner.GetNumberOfSamples();
   result.Pair = pair;
   result.Pair.Meshes = refiner.MakeMeshes();
   return result;

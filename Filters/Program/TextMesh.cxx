@@ -4,94 +4,39 @@
 #include "TextMesh.h"
 
 #include "Failure.h"
+#include "LineReader.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
 #include <istream>
+#include <optional>
 #include <ostream>
-#include <sstream>
-#include <vector>
 
 namespace dhm
 {
 namespace
 {
 
-/// Lines of a text file as words, without comments (#) and empty lines.
-class Lines
+/// The line's words from @a first as coordinates.
+void ReadPoint(const LineReader& line, std::size_t first, vtkPoints* points)
 {
-public:
-  Lines(std::istream& file, std::string fileName)
-    : File(file)
-    , FileName(std::move(fileName))
+  double point[3];
+  for (std::size_t k = 0; k < 3; ++k)
   {
-  }
-
-  /// Reads the next line that has words; false at the end of the file.
-  bool Next()
-  {
-    std::string line;
-    while (std::getline(this->File, line))
+    const auto value =
+      first + k < line.Words.size() ? ToNumber(line.Words[first + k]) : std::nullopt;
+    if (!value)
     {
-      ++this->Number;
-      std::istringstream text(line.substr(0, line.find('#')));
-      this->Words.clear();
-      for (std::string word; text >> word;)
-      {
-        this->Words.push_back(word);
-      }
-      if (!this->Words.empty())
-      {
-        return true;
-      }
+      line.Fail("three coordinates");
     }
-    return false;
+    point[k] = *value;
   }
-
-  void Require(const std::string& expected)
-  {
-    if (!this->Next())
-    {
-      throw Failure(FILE_TROUBLE,
-        this->FileName + " ends after line " + std::to_string(this->Number) + ": expected " +
-          expected + ".");
-    }
-  }
-
-  [[noreturn]] void Fail(const std::string& expected) const
-  {
-    throw Failure(FILE_TROUBLE,
-      this->FileName + ", line " + std::to_string(this->Number) + ": expected " + expected + ".");
-  }
-
-  /// Words from @a first as coordinates.
-  void ReadPoint(std::size_t first, vtkPoints* points) const
-  {
-    double point[3];
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      const auto value =
-        first + k < this->Words.size() ? ToNumber(this->Words[first + k]) : std::nullopt;
-      if (!value)
-      {
-        this->Fail("three coordinates");
-      }
-      point[k] = *value;
-    }
-    points->InsertNextPoint(point);
-  }
-
-  std::vector<std::string> Words;
-
-private:
-  std::istream& File;
-  std::string FileName;
-  int Number = 0;
-};
+  points->InsertNextPoint(point);
+}
 
 vtkSmartPointer<vtkPolyData> MakeMesh(vtkPoints* points, vtkCellArray* polygons)
 {
@@ -99,20 +44,6 @@ vtkSmartPointer<vtkPolyData> MakeMesh(vtkPoints* points, vtkCellArray* polygons)
   mesh->SetPoints(points);
   mesh->SetPolys(polygons);
   return mesh;
-}
-
-/// Calls write(points of a polygon) for each polygon.
-template <typename Write>
-void ForEachPolygon(vtkPolyData* mesh, Write&& write)
-{
-  const auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType count;
-    const vtkIdType* points;
-    cells->GetCurrentCell(count, points);
-    write(count, points);
-  }
 }
 
 void WritePoint(vtkPolyData* mesh, vtkIdType point, std::ostream& file)
@@ -129,12 +60,12 @@ vtkSmartPointer<vtkPolyData> ReadObj(std::istream& file, const std::string& file
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> polygons;
-  Lines lines(file, fileName);
+  LineReader lines(file, fileName, "#");
   while (lines.Next())
   {
     if (lines.Words[0] == "v")
     {
-      lines.ReadPoint(1, points);
+      ReadPoint(lines, 1, points);
     }
     else if (lines.Words[0] == "f")
     {
@@ -169,7 +100,7 @@ vtkSmartPointer<vtkPolyData> ReadObj(std::istream& file, const std::string& file
 
 vtkSmartPointer<vtkPolyData> ReadOff(std::istream& file, const std::string& fileName)
 {
-  Lines lines(file, fileName);
+  LineReader lines(file, fileName, "#");
   lines.Require("OFF");
   if (lines.Words[0] != "OFF")
   {
@@ -192,7 +123,7 @@ vtkSmartPointer<vtkPolyData> ReadOff(std::istream& file, const std::string& file
   for (vtkIdType i = 0; i < *pointCount; ++i)
   {
     lines.Require("point " + std::to_string(i) + " of " + std::to_string(*pointCount));
-    lines.ReadPoint(0, points);
+    ReadPoint(lines, 0, points);
   }
   vtkNew<vtkCellArray> polygons;
   for (vtkIdType i = 0; i < *faceCount; ++i)
@@ -225,7 +156,7 @@ void WriteObj(vtkPolyData* mesh, std::ostream& file)
     file << "v ";
     WritePoint(mesh, i, file);
   }
-  ForEachPolygon(mesh, [&file](vtkIdType count, const vtkIdType* points) {
+  ForEachCell(mesh->GetPolys(), [&file](vtkIdType, vtkIdType count, const vtkIdType* points) {
     file << 'f';
     for (vtkIdType k = 0; k < count; ++k)
     {
@@ -242,7 +173,7 @@ void WriteOff(vtkPolyData* mesh, std::ostream& file)
   {
     WritePoint(mesh, i, file);
   }
-  ForEachPolygon(mesh, [&file](vtkIdType count, const vtkIdType* points) {
+  ForEachCell(mesh->GetPolys(), [&file](vtkIdType, vtkIdType count, const vtkIdType* points) {
     file << count;
     for (vtkIdType k = 0; k < count; ++k)
     {

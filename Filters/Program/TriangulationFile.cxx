@@ -4,10 +4,10 @@
 #include "TriangulationFile.h"
 
 #include "Failure.h"
+#include "MeshParts.h"
 #include "Numbers.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
@@ -234,16 +234,10 @@ void WriteTriangulationFile(
          << ToText(to[0]) << ", " << ToText(to[1]) << "]";
   }
   file << "\n  ],\n  \"triangles\": [";
-  const auto cells = vtk::TakeSmartPointer(source->GetPolys()->NewIterator());
-  const char* separator = "\n    [";
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType count;
-    const vtkIdType* corners;
-    cells->GetCurrentCell(count, corners);
-    file << separator << corners[0] << ", " << corners[1] << ", " << corners[2] << "]";
-    separator = ",\n    [";
-  }
+  ForEachCell(source->GetPolys(), [&file](vtkIdType number, vtkIdType, const vtkIdType* corners) {
+    file << (number == 0 ? "\n    [" : ",\n    [") << corners[0] << ", " << corners[1] << ", "
+         << corners[2] << "]";
+  });
   file << "\n  ]\n}\n";
 }
 

@@ -22,18 +22,15 @@ void AddWarp(CLI::App& program)
     OutputOptions Output;
     MapOptions Map;
     std::string ImageFormat = "png";
-    std::string Size;
-    std::string Background;
+    PictureOptions Picture;
     bool Inverse = false;
   };
   CLI::App* command =
     program.add_subcommand("warp", "Warp an image from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "SOURCE [TARGET] IMAGE", 1,
-    "The pair, in pixels of the image (the first pixel's centre, at the "
-    "lower left, is "
-    "(0, 0), y runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif "
-    ".ppm or .vti");
+    "The pair, in pixels of the image (the first pixel's centre, at the lower left, is (0, 0), y "
+    "runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif .ppm or .vti");
   options->Output.AddTo(
     *command, "The warped image: .png .jpg .tif .ppm .vti, or - for standard output", "png");
   command
@@ -44,31 +41,25 @@ void AddWarp(CLI::App& program)
   options->Map.AddTo(*command);
   command->add_flag("-i,--inverse", options->Inverse, "From the target's domain to the source's")
     ->group("Map");
-  command
-    ->add_option("--size", options->Size, "Size of the result in pixels (default: the image's)")
-    ->type_name("WIDTHxHEIGHT")
-    ->group("Results");
-  command
-    ->add_option("--background", options->Background,
-      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
-      "or #rrggbb")
-    ->type_name("COLOUR")
-    ->group("Results");
+  options->Picture.AddTo(*command, "Size of the result in pixels (default: the image's)");
   command->footer("Pixels are interpolated linearly. Each pixel of the result is looked up where "
-                  "the exact inverse "
-                  "says.");
+                  "the exact inverse says.");
   command->callback([options] {
-    const std::array<int, 2> size = ReadSize(options->Size);
+    const std::array<int, 2> size = ReadSize(options->Picture.Size);
     const std::string format = OutputFormatOf(options->Output.Name, options->Output.Format);
-    const Background background = ReadBackgroundFor(format, options->Background);
+    const Background background = ReadBackgroundFor(format, options->Picture.Background);
     OutputFile output(options->Output.Name, options->Output.Format, options->Output.Replace);
     MeshPair pair = options->Inputs.ReadPair(1);
-    const auto image = ReadImage(InputFile(options->Inputs.Files.back(), options->ImageFormat));
+    const InputFile file(options->Inputs.Files.back(), options->ImageFormat);
+    const auto image = ReadFrom(file, "--image-format", [&file] { return ReadImage(file); });
     const auto grid = MakeGrid(image, size);
     const int* from = image->GetDimensions();
     const int* to = grid->GetDimensions();
     const std::array<int, 2> sizes[2] = { { from[0], from[1] }, { to[0], to[1] } };
     FitToPictures(pair, sizes[options->Inverse], sizes[!options->Inverse]);
+    const std::size_t side = options->Inverse ? 1 : 0;
+    RequireOverlap(image, file.GetName(), pair.Meshes[side], pair.GetNameOf(side));
+    RequireOverlap(grid, "the result", pair.Meshes[1 - side], pair.GetNameOf(1 - side));
     const auto warped = WorkWith(pair, [&] {
       return WarpImage(
         image, pair.Source(), pair.Target(), grid, options->Inverse, options->Map, "Warping");

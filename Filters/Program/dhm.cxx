@@ -22,8 +22,7 @@ int main(int argc, char* argv[])
   CaptureVtkMessages();
 
   CLI::App program("Carries data from one triangulated domain onto another that has the same "
-                   "triangles, one to one and "
-                   "smoothly, with an exact inverse.",
+                   "triangles, one to one and smoothly, with an exact inverse.",
     "dhm");
   PrepareHelp(program);
   program.require_subcommand(1);
@@ -36,8 +35,7 @@ int main(int argc, char* argv[])
     "target's positions as a point array) or two files, SOURCE and TARGET. Meshes: .json .vtp .vtk "
     ".vtu .obj .off .ply .stl, xmorph's .mesh. - is standard input or output.\n"
     "Exit status: 0 done (check: yes), 1 the meshes are refused (check: no), 2 wrong usage, 3 a "
-    "file "
-    "cannot be read or written.\n"
+    "file cannot be read or written.\n"
     "Examples:\n"
     "dhm check shift.json\n"
     "dhm map shift.json points.csv -o shifted.csv\n"

@@ -6,6 +6,7 @@ same things, and what it says and leaves behind where something is wrong.
 The environment variable DHM is the path of the program. The path of the folder of real data is
 DHM_SHARED_DATA, or ../shared/data seen from the repository; without it, its tests are skipped."""
 
+import base64
 import collections
 import csv
 import io
@@ -296,6 +297,20 @@ def read_png(data):
     return numpy.array(result).reshape(height, width, channels)
 
 
+def read_tiff(data):
+    """The bytes of the pixels of a file that is not compressed, little end first."""
+    assert data[:4] == b"II*\0"
+    at, = struct.unpack_from("<I", data, 4)
+    fields = {}
+    for k in range(struct.unpack_from("<H", data, at)[0]):
+        tag, kind, count = struct.unpack_from("<HHI", data, at + 2 + 12 * k)
+        code, place = {3: "H", 4: "I"}[kind], at + 10 + 12 * k
+        if count * struct.calcsize(code) > 4:
+            place, = struct.unpack_from("<I", data, place)
+        fields[tag] = struct.unpack_from(f"<{count}{code}", data, place)
+    return b"".join(data[offset:offset + size] for offset, size in zip(fields[273], fields[279]))
+
+
 def png_size(data):
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     return struct.unpack(">2I", data[16:24])
@@ -481,6 +496,23 @@ class Map(ProgramTest):
         expected = interpolate(numpy.array([[0.5, 0.25], [0.125, 0.5]]), self.pair)
         self.assert_near(images, expected, 1e-15)
 
+    def test_rows_are_no_comments(self):
+        self.path("table.csv").write_text('id,x,y\n"#1",0.5,0.25\n2,0.25,0.5\n')
+        for table in ("table.csv", "once.csv"):
+            self.run_dhm("map", "pair.json", table, "-f", "-o", "once.csv")
+            lines = list(csv.reader(self.path("once.csv").read_text().splitlines()))
+            self.assertEqual([line[0] for line in lines], ["id", "#1", "2"])
+
+    def test_ends_of_lines(self):
+        """Those of a table become \\n, those within quotes stay."""
+        self.path("table.csv").write_bytes(b'# old\r\nx,y,name\r\n0.5,0.25,"two\r\nlines\r"\r\n\r\n0.25,0.5,\r\n')
+        out = self.run_dhm("coordinates", "pair.json", "table.csv", "-o", "-").out
+        lines = out.split(b"\n")
+        self.assertEqual(lines[0], b"# old")
+        self.assertTrue(lines[1].startswith(b"x,y,name,"))
+        self.assertEqual(lines[2] + b"\n" + lines[3][:7], b'0.5,0.25,"two\r\nlines\r"')
+        self.assertTrue(lines[4].startswith(b"0.25,0.5,,"))
+
     def test_columns_by_number_and_name(self):
         self.path("table.txt").write_text("0.5 a 0.25\n0.125\tb 0.5\n")
         self.path("named.csv").write_text("up,right,id\n0.5,0.25,1\n0.125,0.5,2\n")
@@ -495,9 +527,81 @@ class Map(ProgramTest):
             images = interpolate(source, self.pair)
             self.assert_near(numbers, images if name == "table.txt" else images[:, ::-1], 1e-15)
             self.assertEqual(out.err, "")
-        for columns in ("4,1", "up", "0,1", "x,y", "1,2,3,1"):
+        for columns in ("4,1", "up", "0,1", "x,y", "1,2,3,1", "up,up", "up,1"):
             self.refuse(WRONG_USAGE, "map", "pair.json", "named.csv", "--columns", columns, "-o", "n.csv",
                         says="--columns")
+        self.refuse(WRONG_USAGE, "map", "pair.json", "named.csv", "--columns", "left,up", "-o", "n.csv",
+                    says=('"left"', '"up", "right", "id"'))
+        # Neither case nor blanks matter, except between names that differ in nothing else.
+        self.path("cases.csv").write_text("RIGHT, Up ,up\n0.25,0.5,9\n")
+        out = self.run_dhm("map", "pair.json", "cases.csv", "--columns", " right,UP", "-o", "-").out
+        self.assertEqual(out.decode().splitlines()[1].split(",")[2:], ["9", "1"])
+        self.refuse(REFUSED, "map", "pair.json", "cases.csv", "--columns", "right,up", "-o", "n.csv",
+                    "--require-inside", says="1 point is outside")
+
+    def test_usual_names_of_columns(self):
+        expected = interpolate(numpy.array([[0.25, 0.5]]), self.pair)[0]
+        for x, y in (("x", "y"), ("E", "N"), ("Easting", "Northing"), ("East", "North"), ("X_Coord", "Y_Coord"),
+                     ("Rechtswert", "Hochwert"), ("lon", "lat"), ("Longitude", "Latitude"), (" X", "y ")):
+            self.path("table.csv").write_text(f"id;{y};{x}\n7;0.5;0.25\n")
+            out = self.run_dhm("map", "pair.json", "table.csv", "-s", "linear", "-o", "-").out.decode()
+            self.assertEqual(out.splitlines()[0], f"id;{y};{x};ValidPointMask")
+            image = [float(word) for word in out.splitlines()[1].split(";")]
+            self.assert_near(image, [7, expected[1], expected[0], 1], 1e-15)
+        # Guessing would carry something else than points.
+        self.path("table.csv").write_text("height,a,b\n0.5,0.25,0.5\n")
+        self.refuse(FILE_TROUBLE, "map", "pair.json", "table.csv", "-o", "new.csv",
+                    says=("table.csv", '"height", "a", "b"', "--columns"))
+
+    def test_decimal_commas(self):
+        for text, line in (("x;y\n0,5;0,25\n", 2), ("0,5;0,25\n", 1), ("x y\n0.5 1\n0,5 0,25\n", 3),
+                           ("0,5 0,25\n", 1), ("id\tx\ty\n1\t0,5\t1\n", 2), ("P1;0,5;0,25\n", 1)):
+            self.path("table.csv").write_text(text)
+            self.refuse(FILE_TROUBLE, "map", "pair.json", "table.csv", "-o", "new.csv",
+                        says=("table.csv", f"line {line}", "decimal commas"))
+        # Where the coordinates are numbers, other columns are nobody's business.
+        self.path("table.csv").write_text("0.5,0.25,12 30\n")
+        self.assertEqual(self.run_dhm("map", "pair.json", "table.csv", "-o", "-").out.decode().strip()[-8:],
+                         ",12 30,1")
+
+    def test_tables_keep_their_columns_in_vtk_files(self):
+        self.path("table.csv").write_text('id,x,y,name,x\n7,0.5,0.25,"Old, Oak",1\n8,0.25,0.5,Stone,2\n'
+                                          ',0.125,0.5,"",3\n')
+        for command, mesh in (("map", "pair.json"), ("coordinates", "pair.json")):
+            self.run_dhm(command, mesh, "table.csv", "-f", "-o", "table.vtp")
+            document = xml.etree.ElementTree.parse(self.path("table.vtp"))
+            arrays = {array.get("Name"): array for array in document.find(".//PointData")}
+            self.assertEqual(arrays["id"].get("type"), "Float64")
+            self.assertEqual([float(arrays["id"].get(f"Range{end}")) for end in ("Min", "Max")], [7, 8])
+            self.assertEqual([float(arrays["x"].get(f"Range{end}")) for end in ("Min", "Max")], [1, 3])
+            self.assertEqual(arrays["name"].get("type"), "String")
+            text = "".join(arrays["name"].itertext()).strip()
+            # A header of its own, then the texts, each with a zero at its end.
+            self.assertEqual(zlib.decompress(base64.b64decode(text[24:])), b"Old, Oak\0Stone\0\0")
+        self.path("plain.txt").write_text("0.5 0.25 3\n0.25 0.5 4\n")
+        self.run_dhm("map", "pair.json", "plain.txt", "-o", "plain.vtk")
+        self.assertEqual(read_legacy(self.path("plain.vtk"))[1]["Column3"].tolist(), [3, 4])
+
+    def test_points_that_are_nowhere(self):
+        self.path("table.csv").write_text("x,y\n0.5,0.5\nnan,0.5\n3,3\n0.2,inf\n")
+        result = self.run_dhm("map", "pair.json", "table.csv", "-o", "-")
+        self.assertIn("3 points are outside the domain (of 2, the coordinates are no finite numbers; the "
+                      "first is point 1,", result.err)
+        self.assertEqual(read_csv(result.out.decode())["ValidPointMask"].tolist(), [1, 0, 0, 0])
+
+    def test_tables_that_are_mapped_again(self):
+        """What a column of the same name said before is replaced."""
+        write_csv(self.path("points.csv"), [[0.5, 0.5], [1.5, 0.5]])
+        self.run_dhm("map", "pair.json", "points.csv", "--triangle-id", "-o", "once.csv")
+        out = self.run_dhm("map", "-i", "pair.json", "once.csv", "--triangle-id", "--jacobian", "-o", "-").out
+        names = out.decode().splitlines()[0].split(",")
+        self.assertEqual(len(names), len(set(names)))
+        self.assertEqual(names[:4], self.path("once.csv").read_text().splitlines()[0].split(","))
+        table = read_csv(out.decode())
+        self.assertEqual(table["ValidPointMask"].tolist(), [1, 0])
+        self.assert_near(places(table)[0], [0.5, 0.5], 1e-12)
+        for name in set(names) - {"ValidPointMask", "TriangleId", "x", "y"}:
+            self.assertTrue(name.startswith("Jacobian_"))
 
     def test_empty_table(self):
         self.path("empty.csv").write_text("x,y,name\n")
@@ -518,6 +622,29 @@ class Map(ProgramTest):
         self.assert_near(determinants["JacobianDeterminant"], expected["JacobianDeterminant"], 0)
         points, _ = read_legacy(self.path("back-data2.vtk"))
         self.assert_near(points[:, :2], self.points, 1e-13)
+
+    def test_meshes_as_data(self):
+        """The source's own mesh goes where the target is, in all formats."""
+        source, target, triangles = self.pair
+        writers = {"obj": write_obj, "off": write_off, "ply": write_ply,
+                   "stl": lambda path, p, t: write_stl(path, p, t, False)}
+        for extension, write in writers.items():
+            write(self.path(f"mesh.{extension}"), source, triangles)
+            write(self.path(f"expected.{extension}"), target, triangles)
+            for output in ("obj", "off"):
+                for side in ("mesh", "expected"):
+                    pair = "pair.json" if side == "mesh" else "same.json"
+                    write_json(self.path("same.json"), Pair(target, target, triangles))
+                    result = self.run_dhm("map", pair, f"{side}.{extension}", "-o", f"{side}-out.{output}", "-f")
+                    self.assertEqual(result.err, "")
+                numbers = [numpy.array(re.findall(r"-?\d[\d.e-]*", self.path(f"{side}-out.{output}").read_text()),
+                                       float) for side in ("mesh", "expected")]
+                self.assert_near(*numbers, 1e-15)
+        self.assertIn("without Jacobian", self.run_dhm("map", "pair.json", "mesh.off", "--jacobian", "-o",
+                                                       "jacobian.obj").err)
+        write_off(self.path("outside.off"), source + 0.5, triangles)
+        self.refuse(REFUSED, "map", "pair.json", "outside.off", "-o", "new.obj", says=("outside", ".vtp"))
+        self.refuse(WRONG_USAGE, "coordinates", "pair.json", "mesh.off", "-o", "new.obj", says=(".obj", ".vtp"))
 
     def test_pictures_become_curved_grids(self):
         write_pnm(self.path("gray.pgm"), numpy.zeros((2, 2)))
@@ -753,6 +880,31 @@ class Check(ProgramTest):
         report = self.check(Pair(straight, ring, numpy.array(strip)), "--quick", status=REFUSED)
         self.assertIn("overlapping", [problem["kind"] for problem in report["problems"]])
 
+    def test_invalid_triangles_do_not_touch_the_measures_of_others(self):
+        """What is said of the valid triangles is what is said of them alone."""
+        pair = make_pair(4, 4, seed=3)
+        alone = self.check(pair)
+        # Without area in the source; over many others in the target.
+        along = numpy.vstack((pair.triangles, [0, 6, 24]))
+        for bad in (pair._replace(triangles=along),
+                    Pair(pair.target, pair.source, along)):
+            report = self.check(bad, status=REFUSED)
+            self.assertEqual([problem["kind"] for problem in report["problems"]], ["no area"])
+            self.assertEqual(report["problems"][0]["first_cells"], [32])
+            sides = ("source", "target") if bad.source is pair.source else ("target", "source")
+            for side, other in zip(("source", "target"), sides):
+                for name in ("discordant_triangles", "smallest_angle_degrees",
+                             "largest_area_ratio_across_an_edge"):
+                    self.assertEqual(report[side][name], alone[other][name], name)
+        # Nothing to compare is no number.
+        single = Pair(numpy.array([[0, 0], [1, 0], [0, 1]]), numpy.array([[0, 0], [1, 0], [0, 2]]),
+                      numpy.array([[0, 1, 2]]))
+        report = self.check(single, "--quick")
+        self.assertIsNone(report["source"]["largest_area_ratio_across_an_edge"])
+        self.assertAlmostEqual(report["source"]["smallest_angle_degrees"]["value"], 45)
+        self.assertRegex(self.run_dhm("check", "--quick", "pair.json").out.decode(),
+                         r"largest area ratio across an edge +none +none\n")
+
     def test_mismatched_pairs(self):
         pair = make_pair(3, 3)
         write_off(self.path("a.off"), pair.source, pair.triangles)
@@ -798,6 +950,42 @@ class Check(ProgramTest):
         self.refuse(WRONG_USAGE, "check", "pair.json", "--picture", "pair.gif", says=("pair.gif", ".png"))
         self.refuse(FILE_TROUBLE, "check", "pair.json", "--picture", "pair.png", says="--force")
         self.run_dhm("check", "--quick", "pair.json", "--picture", "pair.png", "--force")
+
+    def test_triangles_that_share_no_points(self):
+        """They are no fault, but hardly meant."""
+        def check(name):
+            return self.run_dhm("check", "--quick", "--json", *name)
+        pair = make_pair(4, 4)
+        separate = numpy.arange(pair.triangles.size).reshape(-1, 3)
+        for side, points in ((0, pair.source), (1, pair.target)):
+            write_off(self.path(f"{side}.off"), points[pair.triangles].reshape(-1, 2), separate)
+        result = check(["0.off", "1.off"])
+        report = json.loads(result.out)
+        self.assertEqual((report["interior_edges"], report["components"]), (0, 32))
+        for words in (f"{96 - 25} points", "0 edges join two triangles", "vtkCleanPolyData", "dhm convert"):
+            self.assertIn(words, result.err)
+        # Points of one place that are joined by triangles all the same are none of this: a cut.
+        points, triangles = make_grid(4, 4)
+        cut = triangles.copy()
+        upper = points[triangles].mean(axis=1)[:, 1] > 0.5
+        twins = {k: len(points) + i for i, k in enumerate(numpy.flatnonzero(points[:, 1] == 0.5))}
+        cut[upper] = numpy.vectorize(lambda k: twins.get(k, k))(cut[upper])
+        write_off(self.path("cut.off"), numpy.vstack((points, points[list(twins)])), cut)
+        result = check(["cut.off", "cut.off"])
+        self.assertEqual(json.loads(result.out)["source"]["duplicate_points"], 5)
+        self.assertEqual(result.err, "")
+
+    def test_the_meshes_are_reported_before_the_map_is_measured(self):
+        write_json(self.path("pair.json"), make_pair(40, 40, move=0.2))
+        expected = self.run_dhm("check", "pair.json").out
+        with subprocess.Popen([PROGRAM, "check", "pair.json"], cwd=self.folder, env=self.environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+            first = os.read(process.stdout.fileno(), 1 << 16)
+            self.assertIsNone(process.poll())
+            rest = process.stdout.read()
+        self.assertIn(b"worst distortion", first)
+        self.assertNotIn(b"det J", first)
+        self.assertEqual(first + rest, expected)
 
     def test_surfaces_and_empty_meshes(self):
         points, triangles = make_grid(4, 4)
@@ -928,7 +1116,7 @@ class Warp(ProgramTest):
         self.run_dhm("warp", *options, "float.vti", "-o", "a.tif")
         self.run_dhm("warp", *options, "a.tif", "-o", "b.tif")
         self.assertEqual(self.path("a.tif").read_bytes(), self.path("b.tif").read_bytes())
-        values = numpy.frombuffer(self.path("a.tif").read_bytes()[-96:], "=f4").reshape(4, 6)[::-1]
+        values = numpy.frombuffer(read_tiff(self.path("a.tif").read_bytes()), "<f4").reshape(4, 6)[::-1]
         self.assert_near(values.ravel(), numpy.arange(24) / 7, 1e-6)
         self.path("deep.pgm").write_bytes(b"P5 2 2 65535\n" + bytes(8))
         self.refuse(REFUSED, "warp", "pair.json", "deep.pgm", "-o", "new.jpg", says=(".jpg", "short"))
@@ -941,12 +1129,35 @@ class Warp(ProgramTest):
             if colour:
                 refuse("--background", colour, says=(colour, "#rrggbb"))
         for size in ("0x5", "5", "x", "5x", "-3x4", "3x4x5", "1e3x2", "200000x2", "4.5x3"):
-            refuse("--size=" + size, says=(size, "WIDTHxHEIGHT"))
+            refuse("--size=" + size, says=(size, "WIDTHxHEIGHT", "from 1 to 100000"))
         refuse("--background", "transparent", output="new.ppm", says=("transparent", ".ppm"))
         refuse("--background", "transparent", output="new.jpg", says=("transparent", ".jpg"))
         for name in ("new", "new.gif", "new.csv", "new.vtp"):
             refuse(output=name, says=".png")
         self.refuse(WRONG_USAGE, "warp", "pair.json", "-o", "new.png")
+
+    def test_meshes_beside_the_image(self):
+        boxes = ("x from 0 to 23, y from 0 to 17", "x from 1000 to 1001, y from 0 to 1")
+        small = make_pair(2, 2)
+        beside = Pair(small.source + [1000, 0], small.target + [1000, 0], small.triangles)
+        write_json(self.path("beside.json"), beside)
+        source, target = "the source of beside.json", "the target of beside.json"
+        for command, name in ((["warp", "beside.json", "image.ppm", "-o", "new.png"], source),
+                              (["warp", "-i", "beside.json", "image.ppm", "-o", "new.png"], target),
+                              (["figure", "beside.json", "--image", "image.ppm", "-o", "new.png"], source),
+                              (["morph", "beside.json", "--source-image", "image.ppm", "-o", "new%d.png"], source),
+                              (["morph", "beside.json", "--target-image", "image.ppm", "-o", "new%d.png"], target)):
+            self.refuse(REFUSED, *command, says=("image.ppm", name, *boxes, "do not overlap"))
+        # An image that is seen nowhere.
+        write_json(self.path("away.json"), Pair(self.pair.source, self.pair.target + 500, self.pair.triangles))
+        self.refuse(REFUSED, "warp", "away.json", "image.ppm", "-o", "new.png",
+                    says=("the result", "the target of away.json", "do not overlap"))
+        # Perhaps from 0 to 1 instead of in pixels.
+        write_json(self.path("unit.json"), small)
+        result = self.run_dhm("warp", "unit.json", "image.ppm", "-o", "unit.png")
+        self.assertIn("less than a hundredth", result.err)
+        write_json(self.path("pair.json"), self.pair)
+        self.assertEqual(self.run_dhm("warp", "pair.json", "image.ppm", "-o", "pair.png").err, "")
 
     def test_xmorph_meshes(self):
         # In xmorph's own units, ten to a pixel; the middle of the rim does not touch the picture's end.
@@ -1042,7 +1253,10 @@ class Morph(ProgramTest):
         images = ("--source-image", "0.ppm", "--target-image", "1.ppm")
         refuse(WRONG_USAGE, *images, output="new.png", says="%03d")
         refuse(WRONG_USAGE, *images, output="new%d.gif", says=".png")
-        refuse(WRONG_USAGE, output="new%d.png")
+        refuse(WRONG_USAGE, output="new%d.png", says=("--source-image", ".vtp"))
+        refuse(WRONG_USAGE, output="new%d-%d.vtp", says=("more than one place", "new%d-%d.vtp"))
+        self.path("points.csv").write_text("x,y\n1,2\n")
+        refuse(WRONG_USAGE, "--data", "points.csv", output="new%d.vtp", says=("points.csv", "dhm coordinates"))
         refuse(WRONG_USAGE, *images, "--data", "0.ppm", says="--data")
         for frames in ("1", "0", "-1", "x", "nan", "2.5", "1000000"):
             refuse(WRONG_USAGE, *images, "--frames", frames, says=("--frames", frames))
@@ -1174,7 +1388,13 @@ class Refine(ProgramTest):
             refuse(WRONG_USAGE, "--within=" + value, says=("--within", value))
             refuse(WRONG_USAGE, "--within", "1", "--most-triangles=" + value, says="--most-triangles")
         refuse(WRONG_USAGE, says="--within")
+        # Before the work, which would say something.
+        for output in ("new.obj", "new"):
+            result = self.refuse(WRONG_USAGE, "refine", "pair.json", "--within", "1", "-o", output,
+                                 says=".json")
+            self.assertNotIn("triangles became", result.err)
         refuse(WRONG_USAGE, "--within", "1", output="new.obj", says=(".obj", ".json"))
+        refuse(WRONG_USAGE, "--within", "1", "--mask-invalid", says="--mask-invalid")
         refuse(WRONG_USAGE, "--within", "1", output="new", says=".json")
         points, triangles = make_grid(2, 2)
         write_off(self.path("bent.off"), numpy.column_stack((points, points[:, 0] ** 2)), triangles)
@@ -1290,6 +1510,7 @@ class Convert(ProgramTest):
 
 OPTIONS = {
     "pair": "--target-array --input-format --working-size",
+    "system": "--system --incenter --linear-where-discordant --tolerance",
     "map options": "--system --incenter --linear-where-discordant --mask-invalid --tolerance",
     "output": "--output --force --output-format",
     "data": "--columns --data-format --require-inside",
@@ -1305,7 +1526,7 @@ OPTIONS_OF = {
     "figure": f"{OPTIONS['pair']} {OPTIONS['map options']} {OPTIONS['output']} --all-systems --grid "
               "--contours --image --close-up --width",
     "coordinates": f"--input-format {OPTIONS['map options']} {OPTIONS['output']} {OPTIONS['data']}",
-    "refine": f"{OPTIONS['pair']} {OPTIONS['map options']} {OPTIONS['output']} --within --most-triangles "
+    "refine": f"{OPTIONS['pair']} {OPTIONS['system']} {OPTIONS['output']} --within --most-triangles "
               "--input-crs --output-crs",
     "convert": f"{OPTIONS['pair']} {OPTIONS['output']} --target-output --output-array --input-crs "
                "--output-crs",
@@ -1355,6 +1576,34 @@ class CommandLine(ProgramTest):
         self.refuse(WRONG_USAGE, "map", "pair.json", "-o", "new.csv", says="SOURCE [TARGET] DATA")
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", says="--output")
 
+    def test_files_in_the_place_of_others(self):
+        pair = make_pair(2, 2)
+        write_off(self.path("a.off"), pair.source, pair.triangles)
+        write_off(self.path("b.off"), pair.target, pair.triangles)
+        write_pnm(self.path("image.pgm"), numpy.zeros((2, 2)))
+        for files, said in ((("a.off", "b.off"), "b.off was taken for DATA"),
+                            (("points.csv", "pair.json"), "pair.json was taken for DATA"),
+                            (("pair.json", "b.off", "points.csv"), "points.csv was taken for DATA")):
+            self.refuse(WRONG_USAGE, "map", *files, "-o", "new.vtp", says=("SOURCE [TARGET] DATA", said))
+        self.refuse(WRONG_USAGE, "warp", "image.pgm", "pair.json", "-o", "new.png",
+                    says=("image.pgm as a mesh", "SOURCE [TARGET] IMAGE", "pair.json was taken for IMAGE"))
+
+    def test_advice_names_only_what_there_is(self):
+        pair = make_pair(3, 3, move=0)
+        target = pair.target.copy()
+        target[5] = [0.95, 0.5]
+        write_json(self.path("bad.json"), pair._replace(target=target))
+        commands = {"map": ["points.csv", "-o", "new.csv"], "figure": ["-o", "new.png"],
+                    "morph": ["-o", "new%d.vtp"], "refine": ["--within", "1", "-o", "new.json"],
+                    "convert": ["-o", "new.json"]}
+        for command, arguments in commands.items():
+            result = self.refuse(REFUSED, command, "bad.json", *arguments, says=("bad.json", "flipped"))
+            known = "--mask-invalid" in OPTIONS_OF[command]
+            self.assertEqual("use --mask-invalid to leave them out" in result.err, known, command)
+            self.assertEqual("--mask-invalid" in result.err, known, command)
+        out = self.run_dhm("check", "--quick", "bad.json", status=REFUSED).out.decode()
+        self.assertIn("--mask-invalid of dhm map", out)
+
     def test_out_of_range(self):
         arguments = ("map", "pair.json", "points.csv", "-o", "new.csv")
         self.refuse(WRONG_USAGE, *arguments, "--system=", says="--system")
@@ -1365,7 +1614,17 @@ class CommandLine(ProgramTest):
             self.refuse(WRONG_USAGE, *arguments, "--tolerance=" + tolerance, says=("--tolerance", tolerance))
 
     def test_names_of_formats(self):
-        self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new", says=".csv")
+        no_extension = "The output's name has no extension"
+        write_pnm(self.path("image.pgm"), numpy.zeros((2, 2)))
+        self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new", says=(no_extension, ".csv"))
+        self.refuse(WRONG_USAGE, "warp", "pair.json", "image.pgm", "-o", "new", says=(no_extension, ".png"))
+        self.refuse(WRONG_USAGE, "morph", "pair.json", "-o", "new%d", says=(no_extension, ".vtp"))
+        self.refuse(WRONG_USAGE, "morph", "pair.json", "--source-image", "image.pgm", "-o", "new%d",
+                    says=(no_extension, ".png"))
+        self.refuse(WRONG_USAGE, "figure", "pair.json", "-o", "new", says=("new", ".svg"))
+        self.refuse(WRONG_USAGE, "convert", "pair.json", "-o", "new", says=(no_extension, ".json"))
+        self.refuse(WRONG_USAGE, "convert", "pair.json", "-o", "new", "--target-output", "other",
+                    says=(no_extension, ".off"))
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new.xyzzy", says=(".xyzzy", ".csv"))
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "new.vtu", says=(".vtu", ".vtp"))
         self.refuse(WRONG_USAGE, "map", "pair.json", "points.csv", "-o", "", says="empty")
@@ -1586,6 +1845,17 @@ class InputFiles(ProgramTest):
         self.assertEqual(out, expected)
         out = self.run_dhm("map", "pair.json", "-", "-o", "-", "--output-format", "vtp", input=points).out
         self.assertIn(b"<VTKFile", out)
+        out = self.run_dhm("coordinates", "-", "points.csv", "--input-format", "mesh", "-o", "-",
+                           input=b"M2\n2 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n").out
+        self.assertIn(b"EdgeLabel", out)
+        # Of another kind than expected.
+        self.refuse(FILE_TROUBLE, "check", "-", input=off, says=("standard input", ".json", "--input-format"))
+        self.refuse(FILE_TROUBLE, "map", "source.off", "-", "points.csv", "-o", "new.csv", "--input-format",
+                    "ply", input=off, says=("standard input", ".ply", "--input-format"))
+        self.refuse(FILE_TROUBLE, "map", "pair.json", "-", "-o", "new.csv", input=off,
+                    says=("standard input", ".csv", "--data-format"))
+        self.refuse(FILE_TROUBLE, "warp", "pair.json", "-", "-o", "new.png", input=off,
+                    says=("standard input", ".png", "--image-format"))
         # Damaged and missing.
         self.refuse(FILE_TROUBLE, "check", "-", input=pair[:500], says=("standard input", "line"))
         self.refuse(FILE_TROUBLE, "check", "-", says="standard input")
