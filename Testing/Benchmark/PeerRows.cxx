@@ -176,10 +176,11 @@ vtkSmartPointer<vtkDataSet> AsDataSet(vtkPoints* points)
   if (columns > 1 && count % columns == 0 && count > columns)
   {
     auto image = vtkSmartPointer<vtkImageData>::New();
-    image->SetDimensions(static_cast<int>(columns), static_cast<int>(count / columns), 1);
+    const auto rows = count / columns;
+    image->SetDimensions(static_cast<int>(columns), static_cast<int>(rows), 1);
     image->SetOrigin(p[0], p[1], p[2]);
     image->SetSpacing((p[3 * (columns - 1)] - p[0]) / static_cast<double>(columns - 1),
-      (p[3 * (count - 1) + 1] - p[1]) / static_cast<double>(count / columns - 1), 1.0);
+      (p[3 * (count - 1) + 1] - p[1]) / static_cast<double>(rows - 1), 1.0);
     return image;
   }
   auto data = vtkSmartPointer<vtkPolyData>::New();

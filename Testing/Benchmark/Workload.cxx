@@ -117,7 +117,7 @@ std::vector<Affine> TriangleMaps(vtkPolyData* from, vtkPolyData* to)
     {
       const double alongU = q[1][i] - q[0][i];
       const double alongV = q[2][i] - q[0][i];
-      double* row = &map[static_cast<std::size_t>(3 * i)];
+      double* row = &map[3 * static_cast<std::size_t>(i)];
       row[0] = (alongU * vy - alongV * uy) / area;
       row[1] = (alongV * ux - alongU * vx) / area;
       row[2] = q[0][i] - row[0] * p[0][0] - row[1] * p[0][1];

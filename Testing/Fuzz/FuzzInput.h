@@ -43,7 +43,8 @@ public:
     {
       // A neighbour of a number of the grid, or one far smaller or larger.
       const double grid = (this->Byte() - 120) / 16.0;
-      const int exponent = static_cast<std::int8_t>(this->Byte());
+      const int unsignedExponent = this->Byte();
+      const int exponent = unsignedExponent < 128 ? unsignedExponent : unsignedExponent - 256;
       double power = 1.0;
       for (int i = 0; i < (exponent < 0 ? -exponent : exponent); ++i)
       {

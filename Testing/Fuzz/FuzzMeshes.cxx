@@ -189,6 +189,8 @@ struct Setting
   bool Mask;
   bool ByLinear;
   bool Inverse;
+  /// Whether the data are the mesh itself.
+  bool MapsTheMesh;
 };
 
 /// Whether the derivative is promised to be a number: not that of the contours from the incenter of
@@ -406,8 +408,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
 #else
   const int way = input.Below(8);
 #endif
-  const bool mapsTheMesh = input.Chance(4);
   Setting setting;
+  setting.MapsTheMesh = input.Chance(4);
   setting.System = input.Below(3);
   setting.Center = input.Below(2);
   setting.Mask = input.Chance(2);
@@ -476,7 +478,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   {
     case 0:
     case 1:
-      MapByFilter(pair, mapsTheMesh ? pair[setting.Inverse ? 1 : 0] : cloud.Get(), setting, tame);
+      MapByFilter(
+        pair, setting.MapsTheMesh ? pair[setting.Inverse ? 1 : 0] : cloud.Get(), setting, tame);
       break;
     case 2:
       MapByTransform(pair, cloud->GetPoints(), setting);

@@ -441,7 +441,7 @@ WoundStrip MakeWoundStrip(double turns)
       target.push_back({ (8.0 + j) * std::cos(angle), (8.0 + j) * std::sin(angle), 0.0 });
     }
   }
-  const auto id = [](int i, int j) { return vtkIdType(j * (length + 1) + i); };
+  const auto id = [](int i, int j) { return static_cast<vtkIdType>(j) * (length + 1) + i; };
   std::vector<Triangle> atBoundary;
   for (int j = 0; j < width; ++j)
   {

@@ -1384,7 +1384,7 @@ TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
       {
         continue;
       }
-      const auto id = static_cast<vtkIdType>(3 * i);
+      const auto id = 3 * static_cast<vtkIdType>(i);
       const auto area = [id](vtkDataSet* data) {
         return Cross(
           PointOf(data, id + 1) - PointOf(data, id), PointOf(data, id + 2) - PointOf(data, id));
