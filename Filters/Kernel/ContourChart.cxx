@@ -353,7 +353,11 @@ ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, C
       edge.Tangent = { (view.Foot - 1.0) * view.Length / this->Shape.Base,
         -view.Height / this->Shape.Base };
     }
-    edge.CenterHeight = this->CenterWeights[k] * view.Height;
+    // Rounding the differences of coordinates may lose a needle's height, though not its
+    // orientation.
+    const double height =
+      view.Height > 0.0 ? view.Height : std::numeric_limits<double>::epsilon() * view.Length;
+    edge.CenterHeight = this->CenterWeights[k] * height;
     // The foot of a weighted mean of the corners is the weighted mean of their feet: 0 and Length
     // for the edge's ends.
     edge.FootDistance =

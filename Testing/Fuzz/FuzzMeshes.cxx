@@ -193,14 +193,6 @@ struct Setting
   bool MapsTheMesh;
 };
 
-/// Whether the derivative is promised to be a number: not that of the contours from the incenter of
-/// needles that are thinner than their coordinates' rounding.
-bool HasDerivative(const Setting& setting)
-{
-  return setting.System != vtkDifferentiableHomeomorphism::CONTOUR ||
-    setting.Center != vtkDifferentiableHomeomorphism::INCENTER;
-}
-
 template <typename Algorithm>
 void Configure(Algorithm* algorithm, const Setting& setting)
 {
@@ -269,7 +261,7 @@ void MapDirectly(
     {
       Fail("an image that is not finite");
     }
-    if (HasDerivative(setting) && std::isnan(jacobian.Determinant))
+    if (std::isnan(jacobian.Determinant))
     {
       Fail("a determinant that is not a number");
     }
@@ -337,7 +329,7 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
       {
         Fail("an image that is not finite");
       }
-      if (HasDerivative(setting) && std::isnan(determinant->GetComponent(i, 0)))
+      if (std::isnan(determinant->GetComponent(i, 0)))
       {
         Fail("a determinant that is not a number");
       }

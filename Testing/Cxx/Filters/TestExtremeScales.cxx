@@ -340,6 +340,38 @@ void ExpectTinyTriangleMapped(double tiny, int system)
   }
 }
 
+TEST(ExtremeScales, ANeedleWhoseHeightIsLostInRounding)
+{
+  // The far corners are so far away that the others are at the same place from there, but the
+  // triangles have areas.
+  const std::vector<Triangle> triangles{ { 0, 1, 3 }, { 0, 3, 2 } };
+  const MeshPair pair{ MakeMesh({ { 1.25, 0.125, 0.0 }, { -2.25, 4.9375, 0.0 },
+                                  { 5.875, 4.75, 0.0 }, { -7.5, 0x1p74, 0.0 } },
+                         triangles),
+    MakeMesh({ { -7.5, -7.5, 0.0 }, { -7.5, -3.5625, 0.0 }, { 0.0625, 0.0625, 0.0 },
+               { 0.0625, -0x1p57, 0.0 } },
+      triangles) };
+  for (const int system : Systems)
+  {
+    for (const bool inverse : { false, true })
+    {
+      SCOPED_TRACE("system " + std::to_string(system) + (inverse ? ", inverse" : ""));
+      std::vector<Point> points = RandomPointsOf(inverse ? pair.Target : pair.Source, 100, 5);
+      points.push_back({ -7.5, -7.5, 0.0 });
+      const Mapped mapped = MapPoints(pair, points, { system, true, inverse });
+      ASSERT_EQ(mapped.Error, "");
+      for (std::size_t i = 0; i < points.size(); ++i)
+      {
+        if (mapped.Valid[i])
+        {
+          EXPECT_TRUE(std::isfinite(mapped.Points[i][0]) && std::isfinite(mapped.Points[i][1]))
+            << i;
+        }
+      }
+    }
+  }
+}
+
 // Products of such lengths underflow, yet the triangle has an area and an orientation.
 constexpr double TinySizes[] = { 1e-20, 1e-100, 1e-150, 1e-160, 1e-170, 1e-250 };
 
