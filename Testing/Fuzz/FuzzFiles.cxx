@@ -4,6 +4,8 @@
 // Reads any bytes as one of the files that the program dhm reads itself. What it also writes is
 // written, and what is written must be read as the same.
 
+#include "FuzzRequire.h"
+
 #include "Program/Failure.h"
 #include "Program/PlyMesh.h"
 #include "Program/PointTable.h"
@@ -15,7 +17,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <functional>
 #include <sstream>
 #include <string>
@@ -23,13 +24,7 @@
 namespace
 {
 
-void Require(bool condition)
-{
-  if (!condition)
-  {
-    std::abort();
-  }
-}
+using fuzz::Require;
 
 /// Whether the points are the same, what is no number included.
 void RequireSamePoints(vtkPolyData* a, vtkPolyData* b)

@@ -4,6 +4,8 @@
 // Reads any bytes as one of the pictures that the program dhm reads itself. What it also writes is
 // written, and what is written must be read as the same.
 
+#include "FuzzRequire.h"
+
 #include "Program/Failure.h"
 #include "Program/InputFile.h"
 #include "Program/OutputFile.h"
@@ -14,7 +16,6 @@
 #include "vtkPointData.h"
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -26,13 +27,7 @@ namespace
 using Reader = vtkSmartPointer<vtkImageData> (*)(const dhm::InputFile&);
 using Writer = void (*)(vtkImageData*, const dhm::OutputFile&);
 
-void Require(bool condition)
-{
-  if (!condition)
-  {
-    std::abort();
-  }
-}
+using fuzz::Require;
 
 /// Files that are written again and again: in memory, where there is a folder for that.
 std::string BeginOfNames()
