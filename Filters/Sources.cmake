@@ -7,30 +7,27 @@
 # Pure mathematics: nothing of VTK may be included here.
 set(kernel_sources
   Kernel/ContourChart.cxx
-  Kernel/EdgeLanes.cxx
   Kernel/ExactSign.cxx
+  Kernel/Simd/EdgeBatch.cxx
   Kernel/SmoothChart.cxx)
 set(kernel_headers
   Kernel/ContourChart.h
   Kernel/CoordinateSystem.h
-  Kernel/EdgeLanes.h
   Kernel/ExactSign.h
   Kernel/Geometry.h
   Kernel/LinearChart.h
-  Kernel/OneSidedDerivative.h
   Kernel/RootFinding.h
-  Kernel/SmoothChart.h
-  Kernel/Vectorize.h)
+  Kernel/Simd/EdgeBatch.h
+  Kernel/Simd/Vectorize.h
+  Kernel/SmoothChart.h)
 
-# From VTK's meshes to the kernel and back.
+# Meshes, read and validated once, and the map between two of them.
 set(mesh_sources
   Mesh/ChartedTriangulation.cxx
-  Mesh/Embedding.cxx
   Mesh/Homeomorphism.cxx
-  Mesh/HomeomorphismCache.cxx
-  Mesh/JacobianJump.cxx
   Mesh/LargeArray.cxx
-  Mesh/MeshProblem.cxx
+  Mesh/MeshDiagnostic.cxx
+  Mesh/MeshGeometry.cxx
   Mesh/MeshValidation.cxx
   Mesh/PointLocation.cxx
   Mesh/Triangulation.cxx
@@ -39,39 +36,46 @@ set(mesh_headers
   Mesh/Box.h
   Mesh/BoxTree.h
   Mesh/ChartedTriangulation.h
-  Mesh/Embedding.h
   Mesh/Homeomorphism.h
-  Mesh/HomeomorphismCache.h
-  Mesh/JacobianJump.h
   Mesh/LargeArray.h
-  Mesh/MeshProblem.h
+  Mesh/MeshDiagnostic.h
+  Mesh/MeshGeometry.h
   Mesh/MeshValidation.h
   Mesh/PointLocation.h
   Mesh/Triangulation.h
   Mesh/TriangulationPair.h
   Mesh/Vector3.h)
 
+# Whether a map is differentiable: jumps of its Jacobian across edges and at other features.
+set(continuity_sources
+  Continuity/EdgeCrossings.cxx
+  Continuity/InnerLines.cxx
+  Continuity/JacobianJump.cxx
+  Continuity/MeasuredFeatures.cxx
+  Continuity/RayFans.cxx)
+set(continuity_headers
+  Continuity/EdgeCrossings.h
+  Continuity/InnerLines.h
+  Continuity/JacobianJump.h
+  Continuity/MeasuredFeatures.h
+  Continuity/OneSidedDerivative.h
+  Continuity/RayFans.h)
+
 # What the VTK classes share.
-set(support_sources
-  AttributeTransport.cxx
-  CoordinateLines.cxx
-  EdgeCrossings.cxx
-  ImageSampling.cxx
-  InnerLines.cxx
-  MeasuredPlaces.cxx
-  ProcessStatistics.cxx
-  Stars.cxx)
-set(support_headers
-  AttributeTransport.h
-  CellPoints.h
-  CoordinateLines.h
-  EdgeCrossings.h
-  FilterSupport.h
-  ImageSampling.h
-  InnerLines.h
-  MeasuredPlaces.h
-  ProcessStatistics.h
-  Stars.h)
+set(pipeline_sources
+  Pipeline/AttributeTransformation.cxx
+  Pipeline/CoordinateLines.cxx
+  Pipeline/HomeomorphismCache.cxx
+  Pipeline/ImageSampling.cxx
+  Pipeline/ProcessStatistics.cxx)
+set(pipeline_headers
+  Pipeline/AttributeTransformation.h
+  Pipeline/CellPoints.h
+  Pipeline/CoordinateLines.h
+  Pipeline/FilterSupport.h
+  Pipeline/HomeomorphismCache.h
+  Pipeline/ImageSampling.h
+  Pipeline/ProcessStatistics.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results
 # would change from one machine to another. Nobody asks for floating-point exceptions or errno: without

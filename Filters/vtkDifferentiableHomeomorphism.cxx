@@ -3,9 +3,9 @@
 
 #include "vtkDifferentiableHomeomorphism.h"
 
-#include "AttributeTransport.h"
-#include "FilterSupport.h"
-#include "ProcessStatistics.h"
+#include "Pipeline/AttributeTransformation.h"
+#include "Pipeline/FilterSupport.h"
+#include "Pipeline/ProcessStatistics.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCell.h"
@@ -48,7 +48,7 @@ class vtkDifferentiableHomeomorphism::Internals
 public:
   HomeomorphismCache Cache;
   ProcessStatistics Own{ { 0.0 }, { 0.0 } };
-  std::map<std::string, TransportRule> Transports;
+  std::map<std::string, TransformationRule> Transformations;
 
   /// Lets Continuity measure the map between the meshes.
   void Measure(vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target);
@@ -89,7 +89,7 @@ public:
     vtkPointSet* output)
     : Self(self)
     , Map(map)
-    , From(self->Inverse ? Side::Target : Side::Source)
+    , From(self->Inverse ? Domain::Target : Domain::Source)
     , Input(input)
     , Output(output)
     , NumberOfPoints(input->GetNumberOfPoints())
@@ -100,15 +100,16 @@ public:
   void Run()
   {
     this->PassEverything();
-    const bool carriesPoints = this->CarriesAny(this->Input->GetPointData());
-    this->MapPoints(carriesPoints);
-    if (carriesPoints)
+    const bool transformsPoints = this->TransformsAny(this->Input->GetPointData());
+    this->MapPoints(transformsPoints);
+    if (transformsPoints)
     {
-      this->CarryArrays(this->Input->GetPointData(), this->Output->GetPointData(), this->Jacobians);
+      this->TransformArrays(
+        this->Input->GetPointData(), this->Output->GetPointData(), this->Jacobians);
     }
-    if (this->CarriesAny(this->Input->GetCellData()))
+    if (this->TransformsAny(this->Input->GetCellData()))
     {
-      this->CarryArrays(
+      this->TransformArrays(
         this->Input->GetCellData(), this->Output->GetCellData(), this->ComputeCellJacobians());
     }
     this->AddPointArrays();
@@ -137,10 +138,10 @@ private:
     return pointSet ? pointSet->GetPoints() : nullptr;
   }
 
-  double GetReach() const
+  double GetAbsoluteTolerance() const
   {
     vtkPoints* points = this->GetInputPoints();
-    return this->Map.GetReach(this->From, this->Self->Tolerance,
+    return this->Map.GetAbsoluteTolerance(this->From, this->Self->Tolerance,
       PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
   }
 
@@ -172,7 +173,7 @@ private:
           inPoints && inPoints->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
     }
     outPoints->SetNumberOfPoints(this->NumberOfPoints);
-    this->Mask->SetName("ValidPointMask");
+    this->Mask->SetName("vtkValidPointMask");
     this->Mask->SetNumberOfTuples(this->NumberOfPoints);
     this->Mask->FillValue(0);
     if (this->Self->ComputeTriangleId)
@@ -198,7 +199,7 @@ private:
       this->Determinants = NewDoubles("JacobianDeterminant", 1, this->NumberOfPoints);
     }
 
-    const double reach = this->GetReach();
+    const double tolerance = this->GetAbsoluteTolerance();
     vtkUnsignedCharArray* ghosts = GhostsOf(this->Input->GetPointData(), this->NumberOfPoints);
     const vtkIdType done =
       RunInBlocks(this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
@@ -208,7 +209,7 @@ private:
         {
           block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
           ReadPoints(this->Input, first, block);
-          this->Map.LocateBlock(this->From, block, reach, hint);
+          this->Map.LocateBlock(this->From, block, tolerance, hint);
           for (int i = 0; i < block.Count && ghosts; ++i)
           {
             // What is hidden in the input is not there: above all what an earlier map found
@@ -225,7 +226,7 @@ private:
             if (block.Triangles[i] >= 0)
             {
               this->Mask->SetValue(first + i, 1);
-              this->SetDerived(first + i, block.GetPlace(i));
+              this->SetDerived(first + i, block.GetSurfacePoint(i));
             }
           }
         }
@@ -238,21 +239,21 @@ private:
     this->Output->SetPoints(outPoints);
   }
 
-  void SetDerived(vtkIdType i, const Location& place)
+  void SetDerived(vtkIdType i, const SurfacePoint& surfacePoint)
   {
     if (this->Triangles)
     {
       this->Triangles->SetValue(
-        i, this->Map.GetPair().GetTriangulation().GetCellId(place.Triangle));
+        i, this->Map.GetPair().GetTriangulation().GetCellId(surfacePoint.Triangle));
     }
     if (this->Systems)
     {
       this->Systems->SetValue(
-        i, static_cast<int>(this->Map.GetCharts(this->From).GetSystemOf(place.Triangle)));
+        i, static_cast<int>(this->Map.GetCharts(this->From).GetSystemOf(surfacePoint.Triangle)));
     }
     if (this->Jacobians || this->Determinants)
     {
-      const Jacobian jacobian = this->Map.GetJacobian(this->From, place);
+      const Jacobian jacobian = this->Map.GetJacobian(this->From, surfacePoint);
       if (this->Jacobians)
       {
         std::copy(
@@ -272,8 +273,8 @@ private:
     const auto jacobians = NewDoubles("Jacobian", 9, cells);
     const CellPoints cellPoints(this->Input);
     vtkSMPThreadLocalObject<vtkIdList> lists;
-    const double pointReach = this->GetReach();
-    const Embedding& embedding = this->Map.GetPair().GetEmbedding(this->From);
+    const double pointTolerance = this->GetAbsoluteTolerance();
+    const MeshGeometry& geometry = this->Map.GetPair().GetGeometry(this->From);
     RunInBlocks(this->Self, cells, 0.9, 1.0, [&](vtkIdType begin, vtkIdType end) {
       vtkIdList* ids = lists.Local();
       TriangleIndex hint = -1;
@@ -294,22 +295,22 @@ private:
             mean[axis] += point[axis] / static_cast<double>(count);
           }
         }
-        double reach = pointReach;
-        for (vtkIdType k = 0; k < count && !embedding.IsColumnar(); ++k)
+        double tolerance = pointTolerance;
+        for (vtkIdType k = 0; k < count && !geometry.IsColumnar(); ++k)
         {
           // The mean of points on a surface lies off it, but no farther than they do from each
           // other.
           double point[3];
           this->Input->GetPoint(ids->GetId(k), point);
-          reach = std::max(
-            reach, embedding.GetScale() * std::sqrt(vtkMath::Distance2BetweenPoints(mean, point)));
+          tolerance = std::max(tolerance,
+            geometry.GetScale() * std::sqrt(vtkMath::Distance2BetweenPoints(mean, point)));
         }
-        const Location place =
-          count > 0 ? this->Map.Locate(this->From, mean, reach, hint) : Location{};
-        hint = place.Triangle;
-        if (place.Triangle >= 0)
+        const SurfacePoint surfacePoint =
+          count > 0 ? this->Map.Locate(this->From, mean, tolerance, hint) : SurfacePoint{};
+        hint = surfacePoint.Triangle;
+        if (surfacePoint.Triangle >= 0)
         {
-          const Jacobian jacobian = this->Map.GetJacobian(this->From, place);
+          const Jacobian jacobian = this->Map.GetJacobian(this->From, surfacePoint);
           std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), jacobians->GetPointer(9 * i));
         }
       }
@@ -320,41 +321,41 @@ private:
   /// Whether a point id, which may come from a corrupt cell, is one.
   bool IsPoint(vtkIdType point) const { return point >= 0 && point < this->NumberOfPoints; }
 
-  TransportRule GetRule(vtkDataSetAttributes* attributes, vtkDataArray* array) const
+  TransformationRule GetRule(vtkDataSetAttributes* attributes, vtkDataArray* array) const
   {
-    const auto& named = this->Self->Internal->Transports;
+    const auto& named = this->Self->Internal->Transformations;
     const auto found = array->GetName() ? named.find(array->GetName()) : named.end();
     if (found != named.end())
     {
       return found->second;
     }
-    if (!this->Self->CarryVectors)
+    if (!this->Self->TransformActiveAttributes)
     {
-      return TransportRule::None;
+      return TransformationRule::None;
     }
     if (array == attributes->GetNormals())
     {
-      return TransportRule::Normal;
+      return TransformationRule::Normal;
     }
     if (array == attributes->GetVectors() || array == attributes->GetTensors())
     {
-      return TransportRule::Tangent;
+      return TransformationRule::Tangent;
     }
     const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
     // An earlier map's derivative is no tensor of this one's domain.
     const bool derivative = array->GetName() && std::string(array->GetName()) == "Jacobian";
-    return this->Self->CarryAllVectors && real && !derivative &&
+    return this->Self->TransformAllInputVectors && real && !derivative &&
         array != attributes->GetTCoords() && array != attributes->GetScalars()
-      ? TransportRule::Tangent
-      : TransportRule::None;
+      ? TransformationRule::Tangent
+      : TransformationRule::None;
   }
 
-  bool CarriesAny(vtkDataSetAttributes* attributes) const
+  bool TransformsAny(vtkDataSetAttributes* attributes) const
   {
     for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
     {
       vtkDataArray* array = attributes->GetArray(i);
-      if (array && this->GetRule(attributes, array) != TransportRule::None)
+      if (array && this->GetRule(attributes, array) != TransformationRule::None)
       {
         return true;
       }
@@ -362,14 +363,14 @@ private:
     return false;
   }
 
-  void CarryArrays(
+  void TransformArrays(
     vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkDoubleArray* jacobians)
   {
     for (int i = 0; i < input->GetNumberOfArrays(); ++i)
     {
       vtkDataArray* array = input->GetArray(i);
       const vtkSmartPointer<vtkDataArray> carried =
-        array ? CarryArray(array, jacobians, this->GetRule(input, array)) : nullptr;
+        array ? TransformArray(array, jacobians, this->GetRule(input, array)) : nullptr;
       if (!carried)
       {
         continue;
@@ -431,7 +432,7 @@ private:
 
   vtkDifferentiableHomeomorphism* Self;
   const Homeomorphism& Map;
-  Side From;
+  Domain From;
   vtkDataSet* Input;
   vtkPointSet* Output;
   vtkIdType NumberOfPoints;
@@ -461,31 +462,32 @@ void vtkDifferentiableHomeomorphism::SetTargetData(vtkPolyData* target)
   this->SetInputData(1, target);
 }
 
-void vtkDifferentiableHomeomorphism::SetArrayTransport(const char* name, int transport)
+void vtkDifferentiableHomeomorphism::SetAttributeTransformation(
+  const char* name, int transformation)
 {
-  if (!name || transport < NO_TRANSPORT || transport > NORMAL_TRANSPORT)
+  if (!name || transformation < NO_TRANSFORMATION || transformation > NORMAL_TRANSFORMATION)
   {
-    vtkErrorMacro(<< "SetArrayTransport takes an array's name and a transport from " << NO_TRANSPORT
-                  << " to " << NORMAL_TRANSPORT << ", not " << (name ? name : "(none)") << " and "
-                  << transport << ".");
+    vtkErrorMacro(<< "SetAttributeTransformation takes an array's name and a transformation from "
+                  << NO_TRANSFORMATION << " to " << NORMAL_TRANSFORMATION << ", not "
+                  << (name ? name : "(none)") << " and " << transformation << ".");
     return;
   }
-  this->Internal->Transports[name] = static_cast<TransportRule>(transport);
+  this->Internal->Transformations[name] = static_cast<TransformationRule>(transformation);
   this->Modified();
 }
 
-int vtkDifferentiableHomeomorphism::GetArrayTransport(const char* name)
+int vtkDifferentiableHomeomorphism::GetAttributeTransformation(const char* name)
 {
   const auto found =
-    name ? this->Internal->Transports.find(name) : this->Internal->Transports.end();
-  return found == this->Internal->Transports.end() ? -1 : static_cast<int>(found->second);
+    name ? this->Internal->Transformations.find(name) : this->Internal->Transformations.end();
+  return found == this->Internal->Transformations.end() ? -1 : static_cast<int>(found->second);
 }
 
-void vtkDifferentiableHomeomorphism::ClearArrayTransports()
+void vtkDifferentiableHomeomorphism::ClearAttributeTransformations()
 {
-  if (!this->Internal->Transports.empty())
+  if (!this->Internal->Transformations.empty())
   {
-    this->Internal->Transports.clear();
+    this->Internal->Transformations.clear();
     this->Modified();
   }
 }
@@ -652,7 +654,7 @@ int vtkDifferentiableHomeomorphism::MapData(
   }
   this->NumberOfOutsidePoints = 0;
 
-  const ChartedTriangulation& charts = map->GetCharts(Side::Source);
+  const ChartedTriangulation& charts = map->GetCharts(Domain::Source);
   for (TriangleIndex t = 0; t < map->GetPair().GetTriangulation().GetNumberOfTriangles(); ++t)
   {
     this->NumberOfDiscordantTriangles += charts.GetSystemOf(t) != charts.GetSystem();
@@ -724,12 +726,12 @@ void vtkDifferentiableHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ComputeTriangleId: " << this->ComputeTriangleId << "\n";
   os << indent << "ComputeJacobian: " << this->ComputeJacobian << "\n";
   os << indent << "ComputeJacobianDeterminant: " << this->ComputeJacobianDeterminant << "\n";
-  os << indent << "CarryVectors: " << this->CarryVectors << "\n";
-  os << indent << "CarryAllVectors: " << this->CarryAllVectors << "\n";
-  for (const auto& transport : this->Internal->Transports)
+  os << indent << "TransformActiveAttributes: " << this->TransformActiveAttributes << "\n";
+  os << indent << "TransformAllInputVectors: " << this->TransformAllInputVectors << "\n";
+  for (const auto& transformation : this->Internal->Transformations)
   {
-    os << indent << "ArrayTransport of " << transport.first << ": "
-       << static_cast<int>(transport.second) << "\n";
+    os << indent << "AttributeTransformation of " << transformation.first << ": "
+       << static_cast<int>(transformation.second) << "\n";
   }
   os << indent << "BlankOutside: " << this->BlankOutside << "\n";
   os << indent << "MeasureContinuity: " << this->MeasureContinuity << "\n";

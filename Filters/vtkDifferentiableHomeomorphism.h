@@ -14,7 +14,7 @@
  * - CONTOUR: the construction published as "Constructing Differentiable Homeomorphisms between
  *   Isomorphic Triangulations". It needs concordant triangles, and is kinked at most edges too;
  * - SMOOTH (default): barycentric coordinates in a chart of each triangle that continues its
- *   neighbours'. The map is twice continuously differentiable, and so is its inverse, everywhere
+ *   neighbors'. The map is twice continuously differentiable, and so is its inverse, everywhere
  * but at the vertices (across edges of surfaces: after unfolding); it is one to one for any
  * triangles that have an area.
  *
@@ -32,14 +32,15 @@
  * - vectors as tangent vectors (velocities, displacements), J v, with their length changed;
  * - normals by the inverse transpose, J^-T n, made unit vectors again;
  * - tensors of 9 (row-major) and 6 components (XX, YY, ZZ, XY, YZ, XZ) as J T J^T;
- * - arrays named with SetArrayTransport and GRADIENT_TRANSPORT as gradients: vectors J^-T g,
- * tensors J^-T T J^-1, so that the gradient of a scalar stays its gradient.
+ * - arrays named with SetAttributeTransformation and GRADIENT_TRANSFORMATION as gradients: vectors
+ * J^-T g, tensors J^-T T J^-1, so that the gradient of a scalar stays its gradient.
  *
- * See CarryVectors, CarryAllVectors and SetArrayTransport to change what is carried.
+ * See TransformActiveAttributes, TransformAllInputVectors and SetAttributeTransformation to change
+ * what is carried.
  *
  * These arrays are added (an array of the same name is replaced):
  *
- * - point array `ValidPointMask` (unsigned char): 1 inside, 0 outside P's domain;
+ * - point array `vtkValidPointMask` (unsigned char): 1 inside, 0 outside P's domain;
  * - where the Linear system carries discordant triangles (see DiscordantTriangles), point array
  *   `UsedCoordinateSystem` (int): LINEAR or CONTOUR, -1 outside;
  * - with ComputeTriangleId, point array `TriangleId` (vtkIdType): cell id in P, -1 outside;
@@ -55,11 +56,11 @@
  * the arrays of vtkJacobianContinuity (`JacobianJump`, `Verdict`, ...). What else is measured, and
  * how finely, is set with GetJacobianContinuity(). Without, output port 1 is empty.
  *
- * Outside points are given no image. They stay where they are, marked by ValidPointMask, with NaN
- * in arrays that would have been carried; GetNumberOfOutsidePoints counts them; and they, with the
- * cells that use them, are blanked (vtkGhostType), so that no later filter or view takes them for
- * mapped ones; see BlankOutside. Points that are blanked in the input count as outside, so that a
- * map back does not take them for mapped ones either.
+ * Outside points are given no image. They stay where they are, marked by vtkValidPointMask, with
+ * NaN in arrays that would have been carried; GetNumberOfOutsidePoints counts them; and they, with
+ * the cells that use them, are blanked (vtkGhostType), so that no later filter or view takes them
+ * for mapped ones; see BlankOutside. Points that are blanked in the input count as outside, so that
+ * a map back does not take them for mapped ones either.
  *
  * If both meshes are planar (in any planes), points off P's plane are mapped along with their foot,
  * and their distance from the plane is kept, so that heights pass through a map of the plane. The
@@ -116,17 +117,17 @@ public:
   /// What becomes of discordant triangles in the Contour system.
   enum DiscordantTrianglesModes
   {
-    REFUSE = 0,         ///< an error that names them
-    CARRY_BY_LINEAR = 1 ///< the Linear system carries them; the map stays continuous
+    REFUSE = 0,    ///< an error that names them
+    USE_LINEAR = 1 ///< the Linear system carries them; the map stays continuous
   };
 
   /// How an array is carried.
-  enum ArrayTransports
+  enum AttributeTransformations
   {
-    NO_TRANSPORT = 0,       ///< passed as it is
-    TANGENT_TRANSPORT = 1,  ///< J v, J T J^T
-    GRADIENT_TRANSPORT = 2, ///< J^-T g, J^-T T J^-1
-    NORMAL_TRANSPORT = 3    ///< J^-T n, made a unit vector (3 components only)
+    NO_TRANSFORMATION = 0,       ///< passed as it is
+    TANGENT_TRANSFORMATION = 1,  ///< J v, J T J^T
+    GRADIENT_TRANSFORMATION = 2, ///< J^-T g, J^-T T J^-1
+    NORMAL_TRANSFORMATION = 3    ///< J^-T n, made a unit vector (3 components only)
   };
 
   ///@{
@@ -173,8 +174,8 @@ public:
 
   ///@{
   /// In the Contour system, whether triangles that are discordant in P or Q are an error (REFUSE,
-  /// default) or are carried by the Linear system (CARRY_BY_LINEAR).
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
+  /// default) or are carried by the Linear system (USE_LINEAR).
+  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
   vtkGetMacro(DiscordantTriangles, int);
   ///@}
 
@@ -211,28 +212,28 @@ public:
 
   ///@{
   /// Whether the active vectors, normals and tensors are carried by the Jacobian (default on) or
-  /// left alone, arrays named with SetArrayTransport excepted.
-  vtkSetMacro(CarryVectors, bool);
-  vtkGetMacro(CarryVectors, bool);
-  vtkBooleanMacro(CarryVectors, bool);
+  /// left alone, arrays named with SetAttributeTransformation excepted.
+  vtkSetMacro(TransformActiveAttributes, bool);
+  vtkGetMacro(TransformActiveAttributes, bool);
+  vtkBooleanMacro(TransformActiveAttributes, bool);
   ///@}
 
   ///@{
   /// Whether all other floating-point arrays of 3, 6 and 9 components are carried too, as tangent
   /// vectors and tensors; texture coordinates, active scalars and arrays named `Jacobian` are not.
   /// Off by default.
-  vtkSetMacro(CarryAllVectors, bool);
-  vtkGetMacro(CarryAllVectors, bool);
-  vtkBooleanMacro(CarryAllVectors, bool);
+  vtkSetMacro(TransformAllInputVectors, bool);
+  vtkGetMacro(TransformAllInputVectors, bool);
+  vtkBooleanMacro(TransformAllInputVectors, bool);
   ///@}
 
   ///@{
-  /// How the point and cell arrays of a name are carried (see ArrayTransports), whatever the other
-  /// settings say. Arrays that do not have 3, 6 or 9 components pass as they are.
-  void SetArrayTransport(const char* name, int transport);
-  /// The transport set for a name, -1 if none is.
-  int GetArrayTransport(const char* name);
-  void ClearArrayTransports();
+  /// How the point and cell arrays of a name are carried (see AttributeTransformations), whatever
+  /// the other settings say. Arrays that do not have 3, 6 or 9 components pass as they are.
+  void SetAttributeTransformation(const char* name, int transformation);
+  /// The transformation set for a name, -1 if none is.
+  int GetAttributeTransformation(const char* name);
+  void ClearAttributeTransformations();
   ///@}
 
   ///@{
@@ -309,8 +310,8 @@ protected:
   bool ComputeTriangleId = false;
   bool ComputeJacobian = false;
   bool ComputeJacobianDeterminant = false;
-  bool CarryVectors = true;
-  bool CarryAllVectors = false;
+  bool TransformActiveAttributes = true;
+  bool TransformAllInputVectors = false;
   bool BlankOutside = true;
   bool MeasureContinuity = false;
   int OutputPointsPrecision = DEFAULT_PRECISION;

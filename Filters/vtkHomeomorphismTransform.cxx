@@ -3,8 +3,8 @@
 
 #include "vtkHomeomorphismTransform.h"
 
-#include "AttributeTransport.h"
-#include "FilterSupport.h"
+#include "Pipeline/AttributeTransformation.h"
+#include "Pipeline/FilterSupport.h"
 
 #include "vtkDataArray.h"
 #include "vtkMath.h"
@@ -23,26 +23,27 @@ class vtkHomeomorphismTransform::Internals
 {
 public:
   /// Where a point is whose coordinates were stored with a relative error.
-  Location Locate(Side from, const double point[3], double precision, TriangleIndex hint) const
+  SurfacePoint Locate(
+    Domain from, const double point[3], double precision, TriangleIndex hint) const
   {
-    return this->Map
-      ? this->Map->Locate(from, point, this->Map->GetReach(from, this->Tolerance, precision), hint)
-      : Location{};
+    return this->Map ? this->Map->Locate(from, point,
+                         this->Map->GetAbsoluteTolerance(from, this->Tolerance, precision), hint)
+                     : SurfacePoint{};
   }
 
-  void MapPlace(Side from, const Location& place, double image[3]) const
+  void MapPlace(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
   {
-    if (place.Triangle < 0)
+    if (surfacePoint.Triangle < 0)
     {
       std::fill_n(image, 3, this->OutsideCoordinate);
       return;
     }
-    this->Map->MapPoint(from, place, image);
+    this->Map->MapPoint(from, surfacePoint, image);
   }
 
   /// Maps a point; returns where it was found.
   template <typename Real>
-  Location MapPoint(Side from, const Real in[3], Real out[3]) const
+  SurfacePoint MapPoint(Domain from, const Real in[3], Real out[3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
     // Callers that go from point to point, as vtkImageReslice does, mostly stay in a triangle. Each
@@ -50,37 +51,37 @@ public:
     thread_local TriangleIndex last = -1;
     const bool isHint = this->Map && last >= 0 &&
       last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
-    const Location place = this->Locate(from, point,
+    const SurfacePoint surfacePoint = this->Locate(from, point,
       0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), isHint ? last : -1);
-    last = place.Triangle;
+    last = surfacePoint.Triangle;
     double image[3];
-    this->MapPlace(from, place, image);
+    this->MapPlace(from, surfacePoint, image);
     const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
     std::transform(image, image + 3, out,
       [largest](double x) { return static_cast<Real>(std::max(-largest, std::min(largest, x))); });
-    return place;
+    return surfacePoint;
   }
 
   /// The derivative of the map from @a from at a place; NaN outside.
-  void GetDerivative(Side from, const Location& place, double derivative[3][3]) const
+  void GetDerivative(Domain from, const SurfacePoint& surfacePoint, double derivative[3][3]) const
   {
-    if (place.Triangle < 0)
+    if (surfacePoint.Triangle < 0)
     {
       std::fill_n(&derivative[0][0], 9, vtkMath::Nan());
       return;
     }
-    const Jacobian jacobian = this->Map->GetJacobian(from, place);
+    const Jacobian jacobian = this->Map->GetJacobian(from, surfacePoint);
     std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), &derivative[0][0]);
   }
 
   /// A point's image and the derivative there of the forward map, also if it goes backward.
   template <typename Real>
   void MapWithForwardDerivative(
-    Side from, const Real in[3], Real out[3], Real derivative[3][3]) const
+    Domain from, const Real in[3], Real out[3], Real derivative[3][3]) const
   {
     double matrix[3][3];
     this->GetDerivative(from, this->MapPoint(from, in, out), matrix);
-    if (from == Side::Target)
+    if (from == Domain::Target)
     {
       vtkMath::Invert3x3(matrix, matrix);
     }
@@ -147,18 +148,18 @@ void vtkHomeomorphismTransform::InternalUpdate()
   {
     return;
   }
-  for (const Side side : { Side::Source, Side::Target })
+  for (const Domain domain : { Domain::Source, Domain::Target })
   {
-    const Embedding& embedding = map->GetPair().GetEmbedding(side);
-    if (!embedding.IsPlanar())
+    const MeshGeometry& geometry = map->GetPair().GetGeometry(domain);
+    if (!geometry.IsPlanar())
     {
-      vtkErrorMacro(<< "The points of the " << (side == Side::Source ? "source" : "target")
+      vtkErrorMacro(<< "The points of the " << (domain == Domain::Source ? "source" : "target")
                     << " mesh do not lie in a plane, so the map is not one of space: every point "
                        "counts as outside. Use vtkDifferentiableHomeomorphism for surfaces.");
       return;
     }
     this->Internal->OutsideCoordinate = std::max(this->Internal->OutsideCoordinate,
-      std::min(VTK_DOUBLE_MAX, 1e3 * embedding.GetLargestCoordinate() / embedding.GetScale()));
+      std::min(VTK_DOUBLE_MAX, 1e3 * geometry.GetLargestCoordinate() / geometry.GetScale()));
   }
   this->Internal->Map = map;
 }
@@ -187,7 +188,7 @@ bool vtkHomeomorphismTransform::IsInside(const double point[3])
 {
   this->Update();
   return this->Internal
-           ->Locate(this->InverseFlag ? Side::Target : Side::Source, point,
+           ->Locate(this->InverseFlag ? Domain::Target : Domain::Source, point,
              PrecisionOfType(VTK_DOUBLE), -1)
            .Triangle >= 0;
 }
@@ -240,10 +241,11 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
   }
 
   const Internals& internals = *this->Internal;
-  const Side from = this->InverseFlag ? Side::Target : Side::Source;
+  const Domain from = this->InverseFlag ? Domain::Target : Domain::Source;
   // Coordinates stored as float are rounded as such, and count as inside accordingly.
-  const double reach = internals.Map
-    ? internals.Map->GetReach(from, internals.Tolerance, PrecisionOfType(inPts->GetDataType()))
+  const double tolerance = internals.Map
+    ? internals.Map->GetAbsoluteTolerance(
+        from, internals.Tolerance, PrecisionOfType(inPts->GetDataType()))
     : 0.0;
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
     LocationHint hint;
@@ -256,7 +258,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
       if (internals.Map)
       {
         ReadPoints(inPts->GetData(), first, block);
-        outside = internals.Map->LocateBlock(from, block, reach, hint);
+        outside = internals.Map->LocateBlock(from, block, tolerance, hint);
         internals.Map->MapBlock(from, block);
       }
       for (int i = 0; i < block.Count && outside > 0; ++i)
@@ -270,19 +272,19 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
       for (int i = 0; i < block.Count && !carried.empty(); ++i)
       {
         double derivative[3][3];
-        internals.GetDerivative(from, block.GetPlace(i), derivative);
-        const TensorTransport transport(&derivative[0][0]);
+        internals.GetDerivative(from, block.GetSurfacePoint(i), derivative);
+        const TensorTransformation transformation(&derivative[0][0]);
         for (const Carried& array : carried)
         {
           double vector[3];
           array.In->GetTuple(first + i, vector);
           if (array.Normals)
           {
-            transport.CarryNormal(vector);
+            transformation.TransformNormal(vector);
           }
           else
           {
-            transport.CarryTangent(vector);
+            transformation.TransformTangent(vector);
           }
           array.Out->SetTuple(array.First + first + i, vector);
         }
@@ -293,46 +295,46 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
 
 void vtkHomeomorphismTransform::ForwardTransformPoint(const float in[3], float out[3])
 {
-  this->Internal->MapPoint(Side::Source, in, out);
+  this->Internal->MapPoint(Domain::Source, in, out);
 }
 
 void vtkHomeomorphismTransform::ForwardTransformPoint(const double in[3], double out[3])
 {
-  this->Internal->MapPoint(Side::Source, in, out);
+  this->Internal->MapPoint(Domain::Source, in, out);
 }
 
 void vtkHomeomorphismTransform::ForwardTransformDerivative(
   const float in[3], float out[3], float derivative[3][3])
 {
-  this->Internal->MapWithForwardDerivative(Side::Source, in, out, derivative);
+  this->Internal->MapWithForwardDerivative(Domain::Source, in, out, derivative);
 }
 
 void vtkHomeomorphismTransform::ForwardTransformDerivative(
   const double in[3], double out[3], double derivative[3][3])
 {
-  this->Internal->MapWithForwardDerivative(Side::Source, in, out, derivative);
+  this->Internal->MapWithForwardDerivative(Domain::Source, in, out, derivative);
 }
 
 void vtkHomeomorphismTransform::InverseTransformPoint(const float in[3], float out[3])
 {
-  this->Internal->MapPoint(Side::Target, in, out);
+  this->Internal->MapPoint(Domain::Target, in, out);
 }
 
 void vtkHomeomorphismTransform::InverseTransformPoint(const double in[3], double out[3])
 {
-  this->Internal->MapPoint(Side::Target, in, out);
+  this->Internal->MapPoint(Domain::Target, in, out);
 }
 
 void vtkHomeomorphismTransform::InverseTransformDerivative(
   const float in[3], float out[3], float derivative[3][3])
 {
-  this->Internal->MapWithForwardDerivative(Side::Target, in, out, derivative);
+  this->Internal->MapWithForwardDerivative(Domain::Target, in, out, derivative);
 }
 
 void vtkHomeomorphismTransform::InverseTransformDerivative(
   const double in[3], double out[3], double derivative[3][3])
 {
-  this->Internal->MapWithForwardDerivative(Side::Target, in, out, derivative);
+  this->Internal->MapWithForwardDerivative(Domain::Target, in, out, derivative);
 }
 
 void vtkHomeomorphismTransform::PrintSelf(ostream& os, vtkIndent indent)

@@ -21,7 +21,7 @@
  * A transform has no way to mark a point as outside. Points outside the domain go to a place that
  * is in no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is
  * more, a thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its
- * background colour (do not combine with its Wrap or Mirror modes). Derivatives there are NaN.
+ * background color (do not combine with its Wrap or Mirror modes). Derivatives there are NaN.
  * IsInside tells, too. Before both meshes are set, and if they are refused (an error says why),
  * every point is outside.
  *
@@ -68,7 +68,7 @@ public:
   enum DiscordantTrianglesModes
   {
     REFUSE = 0,
-    CARRY_BY_LINEAR = 1
+    USE_LINEAR = 1
   };
 
   ///@{
@@ -97,8 +97,8 @@ public:
 
   ///@{
   /// In the Contour system, whether discordant triangles are an error (REFUSE, default) or are
-  /// carried by the Linear system (CARRY_BY_LINEAR).
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
+  /// carried by the Linear system (USE_LINEAR).
+  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
   vtkGetMacro(DiscordantTriangles, int);
   ///@}
 

@@ -3,9 +3,9 @@
 
 #include "vtkJacobianContinuity.h"
 
-#include "FilterSupport.h"
-#include "MeasuredPlaces.h"
-#include "ProcessStatistics.h"
+#include "Continuity/MeasuredFeatures.h"
+#include "Pipeline/FilterSupport.h"
+#include "Pipeline/ProcessStatistics.h"
 
 #include "vtkAbstractTransform.h"
 #include "vtkCellArray.h"
@@ -43,15 +43,15 @@ public:
 namespace
 {
 
-using Sample = MeasuredPlaces::Sample;
+using Sample = MeasuredFeatures::Sample;
 
-static_assert(int(PlaceKind::Vertex) == vtkJacobianContinuity::VERTEX, "kinds of places");
+static_assert(int(FeatureKind::Vertex) == vtkJacobianContinuity::VERTEX, "kinds of places");
 
 /// Cell arrays, one value a place.
 class PlaceArrays
 {
 public:
-  PlaceArrays(const MeasuredPlaces& places, bool secondDerivatives)
+  PlaceArrays(const MeasuredFeatures& places, bool secondDerivatives)
     : Places(places)
   {
     for (const char* name : { "JacobianJump", "JacobianJumpError", "JacobianJumpExact",
@@ -69,15 +69,15 @@ public:
     }
     this->Triangles->SetName("EdgeTriangles");
     this->Triangles->SetNumberOfComponents(2);
-    this->Triangles->SetNumberOfTuples(places.GetNumberOfPlaces());
+    this->Triangles->SetNumberOfTuples(places.GetNumberOfFeatures());
   }
 
   /// @a samples are what was measured at the place: none if there is nothing to compare.
   void Set(vtkIdType index, const std::vector<Sample>& samples)
   {
-    const MeasuredPlace& place = this->Places.GetPlace(index);
-    this->Type->SetValue(index, static_cast<int>(place.Kind));
-    const std::array<vtkIdType, 2> cells = this->Places.GetCells(place);
+    const MeasuredFeature& surfacePoint = this->Places.GetSurfacePoint(index);
+    this->Type->SetValue(index, static_cast<int>(surfacePoint.Kind));
+    const std::array<vtkIdType, 2> cells = this->Places.GetCells(surfacePoint);
     this->Triangles->SetTypedTuple(index, cells.data());
     this->Verdict->SetValue(index, vtkJacobianContinuity::NOTHING_TO_COMPARE);
     if (this->SecondVerdict)
@@ -94,8 +94,8 @@ public:
     }
   }
 
-  double GetJump(vtkIdType place) const { return this->Doubles[0]->GetValue(place); }
-  int GetVerdict(vtkIdType place) const { return this->Verdict->GetValue(place); }
+  double GetJump(vtkIdType surfacePoint) const { return this->Doubles[0]->GetValue(surfacePoint); }
+  int GetVerdict(vtkIdType surfacePoint) const { return this->Verdict->GetValue(surfacePoint); }
 
   void AddTo(vtkCellData* cellData) const
   {
@@ -141,7 +141,7 @@ private:
       this->Doubles[i]->SetValue(index, values[i]);
     }
     this->Verdict->SetValue(index, Conclude(samples, &Sample::First));
-    if (this->SecondVerdict && !MeasuredPlaces::IsPoint(this->Places.GetPlace(index).Kind))
+    if (this->SecondVerdict && !MeasuredFeatures::IsPoint(this->Places.GetSurfacePoint(index).Kind))
     {
       const Sample worstSecond = largest(&Sample::Second);
       this->Doubles[8]->SetValue(index, worstSecond.Second.Jump);
@@ -150,16 +150,16 @@ private:
     }
   }
 
-  /// One kink makes the place a kink; it is differentiable only if it is at all samples.
+  /// One crease makes the place a crease; it is differentiable only if it is at all samples.
   static int Conclude(const std::vector<Sample>& samples, JacobianJump Sample::*which)
   {
     const auto count = [&samples, which](JumpVerdict verdict) {
       return std::count_if(samples.begin(), samples.end(),
         [&](const Sample& sample) { return (sample.*which).Verdict == verdict; });
     };
-    if (count(JumpVerdict::Kink) > 0)
+    if (count(JumpVerdict::Crease) > 0)
     {
-      return vtkJacobianContinuity::KINK;
+      return vtkJacobianContinuity::CREASE;
     }
     return count(JumpVerdict::Undecided) > 0 ? vtkJacobianContinuity::UNDECIDED
                                              : vtkJacobianContinuity::DIFFERENTIABLE;
@@ -169,18 +169,18 @@ private:
   {
     this->Doubles.push_back(vtkSmartPointer<vtkDoubleArray>::New());
     this->Doubles.back()->SetName(name);
-    this->Doubles.back()->SetNumberOfTuples(this->Places.GetNumberOfPlaces());
+    this->Doubles.back()->SetNumberOfTuples(this->Places.GetNumberOfFeatures());
   }
 
   vtkSmartPointer<vtkIntArray> NewIntegers(const char* name) const
   {
     auto array = vtkSmartPointer<vtkIntArray>::New();
     array->SetName(name);
-    array->SetNumberOfTuples(this->Places.GetNumberOfPlaces());
+    array->SetNumberOfTuples(this->Places.GetNumberOfFeatures());
     return array;
   }
 
-  const MeasuredPlaces& Places;
+  const MeasuredFeatures& Places;
   std::vector<vtkSmartPointer<vtkDoubleArray>> Doubles;
   vtkSmartPointer<vtkIntArray> Verdict;
   vtkSmartPointer<vtkIntArray> Type;
@@ -201,16 +201,17 @@ vtkSmartPointer<vtkDoubleArray> NewJumpArray(const char* name, vtkIdType tuples)
 /// so each place needs one of its own: results must not depend on what was measured before.
 MapUnderTest MakeMapUnderTest(const std::shared_ptr<const Homeomorphism>& map)
 {
-  const double reach = map->GetReach(Side::Source, 0.0, PrecisionOfType(VTK_DOUBLE));
+  const double tolerance =
+    map->GetAbsoluteTolerance(Domain::Source, 0.0, PrecisionOfType(VTK_DOUBLE));
   TriangleIndex hint = -1;
-  return [map, reach, hint](const Vector3& point, Vector3& image) mutable {
-    const Location place = map->Locate(Side::Source, point.data(), reach, hint);
-    hint = place.Triangle;
-    if (place.Triangle < 0)
+  return [map, tolerance, hint](const Vector3& point, Vector3& image) mutable {
+    const SurfacePoint surfacePoint = map->Locate(Domain::Source, point.data(), tolerance, hint);
+    hint = surfacePoint.Triangle;
+    if (surfacePoint.Triangle < 0)
     {
       return false;
     }
-    map->MapPoint(Side::Source, place, image.data());
+    map->MapPoint(Domain::Source, surfacePoint, image.data());
     return true;
   };
 }
@@ -351,7 +352,7 @@ int vtkJacobianContinuity::Measure(
     this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
-  if (this->Transform && !map->GetPair().GetEmbedding(Side::Source).IsPlanar())
+  if (this->Transform && !map->GetPair().GetGeometry(Domain::Source).IsPlanar())
   {
     this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro(
@@ -365,24 +366,24 @@ int vtkJacobianContinuity::Measure(
   }
 
   const bool planar = map->GetPair().HasTarget()
-    ? map->GetPair().GetEmbedding(Side::Source).IsColumnar()
-    : map->GetPair().GetEmbedding(Side::Source).IsPlanar();
+    ? map->GetPair().GetGeometry(Domain::Source).IsColumnar()
+    : map->GetPair().GetGeometry(Domain::Source).IsPlanar();
   const homeomorphism::CenterPoint center =
     options.System == homeomorphism::CoordinateSystem::Contour
     ? options.Center
     : homeomorphism::CenterPoint::Centroid;
-  const MeasuredPlaces places(*map, center,
+  const MeasuredFeatures places(*map, center,
     { true, this->BoundaryEdges, this->Spokes, this->WingSegments, this->CenterSegments,
       this->StripBorders, this->Centroids, this->Vertices },
     planar, this->SamplesPerEdge);
   this->NumberOfBoundaryEdges = static_cast<vtkIdType>(places.GetEdges().GetBoundaryEdges().size());
 
   // Each place's points follow those of the place before it.
-  const vtkIdType count = places.GetNumberOfPlaces();
+  const vtkIdType count = places.GetNumberOfFeatures();
   std::vector<vtkIdType> firstPoint(count + 1, 0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    firstPoint[i + 1] = firstPoint[i] + places.GetNumberOfPoints(places.GetPlace(i).Kind);
+    firstPoint[i + 1] = firstPoint[i] + places.GetNumberOfPoints(places.GetSurfacePoint(i).Kind);
   }
   const vtkIdType numberOfPoints = firstPoint[count];
   vtkNew<vtkPoints> points;
@@ -401,16 +402,16 @@ int vtkJacobianContinuity::Measure(
       {
         const MapUnderTest evaluate =
           this->Transform ? MakeMapUnderTest(this->Transform) : MakeMapUnderTest(map);
-        const MeasuredPlace& place = places.GetPlace(index);
-        const int samples = places.GetNumberOfSamples(place.Kind);
+        const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
+        const int samples = places.GetNumberOfSamples(surfacePoint.Kind);
         // A line's first point is its end, not a sample.
         const vtkIdType firstSample =
-          firstPoint[index] + (MeasuredPlaces::IsPoint(place.Kind) ? 0 : 1);
+          firstPoint[index] + (MeasuredFeatures::IsPoint(surfacePoint.Kind) ? 0 : 1);
         values.clear();
         for (int i = 0; i < samples; ++i)
         {
           values.push_back(
-            places.Measure(place, i, evaluate, this->Resolution, this->SecondDerivatives));
+            places.Measure(surfacePoint, i, evaluate, this->Resolution, this->SecondDerivatives));
           pointJump->SetValue(firstSample + i, values[i].First.Jump);
           pointError->SetValue(firstSample + i, values[i].First.Error);
           pointExact->SetValue(firstSample + i, values[i].Exact);
@@ -419,7 +420,7 @@ int vtkJacobianContinuity::Measure(
         for (vtkIdType i = firstPoint[index]; i < firstPoint[index + 1]; ++i)
         {
           points->SetPoint(
-            i, places.GetPosition(place, static_cast<int>(i - firstPoint[index])).data());
+            i, places.GetPosition(surfacePoint, static_cast<int>(i - firstPoint[index])).data());
         }
       }
     },
@@ -436,9 +437,9 @@ int vtkJacobianContinuity::Measure(
   const auto vertexJump = NewJumpArray("JacobianJump", source->GetNumberOfPoints());
   for (vtkIdType index = 0; index < count; ++index)
   {
-    const MeasuredPlace& place = places.GetPlace(index);
-    vtkCellArray* cells = MeasuredPlaces::IsPoint(place.Kind) ? vertexCells : lineCells;
-    cells->InsertNextCell(places.GetNumberOfPoints(place.Kind));
+    const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
+    vtkCellArray* cells = MeasuredFeatures::IsPoint(surfacePoint.Kind) ? vertexCells : lineCells;
+    cells->InsertNextCell(places.GetNumberOfPoints(surfacePoint.Kind));
     for (vtkIdType i = firstPoint[index]; i < firstPoint[index + 1]; ++i)
     {
       cells->InsertCellPoint(i);
@@ -446,9 +447,9 @@ int vtkJacobianContinuity::Measure(
     const int verdict = placeArrays.GetVerdict(index);
     if (verdict >= 0)
     {
-      ++this->Counts[int(place.Kind)][verdict];
+      ++this->Counts[int(surfacePoint.Kind)][verdict];
     }
-    if (place.Kind != PlaceKind::Edge)
+    if (surfacePoint.Kind != FeatureKind::Edge)
     {
       continue;
     }
@@ -457,11 +458,11 @@ int vtkJacobianContinuity::Measure(
     const auto raise = [jump](vtkDoubleArray* array, vtkIdType id) {
       array->SetValue(id, std::fmax(array->GetValue(id), jump));
     };
-    for (const vtkIdType cell : places.GetCells(place))
+    for (const vtkIdType cell : places.GetCells(surfacePoint))
     {
       raise(triangleJump, cell);
     }
-    for (const std::int32_t point : places.GetEdges().GetInteriorEdges()[place.Item].Points)
+    for (const std::int32_t point : places.GetEdges().GetInteriorEdges()[surfacePoint.Item].Points)
     {
       raise(vertexJump, point);
     }
@@ -483,7 +484,7 @@ int vtkJacobianContinuity::Measure(
   return 1;
 }
 
-vtkIdType vtkJacobianContinuity::GetNumberOfPlaces(int placeType, int verdict)
+vtkIdType vtkJacobianContinuity::GetNumberOfFeatures(int placeType, int verdict)
 {
   return placeType >= EDGE && placeType <= VERTEX && verdict >= DIFFERENTIABLE &&
       verdict <= UNDECIDED
@@ -511,7 +512,7 @@ void vtkJacobianContinuity::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Vertices: " << this->Vertices << "\n";
   os << indent << "NumberOfBoundaryEdges: " << this->NumberOfBoundaryEdges << "\n";
   os << indent << "NumberOfDifferentiableEdges: " << this->GetNumberOfDifferentiableEdges() << "\n";
-  os << indent << "NumberOfKinks: " << this->GetNumberOfKinks() << "\n";
+  os << indent << "NumberOfCreases: " << this->GetNumberOfCreases() << "\n";
   os << indent << "NumberOfUndecidedEdges: " << this->GetNumberOfUndecidedEdges() << "\n";
   os << indent << "LargestJump: " << this->LargestJump << "\n";
 }

@@ -19,9 +19,9 @@
  * What is measured so has limits, and the error bounds and verdicts are estimates, not proofs.
  * Nothing is known between the samples, nor of what happens within distances where the change of
  * the map's values is lost in their rounding. So a second line along which the map is not smooth,
- * too close to tell apart, may leave a place undecided, rarely make it a kink; a derivative that
+ * too close to tell apart, may leave a place undecided, rarely make it a crease; a derivative that
  * does have a limit but approaches it more slowly than the 0.1th power of the distance is taken for
- * a kink; and beside needles with an area below about 1e-4 of their neighbour's the Smooth system
+ * a crease; and beside needles with an area below about 1e-4 of their neighbor's the Smooth system
  * turns within a layer too thin to see. Far from the origin less can be told than near it.
  *
  * Output port 0 has a polyline through the sample points of each interior edge, from one of its
@@ -37,10 +37,10 @@
  * - `AngleJump` (degrees) and `StretchJump`: the angle between the images of the direction across
  * the line on the two sides, and the ratio of the longer to the shorter, less 1;
  * - `ConvergenceOrder`: the exponent with which the difference of the plain quotients on the two
- * sides shrinks with the step, 1 for a differentiable map, 0 for a kink; NaN where it is all
+ * sides shrinks with the step, 1 for a differentiable map, 0 for a crease; NaN where it is all
  * rounding;
- * - `Verdict` (int): see Verdicts. A kink is a jump larger than Resolution that stands out from its
- *   error bound; a map is called differentiable where the jump, its error bound added, is below
+ * - `Verdict` (int): see Verdicts. A crease is a jump larger than Resolution that stands out from
+ * its error bound; a map is called differentiable where the jump, its error bound added, is below
  *   Resolution;
  * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles; the same one twice
  * for places within a triangle; the second is -1 for boundary edges and vertices;
@@ -94,26 +94,26 @@ public:
   {
     NOTHING_TO_COMPARE = -1,
     DIFFERENTIABLE = 0,
-    KINK = 1,
+    CREASE = 1,
     UNDECIDED = 2
   };
 
   /// The kinds of places. All but the first are measured on request only. Those within triangles
   /// are where one of the coordinate systems is made of pieces; they follow from the triangulation
-  /// alone and can be asked for whatever the map is. The centre of a triangle is its centroid, or
+  /// alone and can be asked for whatever the map is. The center of a triangle is its centroid, or
   /// in the Contour system the point that CenterPoint says.
   enum PlaceTypes
   {
     EDGE = 0,          ///< interior edge
     BOUNDARY_EDGE = 1, ///< has one side only, and no jump
-    SPOKE = 2,         ///< from a triangle's centre to a corner
+    SPOKE = 2,         ///< from a triangle's center to a corner
     WING_SEGMENT = 3,  ///< from the middle of a center segment to an end of its edge
     CENTER_SEGMENT =
-      4, ///< from a triangle's centre to its foot on an edge; where the foot is outside
+      4, ///< from a triangle's center to its foot on an edge; where the foot is outside
          ///< the edge, neither this nor the edge's wing segments are measured
     STRIP_BORDER =
       5, ///< of the strip along an interior edge in which the Smooth chart is not affine
-    TRIANGLE_CENTER = 6, ///< a triangle's centre; asked for as Centroids
+    TRIANGLE_CENTER = 6, ///< a triangle's center; asked for as Centroids
     VERTEX = 7           ///< a point of the triangulation, on the boundary too
   };
 
@@ -136,7 +136,7 @@ public:
   enum DiscordantTrianglesModes
   {
     REFUSE = 0,
-    CARRY_BY_LINEAR = 1
+    USE_LINEAR = 1
   };
 
   ///@{
@@ -165,7 +165,7 @@ public:
   vtkGetMacro(CoordinateSystem, int);
   vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
   vtkGetMacro(CenterPoint, int);
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
+  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
   vtkGetMacro(DiscordantTriangles, int);
   vtkSetMacro(MaskInvalidTriangles, bool);
   vtkGetMacro(MaskInvalidTriangles, bool);
@@ -222,17 +222,17 @@ public:
   /// What the last execution found at the interior edges, in piece 0. See ReduceStatistics.
   vtkGetMacro(NumberOfBoundaryEdges, vtkIdType);
   vtkIdType GetNumberOfDifferentiableEdges() { return this->Counts[EDGE][DIFFERENTIABLE]; }
-  vtkIdType GetNumberOfKinks() { return this->Counts[EDGE][KINK]; }
+  vtkIdType GetNumberOfCreases() { return this->Counts[EDGE][CREASE]; }
   vtkIdType GetNumberOfUndecidedEdges() { return this->Counts[EDGE][UNDECIDED]; }
   vtkGetMacro(LargestJump, double);
   ///@}
 
   /// The number of places of a type (see PlaceTypes) about which the last execution concluded @a
-  /// verdict (DIFFERENTIABLE, KINK or UNDECIDED).
-  vtkIdType GetNumberOfPlaces(int placeType, int verdict);
+  /// verdict (DIFFERENTIABLE, CREASE or UNDECIDED).
+  vtkIdType GetNumberOfFeatures(int placeType, int verdict);
 
-  /// Makes the numbers that this filter counts (NumberOfKinks, LargestJump and
-  /// the like, GetNumberOfPlaces) the same in all processes that
+  /// Makes the numbers that this filter counts (NumberOfCreases, LargestJump and
+  /// the like, GetNumberOfFeatures) the same in all processes that
   /// have pieces of the data: counts become sums, LargestJump the largest; all is measured by the
   /// process that has piece 0. Each process of @a controller (null: the global controller; if there
   /// is none, nothing happens) must call this after its update, also one that had nothing to update

@@ -3,9 +3,9 @@
 
 #include "vtkResampleThroughHomeomorphism.h"
 
-#include "FilterSupport.h"
-#include "ImageSampling.h"
-#include "ProcessStatistics.h"
+#include "Pipeline/FilterSupport.h"
+#include "Pipeline/ImageSampling.h"
+#include "Pipeline/ProcessStatistics.h"
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkCallbackCommand.h"
@@ -46,7 +46,7 @@ vtkStandardNewMacro(vtkResampleThroughHomeomorphism);
 namespace
 {
 
-constexpr const char* maskName = "ValidPointMask";
+constexpr const char* maskName = "vtkValidPointMask";
 
 /// Passes the marks of what is hidden or belongs to another piece.
 void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
@@ -112,7 +112,7 @@ class Offenders
 public:
   void Add(vtkIdType id)
   {
-    if (this->Count++ < static_cast<vtkIdType>(MeshProblem::MaximumIds))
+    if (this->Count++ < static_cast<vtkIdType>(MeshDiagnostic::MaximumIds))
     {
       this->FirstIds.push_back(id);
     }
@@ -441,7 +441,7 @@ vtkDataSet* vtkResampleThroughHomeomorphism::Map(vtkDataSet* data, bool inverse,
 {
   this->Mapping->SetDataObject(data);
   this->Mapping->SetInverse(inverse);
-  this->Mapping->SetCarryVectors(carryVectors);
+  this->Mapping->SetTransformActiveAttributes(carryVectors);
   this->Mapping->Update();
   if (this->Mapping->GetErrorCode() != vtkErrorCode::NoError)
   {
@@ -534,7 +534,7 @@ int vtkResampleThroughHomeomorphism::Resample(
 
   auto* image = vtkImageData::SafeDownCast(data);
   if (image && ImageSampling::CanSample(image) &&
-    !(this->CarryVectors && HasVectors(image->GetPointData())))
+    !(this->TransformActiveAttributes && HasVectors(image->GetPointData())))
   {
     return this->ResampleImage(source, target, image, grid, output);
   }
@@ -608,7 +608,7 @@ int vtkResampleThroughHomeomorphism::Resample(
   });
   this->UpdateProgress(0.7);
   vtkSmartPointer<vtkDataArray> hasValues = found->GetPointData()->GetArray(maskName);
-  if (this->CarryVectors && HasVectors(found->GetPointData()))
+  if (this->TransformActiveAttributes && HasVectors(found->GetPointData()))
   {
     vtkNew<vtkPolyData> values;
     values->ShallowCopy(found);
@@ -680,10 +680,10 @@ int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyD
   mask->SetNumberOfTuples(count);
   mask->FillValue(0);
   const ImageSampling sampling(image, output->GetPointData(), count);
-  const Side from = this->Inverse ? Side::Source : Side::Target;
+  const Domain from = this->Inverse ? Domain::Source : Domain::Target;
   auto* pointSet = vtkPointSet::SafeDownCast(output);
   vtkPoints* points = pointSet ? pointSet->GetPoints() : nullptr;
-  const double reach = map->GetReach(
+  const double tolerance = map->GetAbsoluteTolerance(
     from, this->Tolerance, PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
   vtkUnsignedCharArray* ghosts = grid ? GhostsOf(grid->GetPointData(), count) : nullptr;
   static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
@@ -694,7 +694,7 @@ int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyD
     {
       block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
       ReadPoints(output, first, block);
-      map->LocateBlock(from, block, reach, hint);
+      map->LocateBlock(from, block, tolerance, hint);
       map->MapBlock(from, block);
       bool isInside[PointBlock::Capacity];
       for (int i = 0; i < block.Count; ++i)
@@ -740,7 +740,7 @@ void vtkResampleThroughHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SamplingBounds: " << this->SamplingBounds[0] << " " << this->SamplingBounds[1]
      << " " << this->SamplingBounds[2] << " " << this->SamplingBounds[3] << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "CarryVectors: " << this->CarryVectors << "\n";
+  os << indent << "TransformActiveAttributes: " << this->TransformActiveAttributes << "\n";
   os << indent << "BlankOutside: " << this->BlankOutside << "\n";
   os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
 }

@@ -18,7 +18,7 @@
  * xy plane.
  *
  * The output is the grid with the data's arrays as point data (cell data as the value of the cell
- * that the point falls into), and with the point array `ValidPointMask` (unsigned char): 1 where
+ * that the point falls into), and with the point array `vtkValidPointMask` (unsigned char): 1 where
  * there are values, 0 outside the target's domain and where the data has none. There,
  * floating-point arrays are NaN, others 0, and points and the cells that use them are blanked
  * (vtkGhostType); see BlankOutside. The grid's own arrays are not passed, except vtkGhostType.
@@ -27,7 +27,7 @@
  * image without active vectors, normals or tensors is resampled many times faster than other data.
  *
  * Active vectors, normals and tensors are carried by the Jacobian, as
- * vtkDifferentiableHomeomorphism does; see CarryVectors.
+ * vtkDifferentiableHomeomorphism does; see TransformActiveAttributes.
  *
  * The meshes and the data are asked for whole, the grid in the pieces that the output is asked for
  * in; a grid that is made upstream from what one of the others is made from is whole in piece 0.
@@ -78,7 +78,7 @@ public:
   enum DiscordantTrianglesModes
   {
     REFUSE = 0,
-    CARRY_BY_LINEAR = 1
+    USE_LINEAR = 1
   };
 
   ///@{
@@ -100,7 +100,7 @@ public:
   vtkGetMacro(CoordinateSystem, int);
   vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
   vtkGetMacro(CenterPoint, int);
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
+  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
   vtkGetMacro(DiscordantTriangles, int);
   vtkSetMacro(MaskInvalidTriangles, bool);
   vtkGetMacro(MaskInvalidTriangles, bool);
@@ -138,9 +138,9 @@ public:
   ///@{
   /// Whether active vectors, normals and tensors are carried by the Jacobian (default on) or keep
   /// their components.
-  vtkSetMacro(CarryVectors, bool);
-  vtkGetMacro(CarryVectors, bool);
-  vtkBooleanMacro(CarryVectors, bool);
+  vtkSetMacro(TransformActiveAttributes, bool);
+  vtkGetMacro(TransformActiveAttributes, bool);
+  vtkBooleanMacro(TransformActiveAttributes, bool);
   ///@}
 
   ///@{
@@ -190,7 +190,7 @@ protected:
   int SamplingDimensions[2] = { 256, 256 };
   double SamplingBounds[4] = { 1.0, -1.0, 1.0, -1.0 };
   double Tolerance = 0.0;
-  bool CarryVectors = true;
+  bool TransformActiveAttributes = true;
   bool BlankOutside = true;
   vtkIdType NumberOfOutsidePoints = 0;
 

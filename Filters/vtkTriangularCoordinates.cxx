@@ -3,9 +3,9 @@
 
 #include "vtkTriangularCoordinates.h"
 
-#include "CoordinateLines.h"
-#include "FilterSupport.h"
-#include "ProcessStatistics.h"
+#include "Pipeline/CoordinateLines.h"
+#include "Pipeline/FilterSupport.h"
+#include "Pipeline/ProcessStatistics.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -58,7 +58,7 @@ public:
     , Edge(NewArray<vtkIntArray>("EdgeLabel", points))
     , EdgeParameter(NewArray<vtkDoubleArray>("EdgeParameter", points))
     , ContourParameter(NewArray<vtkDoubleArray>("ContourParameter", points))
-    , Mask(NewArray<vtkUnsignedCharArray>("ValidPointMask", points))
+    , Mask(NewArray<vtkUnsignedCharArray>("vtkValidPointMask", points))
   {
     this->Triangle->FillValue(-1);
     this->Edge->FillValue(0);
@@ -139,7 +139,7 @@ vtkIdType DescribeTriangles(const Homeomorphism& map, vtkPolyData* triangulation
   bound->FillValue(vtkMath::Nan());
 
   const Triangulation& topology = map.GetPair().GetTriangulation();
-  const Embedding& embedding = map.GetPair().GetEmbedding(Side::Source);
+  const MeshGeometry& geometry = map.GetPair().GetGeometry(Domain::Source);
   vtkSMPTools::For(0, topology.GetNumberOfTriangles(), [&](vtkIdType begin, vtkIdType end) {
     for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
     {
@@ -148,13 +148,12 @@ vtkIdType DescribeTriangles(const Homeomorphism& map, vtkPolyData* triangulation
         continue;
       }
       const vtkIdType cell = topology.GetCellId(t);
-      const EdgeViews views = embedding.GetViews(topology.GetCorners(t));
-      concordant->SetValue(cell, embedding.IsConcordant(topology.GetCorners(t)) ? 1 : 0);
+      const EdgeViews views = geometry.GetViews(topology.GetCorners(t));
+      concordant->SetValue(cell, geometry.IsConcordant(topology.GetCorners(t)) ? 1 : 0);
       margin->SetValue(cell, ConcordanceMargin(views));
-      used->SetValue(cell, static_cast<int>(map.GetCharts(Side::Source).GetSystemOf(t)));
+      used->SetValue(cell, static_cast<int>(map.GetCharts(Domain::Source).GetSystemOf(t)));
       angle->SetValue(cell, SmallestAngle(views));
-      const SmoothChart smooth(
-        embedding.GetShape(t), views, UnfoldNeighbors(topology, embedding, t));
+      const SmoothChart smooth(geometry.GetShape(t), views, UnfoldNeighbors(topology, geometry, t));
       bound->SetValue(cell, smooth.DeterminantBound());
       for (int k = 0; k < 3; ++k)
       {
@@ -297,7 +296,7 @@ int vtkTriangularCoordinates::AttachCoordinates(
     const vtkIdType count = input->GetNumberOfPoints();
     PointCoordinates coordinates(count);
     auto* points = vtkPointSet::SafeDownCast(input);
-    const double reach = map->GetReach(Side::Source, this->Tolerance,
+    const double tolerance = map->GetAbsoluteTolerance(Domain::Source, this->Tolerance,
       PrecisionOfType(
         points && points->GetPoints() ? points->GetPoints()->GetDataType() : VTK_DOUBLE));
     RunInBlocks(this, count, 0.1, 1.0, [&](vtkIdType begin, vtkIdType end) {
@@ -306,12 +305,12 @@ int vtkTriangularCoordinates::AttachCoordinates(
       {
         double point[3];
         input->GetPoint(i, point);
-        const Location place = map->Locate(Side::Source, point, reach, hint);
-        hint = place.Triangle;
-        if (place.Triangle >= 0)
+        const SurfacePoint surfacePoint = map->Locate(Domain::Source, point, tolerance, hint);
+        hint = surfacePoint.Triangle;
+        if (surfacePoint.Triangle >= 0)
         {
-          coordinates.Set(i, map->GetPair().GetTriangulation().GetCellId(place.Triangle),
-            map->GetCoordinates(Side::Source, place));
+          coordinates.Set(i, map->GetPair().GetTriangulation().GetCellId(surfacePoint.Triangle),
+            map->GetCoordinates(Domain::Source, surfacePoint));
         }
       }
     });

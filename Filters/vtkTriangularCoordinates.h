@@ -6,7 +6,7 @@
  *
  * Given a triangulation (input port 0) and any data set or tree of data sets (input port 1; if
  * there is none, the triangulation itself), vtkTriangularCoordinates finds the triangle of each
- * point and the point's triangular coordinates in it. *Contours* run from the triangle's centre to
+ * point and the point's triangular coordinates in it. *Contours* run from the triangle's center to
  * its edges; e tells the edge at which the point's contour ends, p where on the edge it ends, and c
  * how far along the contour the point is. Two points of two isomorphic triangulations that have the
  * same triangle and the same coordinates (the triangle's points being listed in the same order)
@@ -18,8 +18,8 @@
  * - `EdgeLabel` (int): e, 1 to 3, 0 outside. Edge k is opposite the k-th point of the triangle;
  * - `EdgeParameter` (double): p in [0, 1], the proportion of the edge's length from the next point
  * in cyclic order towards the one after; NaN outside;
- * - `ContourParameter` (double): c in [0, 1], 0 at the centre, 1 on the edge; NaN outside;
- * - `ValidPointMask` (unsigned char): 1 inside, 0 outside.
+ * - `ContourParameter` (double): c in [0, 1], 0 at the center, 1 on the edge; NaN outside;
+ * - `vtkValidPointMask` (unsigned char): 1 inside, 0 outside.
  *
  * Output port 1 shows the coordinates as polylines: the guides of the construction (center and wing
  * segments) and grid lines (contours at evenly spaced p, rings at evenly spaced c) of every
@@ -39,7 +39,7 @@
  * - `StripWidth` (double, 3 components): tau of the strip along each edge outside which the Smooth
  *   chart is affine, in (0, 1]; 0 on the boundary;
  * - `DeterminantBound` (double): a lower bound, in closed form, of the Smooth chart's determinant
- *   over that of the affine chart. Small beside a far smaller neighbour.
+ *   over that of the affine chart. Small beside a far smaller neighbor.
  *
  * If there is no data on port 1, output 0 has these cell arrays too. If the
  * outputs are asked for in pieces, the triangulation is asked for whole, and what is made from it
@@ -94,9 +94,8 @@ public:
   /// What becomes of discordant triangles in the Contour system.
   enum DiscordantTrianglesModes
   {
-    REFUSE = 0, ///< an error that names them
-    CARRY_BY_LINEAR =
-      1 ///< the Linear system stands in for them (`UsedCoordinateSystem` tells where)
+    REFUSE = 0,    ///< an error that names them
+    USE_LINEAR = 1 ///< the Linear system stands in for them (`UsedCoordinateSystem` tells where)
   };
 
   /// What a line of output 1 is.
@@ -130,8 +129,8 @@ public:
 
   ///@{
   /// In the Contour system, whether discordant triangles are an error (REFUSE, default) or have the
-  /// coordinates of the Linear system (CARRY_BY_LINEAR).
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, CARRY_BY_LINEAR);
+  /// coordinates of the Linear system (USE_LINEAR).
+  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
   vtkGetMacro(DiscordantTriangles, int);
   ///@}
 

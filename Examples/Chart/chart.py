@@ -17,7 +17,7 @@ CELLS = 6
 
 
 def chart():
-    """Rings and squares in pale colours, row by row from the top."""
+    """Rings and squares in pale colors, row by row from the top."""
     pixels = bytearray()
     for row in range(SIZE):
         y = SIZE - 1 - row

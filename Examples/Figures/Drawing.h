@@ -57,7 +57,7 @@ struct Lettering
   double Size = 16.0;
   Color Ink = { 0.13, 0.14, 0.17 };
   Alignment Horizontal = Alignment::Center;
-  /// Degrees, anticlockwise; markup is not understood in turned text.
+  /// Degrees, counterclockwise; markup is not understood in turned text.
   double Orientation = 0.0;
   bool Halo = true;
 };
@@ -68,7 +68,7 @@ class Drawing;
 class Panel
 {
 public:
-  /// Shows @a world in @a place: the same scale in x and y, centred, or as it takes to fill the
+  /// Shows @a world in @a place: the same scale in x and y, centerd, or as it takes to fill the
   /// place if it is @a stretched.
   Panel(Drawing& drawing, const Rectangle& place, const Rectangle& world, bool stretched = false);
 
@@ -96,7 +96,7 @@ public:
   /// Two short lines that make a square with the directions from @a corner to the other two points.
   void RightAngle(
     const Point& corner, const Point& first, const Point& second, double size, const Pen& pen);
-  /// A colour image, at its own origin and spacing.
+  /// A color image, at its own origin and spacing.
   void Image(vtkImageData* image);
   void Frame(const Pen& pen);
   /// Text beside a point, @a offset in pixels. Its middle line is at the point's height. Between

@@ -170,7 +170,7 @@ void Draw(const std::string& folder)
   {
     panel.StrokeCircle({ circle.X, 0.0 }, circle.Radius, boundary);
     const double rise = 0.4 * circle.Radius;
-    panel.Label({ circle.X, rise }, "centre (" + circle.Center + ", 0)", small);
+    panel.Label({ circle.X, rise }, "center (" + circle.Center + ", 0)", small);
     panel.Label({ circle.X, -rise }, "radius " + circle.RadiusText, small);
     panel.Dot({ circle.X, 0.0 }, 3.0, ink);
   }

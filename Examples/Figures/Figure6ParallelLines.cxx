@@ -21,7 +21,7 @@ const Color ink{ 0.13, 0.14, 0.17 };
 const Color edgeColor{ 0.60, 0.63, 0.69 };
 const Color fillColor{ 0.965, 0.97, 0.98 };
 
-/// The lines' colours, from the first to the last.
+/// The lines' colors, from the first to the last.
 Color ColorOf(double share)
 {
   const Color first{ 0.10, 0.30, 0.62 };

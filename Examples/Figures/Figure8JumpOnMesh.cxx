@@ -11,7 +11,7 @@
 
 #include "Drawing.h"
 #include "Meshes.h"
-#include "XmorphMesh.h"
+#include "Program/XmorphMesh.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -40,12 +40,12 @@ namespace
 const Color ink{ 0.13, 0.14, 0.17 };
 const Color meshColor{ 0.25, 0.35, 0.55, 0.75 };
 
-// --- Colours
+// --- Colors
 // --------------------------------------------------------------------------------------
 
 constexpr double lowestPower = -12.0;
 
-/// From pale to dark: between neighbours linear in CIELAB, each placed where its lightness says.
+/// From pale to dark: between neighbors linear in CIELAB, each placed where its lightness says.
 Color ColorOf(double share)
 {
   static const std::array<std::array<double, 3>, 6> colors{ { { 0.990, 0.975, 0.860 },
@@ -76,7 +76,7 @@ Color ColorOf(double share)
 
 Color ColorOfJump(double jump)
 {
-  // Not a number where a triangle has no neighbour.
+  // Not a number where a triangle has no neighbor.
   return jump > 0.0 ? ColorOf(1.0 - std::log10(jump) / lowestPower) : ColorOf(0.0);
 }
 
@@ -330,7 +330,7 @@ void DrawJumps(Panel& panel, vtkJacobianContinuity* continuity)
   {
     panel.Fill(GetTriangle(triangulation, triangle), ColorOfJump(ofTriangles->GetTuple1(triangle)));
   }
-  // Coloured edges between gray ones, thinner where there are many.
+  // Colored edges between gray ones, thinner where there are many.
   const double width = triangulation->GetNumberOfCells() > 200 ? 1.0 : 2.0;
   panel.StrokeEdges(triangulation, { { 0.62, 0.60, 0.62 }, 1.7 * width });
   vtkPolyData* const edges = continuity->GetOutput(0);
@@ -376,7 +376,7 @@ void Draw(const std::string& fileName, const std::array<vtkSmartPointer<vtkPolyD
     continuity->SetSourceData(meshes[0]);
     continuity->SetTargetData(meshes[1]);
     continuity->SetCoordinateSystem(system);
-    continuity->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
+    continuity->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
     continuity->Update();
     vtkDataArray* const jumps = continuity->GetOutput(0)->GetCellData()->GetArray("JacobianJump");
     if (!jumps || jumps->GetNumberOfTuples() == 0)

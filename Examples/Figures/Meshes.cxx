@@ -83,7 +83,7 @@ vtkSmartPointer<vtkTriangularCoordinates> MakeCoordinates(
   coordinates->SetInputData(mesh);
   coordinates->SetCoordinateSystem(coordinateSystem);
   coordinates->SetCenterPoint(centerPoint);
-  coordinates->SetDiscordantTriangles(vtkTriangularCoordinates::CARRY_BY_LINEAR);
+  coordinates->SetDiscordantTriangles(vtkTriangularCoordinates::USE_LINEAR);
   coordinates->SetNumberOfContours(contours);
   coordinates->SetNumberOfRings(rings);
   coordinates->SetLineResolution(64);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where is the map between two triangulations differentiable? Three answers side by side, for the three
 coordinate systems: a grid that is carried from one triangulation onto another, over the edges' images in the
-colours of how much the map's Jacobian jumps there.
+colors of how much the map's Jacobian jumps there.
 
 In ParaView: load the plugin, then File > Run Script... In a shell, with the plugin's folder in PV_PLUGIN_PATH
 or the plugin's file as the second argument:
@@ -71,7 +71,7 @@ def mesh_triangles():
 
 
 def write_grid(path, lines=20, pieces=1000):
-    """Lines in both directions, of so many pieces that bends look like bends, and kinks like kinks."""
+    """Lines in both directions, of so many pieces that bends look like bends, and creases like creases."""
     points = []
     for k in range(lines + 1):
         points += [(k / lines, i / pieces) for i in range(pieces + 1)]
@@ -84,7 +84,7 @@ def color_by_jump(display):
     ColorBy(display, ("CELLS", "JacobianJump"))
     colors = GetColorTransferFunction("JacobianJump")
     colors.AutomaticRescaleRangeMode = "Never"
-    # On a logarithmic scale: rounding errors are at its one end, kinks at the other.
+    # On a logarithmic scale: rounding errors are at its one end, creases at the other.
     colors.RGBPoints = [1e-9, 0.10, 0.35, 0.75,
                         1e-6, 0.45, 0.75, 0.85,
                         1e-3, 0.98, 0.80, 0.35,

@@ -66,7 +66,7 @@ def compare(folder):
     os.chdir(folder)
     points, linear, smooth, back = (read(name + ".csv") for name in ("points", "linear", "smooth", "back"))
     scattered = points["kind"] == 1
-    assert (linear["ValidPointMask"][scattered] == 1).all()
+    assert (linear["vtkValidPointMask"][scattered] == 1).all()
     difference = (places(smooth) - places(linear))[scattered]
     proj, refined = (numpy.loadtxt(name, usecols=(0, 1)) for name in ("proj.txt", "proj-refined.txt"))
     rows = [
@@ -76,7 +76,7 @@ def compare(folder):
         ("Smooth there and back", largest((places(back) - places(points))[scattered])),
         ("PROJ with the refined file and Smooth", largest(refined - places(smooth)[scattered])),
     ]
-    print(f"\nAt {scattered.sum()} points, metres:")
+    print(f"\nAt {scattered.sum()} points, meters:")
     for name, value in rows:
         print(f"  {name:40s} {value:.2g}")
 
@@ -85,7 +85,7 @@ def compare(folder):
     from matplotlib import pyplot
 
     def parts_per_million(table, chosen):
-        valid = table["ValidPointMask"][chosen] == 1
+        valid = table["vtkValidPointMask"][chosen] == 1
         return numpy.where(valid, 1e6 * (table["JacobianDeterminant"][chosen] - middle), numpy.nan)
 
     grid, line = points["kind"] == 0, points["kind"] == 2

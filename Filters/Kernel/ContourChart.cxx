@@ -3,8 +3,8 @@
 
 #include "ContourChart.h"
 
+#include "Kernel/Simd/Vectorize.h"
 #include "RootFinding.h"
-#include "Vectorize.h"
 
 #include <algorithm>
 #include <limits>
@@ -78,9 +78,9 @@ HOMEOMORPHISM_ALWAYS_INLINE double Hypotenuse(double a, double b)
 }
 
 /// What of a contour depends on its number s alone, in one half of an edge. The half is seen in the
-/// frame with the foot of the center segment at the origin, the centre at (0, h) and the corner at
+/// frame with the foot of the center segment at the origin, the center at (0, h) and the corner at
 /// (b, 0); its contours are numbered by s from 0, the center segment, to 1, the segment from the
-/// centre to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is
+/// center to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is
 /// cheap and finds s.
 struct ArcOfHalf
 {
@@ -145,7 +145,7 @@ struct ContourOfHalfDerivative : ArcOfHalfDerivative
 
 /// The number s of the contour that meets the edge at E(s) = b @a proportion, for some at once.
 template <int Width>
-struct EndingEquation : RootLanes<Width, true>
+struct EndingEquation : RootBatch<Width, true>
 {
   HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double, double proportion)
   {
@@ -173,7 +173,7 @@ struct EndingEquation : RootLanes<Width, true>
 /// [0, 1 - 2 y / h], of E(s) - y^2 / (r + sqrt(r^2 - y^2)) - x. This is the smallest root of the
 /// publication's cubic; the cubic's larger root belongs to the other half of the circle.
 template <int Width>
-struct ThroughEquation : RootLanes<Width, true>
+struct ThroughEquation : RootBatch<Width, true>
 {
   HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double h, double b, double x, double y)
   {
@@ -202,7 +202,7 @@ struct ThroughEquation : RootLanes<Width, true>
 };
 
 /// Equations side by side; what is beyond the last of them is filled up to whole vectors.
-struct ThroughLanes
+struct ThroughBatch
 {
   static constexpr int Capacity = 256;
   double H[Capacity];
@@ -212,7 +212,7 @@ struct ThroughLanes
   double S[Capacity];
 };
 
-struct EndingLanes
+struct EndingBatch
 {
   static constexpr int Capacity = 256;
   double Flatness[Capacity];
@@ -224,35 +224,35 @@ struct EndingLanes
 constexpr int GroupWidth = 16;
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void SolveThrough(ThroughLanes& lanes, int count)
+void SolveThrough(ThroughBatch& batch, int count)
 {
   for (int first = 0; first < count; first += GroupWidth)
   {
     for (int i = count; i < first + GroupWidth; ++i)
     {
-      lanes.H[i] = lanes.B[i] = 1.0;
-      lanes.X[i] = lanes.Y[i] = 0.0;
+      batch.H[i] = batch.B[i] = 1.0;
+      batch.X[i] = batch.Y[i] = 0.0;
     }
     ThroughEquation<GroupWidth> equation;
-    SolveLanes<GroupWidth>(
-      equation, lanes.H + first, lanes.B + first, lanes.X + first, lanes.Y + first);
-    std::copy_n(equation.Root, GroupWidth, lanes.S + first);
+    SolveBatch<GroupWidth>(
+      equation, batch.H + first, batch.B + first, batch.X + first, batch.Y + first);
+    std::copy_n(equation.Root, GroupWidth, batch.S + first);
   }
 }
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void SolveEnding(EndingLanes& lanes, int count)
+void SolveEnding(EndingBatch& batch, int count)
 {
   for (int first = 0; first < count; first += GroupWidth)
   {
     for (int i = count; i < first + GroupWidth; ++i)
     {
-      lanes.Flatness[i] = 1.0;
-      lanes.Proportion[i] = 0.0;
+      batch.Flatness[i] = 1.0;
+      batch.Proportion[i] = 0.0;
     }
     EndingEquation<GroupWidth> equation;
-    SolveLanes<GroupWidth>(equation, lanes.Flatness + first, lanes.Proportion + first);
-    std::copy_n(equation.Root, GroupWidth, lanes.S + first);
+    SolveBatch<GroupWidth>(equation, batch.Flatness + first, batch.Proportion + first);
+    std::copy_n(equation.Root, GroupWidth, batch.S + first);
   }
 }
 
@@ -265,14 +265,14 @@ double Flatness(double h, double b)
 double ContourEndingAt(double flatness, double proportion)
 {
   EndingEquation<1> equation;
-  SolveLanes<1>(equation, &flatness, &proportion);
+  SolveBatch<1>(equation, &flatness, &proportion);
   return equation.Root[0];
 }
 
 double ContourThrough(double h, double b, double x, double y)
 {
   ThroughEquation<1> equation;
-  SolveLanes<1>(equation, &h, &b, &x, &y);
+  SolveBatch<1>(equation, &h, &b, &x, &y);
   return equation.Root[0];
 }
 
@@ -510,9 +510,9 @@ Vector2 ContourChart::ToPoint(const Reference& coordinates) const
 void ContourChart::MapPoints(
   const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count)
 {
-  constexpr int capacity = ThroughLanes::Capacity;
+  constexpr int capacity = ThroughBatch::Capacity;
   Search searches[capacity];
-  ThroughLanes through;
+  ThroughBatch through;
   int searching = 0;
   for (int i = 0; i < count; ++i)
   {
@@ -529,7 +529,7 @@ void ContourChart::MapPoints(
   SolveThrough(through, searching);
   Reference coordinates[capacity];
   Ending endings[capacity];
-  EndingLanes ends;
+  EndingBatch ends;
   int found = 0;
   for (int i = 0; i < count; ++i)
   {
@@ -602,13 +602,13 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
   return { toTriangle(byC), rate * toTriangle(bySOverC) };
 }
 
-Vector2 ContourChart::Push(const Reference& coordinates, const Direction& direction) const
+Vector2 ContourChart::Pushforward(const Reference& coordinates, const Direction& direction) const
 {
   const Matrix2 columns = this->Columns(coordinates);
   return this->Unit * (direction.x * columns.ImageOfX + direction.y * columns.ImageOfY);
 }
 
-ContourChart::Direction ContourChart::Pull(
+ContourChart::Direction ContourChart::Pullback(
   const Reference& coordinates, const Vector2& vectorInFrame) const
 {
   const Vector2 vector = (1.0 / this->Unit) * vectorInFrame;

@@ -5,7 +5,7 @@
 /// The Contour coordinate system: the published construction ("Constructing Differentiable
 /// Homeomorphisms between Isomorphic Triangulations").
 ///
-/// From the triangle's centre G the three *center segments* drop perpendicularly to the edges. Six
+/// From the triangle's center G the three *center segments* drop perpendicularly to the edges. Six
 /// *wing segments* join each corner to the midpoints of the two center segments beside it. A
 /// *contour* starts at G as a straight segment; where it meets a wing segment it turns tangentially
 /// into a circular arc, which meets the edge at a right angle. The triangle is covered once by its
@@ -28,20 +28,20 @@ enum class CenterPoint
 {
   /// The publication's choice. Discordant triangles exist.
   Centroid = 0,
-  /// The centre of the inscribed circle: its feet are the circle's points of tangency, so every
+  /// The center of the inscribed circle: its feet are the circle's points of tangency, so every
   /// triangle is concordant.
   Incenter = 1
 };
 
 /// The chart of the Contour system. Its reference is (e, p, c) itself. The triangle should be
-/// concordant with respect to the centre; if a foot lies outside its edge, the half edge on that
+/// concordant with respect to the center; if a foot lies outside its edge, the half edge on that
 /// side is taken as shrunk to (almost) nothing.
 class ContourChart
 {
 public:
   using Reference = TriangularCoordinates;
   /// A tangent vector of the reference: x = change of c, y = c times change of p, which stays
-  /// finite at the centre, where c = 0 and p has no meaning.
+  /// finite at the center, where c = 0 and p has no meaning.
   using Direction = Vector2;
 
   explicit ContourChart(
@@ -50,10 +50,10 @@ public:
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& coordinates) const;
 
-  /// At the centre, where the map is not differentiable, the limits are those along the contour
+  /// At the center, where the map is not differentiable, the limits are those along the contour
   /// that the reference names.
-  Direction Pull(const Reference& coordinates, const Vector2& vector) const;
-  Vector2 Push(const Reference& coordinates, const Direction& direction) const;
+  Direction Pullback(const Reference& coordinates, const Vector2& vector) const;
+  Vector2 Pushforward(const Reference& coordinates, const Direction& direction) const;
 
   TriangularCoordinates ToCoordinates(const Reference& coordinates) const { return coordinates; }
   Reference FromCoordinates(const TriangularCoordinates& coordinates) const { return coordinates; }
@@ -71,7 +71,7 @@ public:
   double ContourLength(int edge, double p) const;
   double ContourLengthDerivative(int edge, double p) const;
 
-  /// The centre from which the contours start.
+  /// The center from which the contours start.
   Vector2 Center() const;
   /// The foot of the center segment on an edge (1 to 3).
   Vector2 Foot(int edge) const;
@@ -104,7 +104,7 @@ private:
   /// equation to find unless the point is on the contour's straight piece.
   struct Search
   {
-    int EdgeLabel; ///< 0 for the centre
+    int EdgeLabel; ///< 0 for the center
     double Side;
     double Height; ///< h
     double Length; ///< b

@@ -12,9 +12,9 @@
 ///     using Direction = ...;   // a tangent vector of the reference
 ///     Reference ToReference(const Vector2& point) const;
 ///     Vector2 ToPoint(const Reference& reference) const;
-///     Direction Pull(const Reference& reference, const Vector2& vector) const;   // D ToReference
-///     Vector2 Push(const Reference& reference, const Direction& direction) const; // D ToPoint
-///     TriangularCoordinates ToCoordinates(const Reference& reference) const;
+///     Direction Pullback(const Reference& reference, const Vector2& vector) const;   // D
+///     ToReference Vector2 Pushforward(const Reference& reference, const Direction& direction)
+///     const; // D ToPoint TriangularCoordinates ToCoordinates(const Reference& reference) const;
 ///     Reference FromCoordinates(const TriangularCoordinates& coordinates) const;
 ///
 /// Points and vectors are in the triangle's own frame (TriangleShape). A point outside the closed
@@ -49,7 +49,7 @@ struct TriangularCoordinates
   /// p in [0, 1]: where on the edge it ends, as a proportion of the edge's length, counted from the
   /// next corner in cyclic order towards the one after.
   double EdgeParameter = 0.5;
-  /// c in [0, 1]: how far along the contour the point is, 0 at the centre, 1 on the edge.
+  /// c in [0, 1]: how far along the contour the point is, 0 at the center, 1 on the edge.
   double ContourParameter = 0.0;
 };
 
@@ -74,8 +74,8 @@ template <typename Chart>
 Matrix2 MapDerivative(
   const Chart& from, const Chart& to, const typename Chart::Reference& reference)
 {
-  return { to.Push(reference, from.Pull(reference, { 1.0, 0.0 })),
-    to.Push(reference, from.Pull(reference, { 0.0, 1.0 })) };
+  return { to.Pushforward(reference, from.Pullback(reference, { 1.0, 0.0 })),
+    to.Pushforward(reference, from.Pullback(reference, { 0.0, 1.0 })) };
 }
 
 } // namespace homeomorphism

@@ -21,7 +21,8 @@
 namespace homeomorphism
 {
 
-/// Sign of the area of a, b, c: 1 if anticlockwise, -1 if clockwise, 0 if the points are on a line.
+/// Sign of the area of a, b, c: 1 if counterclockwise, -1 if clockwise, 0 if the points are on a
+/// line.
 int ExactOrientation(const Vector2& a, const Vector2& b, const Vector2& c);
 
 /// The same, decided in a few operations unless the points are almost on a line.

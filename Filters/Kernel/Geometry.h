@@ -7,7 +7,7 @@
 #ifndef homeomorphism_Geometry_h
 #define homeomorphism_Geometry_h
 
-#include "Vectorize.h"
+#include "Kernel/Simd/Vectorize.h"
 
 #include <array>
 #include <cmath>
@@ -106,7 +106,7 @@ using Barycentric = std::array<double, 3>;
 /// A non-degenerate triangle in its own frame: the longest edge lies on the x axis, from the corner
 /// after the apex, at the origin, to the corner before the apex, at (Base, 0); the apex is at
 /// (ApexX, Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 therefore follow
-/// each other anticlockwise.
+/// each other counterclockwise.
 ///
 /// In this frame a needle is as harmless as an equilateral triangle: converting a point to
 /// barycentric coordinates and back moves it by a few ulp of Base, never by ulp times aspect ratio.

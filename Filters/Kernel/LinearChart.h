@@ -29,11 +29,11 @@ public:
   Reference ToReference(const Vector2& point) const { return this->Shape.ToBarycentric(point); }
   Vector2 ToPoint(const Reference& l) const { return this->Shape.FromBarycentric(l); }
 
-  Direction Pull(const Reference&, const Vector2& vector) const
+  Direction Pullback(const Reference&, const Vector2& vector) const
   {
     return this->Shape.VectorToBarycentric(vector);
   }
-  Vector2 Push(const Reference&, const Direction& direction) const
+  Vector2 Pushforward(const Reference&, const Direction& direction) const
   {
     return this->Shape.FromBarycentric(direction);
   }

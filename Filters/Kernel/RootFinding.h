@@ -7,7 +7,7 @@
 #ifndef homeomorphism_RootFinding_h
 #define homeomorphism_RootFinding_h
 
-#include "Vectorize.h"
+#include "Kernel/Simd/Vectorize.h"
 
 #include <cmath>
 #include <limits>
@@ -24,9 +24,9 @@ namespace homeomorphism
 /// With @a AtEnds, a step that leads out leads to the end first, if that was not tried yet: for
 /// functions whose root is often there.
 ///
-/// Nothing branches, so that the loop over the lanes can become vector instructions.
+/// Nothing branches, so that the loop over the batch can become vector instructions.
 template <int Width, bool AtEnds>
-class RootLanes
+class RootBatch
 {
 public:
   double Root[Width];
@@ -121,20 +121,20 @@ private:
   double Done[Width];
 };
 
-/// Finds the roots of some equations, a RootLanes with functions Set and Evaluate, which get a lane
+/// Finds the roots of some equations, a RootBatch with functions Set and Evaluate, which get a lane
 /// and what
 /// @a numbers, arrays of a value for each lane, have there.
 template <int Width, typename Equation, typename... Numbers>
-HOMEOMORPHISM_ALWAYS_INLINE void SolveLanes(Equation& equation, const Numbers*... numbers)
+HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*... numbers)
 {
-  HOMEOMORPHISM_LANES
+  HOMEOMORPHISM_SIMD
   for (int lane = 0; lane < Width; ++lane)
   {
     equation.Set(lane, numbers[lane]...);
   }
   for (int step = 0; !equation.IsDone(step); ++step)
   {
-    HOMEOMORPHISM_LANES
+    HOMEOMORPHISM_SIMD
     for (int lane = 0; lane < Width; ++lane)
     {
       equation.Evaluate(lane, numbers[lane]...);

@@ -4,8 +4,8 @@
 #include "SmoothChart.h"
 
 #include "ContourChart.h"
+#include "Kernel/Simd/Vectorize.h"
 #include "RootFinding.h"
-#include "Vectorize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,7 +95,7 @@ struct StripFunction
 /// beta = B(affine - d beta). The difference of the sides increases with beta, because its slope is
 /// the determinant ratio. B(affine) is a first guess.
 template <int Width>
-struct StripEquation : RootLanes<Width, false>
+struct StripEquation : RootBatch<Width, false>
 {
   HOMEOMORPHISM_ALWAYS_INLINE void Set(
     int lane, double k, double next, double previous, double, double, double, double tau)
@@ -163,37 +163,37 @@ namespace
 {
 
 /// One point: less of the strips has to be fetched from memory than for several at once.
-void SetSmoothLane(SmoothLanes& lanes, int i, const double* const coordinates[3],
+void SetSmoothLane(SmoothBatch& batch, int i, const double* const coordinates[3],
   const SmoothStrips& source, const SmoothStrips& target)
 {
   const double l[3] = { coordinates[0][i], coordinates[1][i], coordinates[2][i] };
   const int corner = LeastCorner(l[0], l[1], l[2]);
-  lanes.Corner[i] = corner;
-  lanes.L[0][i] = l[corner];
-  lanes.L[1][i] = l[NextCorner(corner)];
-  lanes.L[2][i] = l[PreviousCorner(corner)];
-  const SmoothStrips* sides[2] = { &source, &target };
+  batch.Corner[i] = corner;
+  batch.L[0][i] = l[corner];
+  batch.L[1][i] = l[NextCorner(corner)];
+  batch.L[2][i] = l[PreviousCorner(corner)];
+  const SmoothStrips* domains[2] = { &source, &target };
   for (int side = 0; side < 2; ++side)
   {
-    const SmoothStrip& strip = (*sides[side])[corner];
-    lanes.OffsetNext[side][i] = strip.OffsetNext;
-    lanes.OffsetPrevious[side][i] = strip.OffsetPrevious;
-    lanes.Kappa[side][i] = strip.Kappa;
-    lanes.Tau[side][i] = strip.Tau;
+    const SmoothStrip& strip = (*domains[side])[corner];
+    batch.OffsetNext[side][i] = strip.OffsetNext;
+    batch.OffsetPrevious[side][i] = strip.OffsetPrevious;
+    batch.Kappa[side][i] = strip.Kappa;
+    batch.Tau[side][i] = strip.Tau;
   }
 }
 
 } // namespace
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
+void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const coordinates[3],
   const SmoothStrips& source, const SmoothStrips& target)
 {
   if (end - begin < 3)
   {
     for (int i = begin; i < end; ++i)
     {
-      SetSmoothLane(lanes, i, coordinates, source, target);
+      SetSmoothLane(batch, i, coordinates, source, target);
     }
     return;
   }
@@ -201,7 +201,7 @@ void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const 
   const double* first = coordinates[0];
   const double* second = coordinates[1];
   const double* third = coordinates[2];
-  HOMEOMORPHISM_LANES
+  HOMEOMORPHISM_SIMD
   for (int i = begin; i < stop; ++i)
   {
     const double a = first[i];
@@ -209,66 +209,66 @@ void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const 
     const double c = third[i];
     const double lesser = b < a ? b : a;
     const std::int64_t corner = c < lesser ? 2 : (b < a ? 1 : 0);
-    lanes.Corner[i] = corner;
-    lanes.L[0][i] = c < lesser ? c : lesser;
-    lanes.L[1][i] = corner == 0 ? b : (corner == 1 ? c : a);
-    lanes.L[2][i] = corner == 0 ? c : (corner == 1 ? a : b);
+    batch.Corner[i] = corner;
+    batch.L[0][i] = c < lesser ? c : lesser;
+    batch.L[1][i] = corner == 0 ? b : (corner == 1 ? c : a);
+    batch.L[2][i] = corner == 0 ? c : (corner == 1 ? a : b);
   }
-  const SmoothStrips* sides[2] = { &source, &target };
+  const SmoothStrips* domains[2] = { &source, &target };
   for (int side = 0; side < 2; ++side)
   {
-    const SmoothStrip s0 = (*sides[side])[0];
-    const SmoothStrip s1 = (*sides[side])[1];
-    const SmoothStrip s2 = (*sides[side])[2];
-    HOMEOMORPHISM_LANES
+    const SmoothStrip s0 = (*domains[side])[0];
+    const SmoothStrip s1 = (*domains[side])[1];
+    const SmoothStrip s2 = (*domains[side])[2];
+    HOMEOMORPHISM_SIMD
     for (int i = begin; i < stop; ++i)
     {
-      const bool is0 = lanes.Corner[i] == 0;
-      const bool is1 = lanes.Corner[i] == 1;
-      lanes.OffsetNext[side][i] = is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
-      lanes.OffsetPrevious[side][i] =
+      const bool is0 = batch.Corner[i] == 0;
+      const bool is1 = batch.Corner[i] == 1;
+      batch.OffsetNext[side][i] = is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
+      batch.OffsetPrevious[side][i] =
         is0 ? s0.OffsetPrevious : (is1 ? s1.OffsetPrevious : s2.OffsetPrevious);
-      lanes.Kappa[side][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
-      lanes.Tau[side][i] = is0 ? s0.Tau : (is1 ? s1.Tau : s2.Tau);
+      batch.Kappa[side][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
+      batch.Tau[side][i] = is0 ? s0.Tau : (is1 ? s1.Tau : s2.Tau);
     }
   }
 }
 
-void FillSmoothLanes(SmoothLanes& lanes, int begin, int end)
+void FillSmoothBatch(SmoothBatch& batch, int begin, int end)
 {
   for (int i = begin; i < end; ++i)
   {
-    lanes.Corner[i] = 0;
-    for (double* l : lanes.L)
+    batch.Corner[i] = 0;
+    for (double* l : batch.L)
     {
       l[i] = 1.0 / 3.0;
     }
     for (int side = 0; side < 2; ++side)
     {
-      lanes.OffsetNext[side][i] = 0.0;
-      lanes.OffsetPrevious[side][i] = 0.0;
-      lanes.Kappa[side][i] = 1.0;
-      lanes.Tau[side][i] = 0.0;
+      batch.OffsetNext[side][i] = 0.0;
+      batch.OffsetPrevious[side][i] = 0.0;
+      batch.Kappa[side][i] = 1.0;
+      batch.Tau[side][i] = 0.0;
     }
   }
 }
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const coordinates[3])
+void GetSmoothBatch(const SmoothBatch& batch, int begin, int end, double* const coordinates[3])
 {
   const int stop = begin + InWholeVectors(end - begin);
   double* first = coordinates[0];
   double* second = coordinates[1];
   double* third = coordinates[2];
-  HOMEOMORPHISM_LANES
+  HOMEOMORPHISM_SIMD
   for (int i = begin; i < stop; ++i)
   {
-    const bool is0 = lanes.Corner[i] == 0;
-    const bool is1 = lanes.Corner[i] == 1;
+    const bool is0 = batch.Corner[i] == 0;
+    const bool is1 = batch.Corner[i] == 1;
     // Read whatever the corner is: to read or not to read takes longer.
-    const double k = lanes.L[0][i];
-    const double next = lanes.L[1][i];
-    const double previous = lanes.L[2][i];
+    const double k = batch.L[0][i];
+    const double next = batch.L[1][i];
+    const double previous = batch.L[2][i];
     first[i] = is0 ? k : (is1 ? previous : next);
     second[i] = is0 ? next : (is1 ? k : previous);
     third[i] = is0 ? previous : (is1 ? next : k);
@@ -276,25 +276,25 @@ void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const 
 }
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void MapSmoothLanes(SmoothLanes& lanes, int count)
+void MapSmoothBatch(SmoothBatch& batch, int count)
 {
   constexpr int width = 32;
-  static_assert(SmoothLanes::Capacity % width == 0, "whole groups of lanes");
+  static_assert(SmoothBatch::Capacity % width == 0, "whole groups of batch");
   const int end = (count + width - 1) / width * width;
-  FillSmoothLanes(lanes, count, std::max(end, count + WidestVector));
+  FillSmoothBatch(batch, count, std::max(end, count + WidestVector));
   for (int first = 0; first < end; first += width)
   {
-    double* k = lanes.L[0] + first;
-    double* next = lanes.L[1] + first;
-    double* previous = lanes.L[2] + first;
+    double* k = batch.L[0] + first;
+    double* next = batch.L[1] + first;
+    double* previous = batch.L[2] + first;
     {
-      const double* offsetNext = lanes.OffsetNext[0] + first;
-      const double* offsetPrevious = lanes.OffsetPrevious[0] + first;
-      const double* kappa = lanes.Kappa[0] + first;
-      const double* tau = lanes.Tau[0] + first;
+      const double* offsetNext = batch.OffsetNext[0] + first;
+      const double* offsetPrevious = batch.OffsetPrevious[0] + first;
+      const double* kappa = batch.Kappa[0] + first;
+      const double* tau = batch.Tau[0] + first;
       StripEquation<width> equation;
-      SolveLanes<width>(equation, k, next, previous, kappa, offsetNext, offsetPrevious, tau);
-      HOMEOMORPHISM_LANES
+      SolveBatch<width>(equation, k, next, previous, kappa, offsetNext, offsetPrevious, tau);
+      HOMEOMORPHISM_SIMD
       for (int i = 0; i < width; ++i)
       {
         k[i] -= (kappa[i] - 1.0) * equation.Root[i];
@@ -302,11 +302,11 @@ void MapSmoothLanes(SmoothLanes& lanes, int count)
         previous[i] -= offsetPrevious[i] * equation.Root[i];
       }
     }
-    const double* offsetNext = lanes.OffsetNext[1] + first;
-    const double* offsetPrevious = lanes.OffsetPrevious[1] + first;
-    const double* kappa = lanes.Kappa[1] + first;
-    const double* tau = lanes.Tau[1] + first;
-    HOMEOMORPHISM_LANES
+    const double* offsetNext = batch.OffsetNext[1] + first;
+    const double* offsetPrevious = batch.OffsetPrevious[1] + first;
+    const double* kappa = batch.Kappa[1] + first;
+    const double* tau = batch.Tau[1] + first;
+    HOMEOMORPHISM_SIMD
     for (int i = 0; i < width; ++i)
     {
       const double beta = StripFunction(k[i], next[i], previous[i], tau[i]).Value();
@@ -340,7 +340,7 @@ SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
   }
   const SmoothStrip& strip = this->Strips[k];
   StripEquation<1> equation;
-  SolveLanes<1>(equation, &affine[k], &affine[NextCorner(k)], &affine[PreviousCorner(k)],
+  SolveBatch<1>(equation, &affine[k], &affine[NextCorner(k)], &affine[PreviousCorner(k)],
     &strip.Kappa, &strip.OffsetNext, &strip.OffsetPrevious, &strip.Tau);
   return Moved(affine, k, strip, -equation.Root[0]);
 }
@@ -356,7 +356,7 @@ Vector2 SmoothChart::ToPoint(const Reference& l) const
   return this->Shape.FromBarycentric(Moved(l, k, strip, FunctionAt(l, k, strip).Value()));
 }
 
-Vector2 SmoothChart::Push(const Reference& l, const Direction& direction) const
+Vector2 SmoothChart::Pushforward(const Reference& l, const Direction& direction) const
 {
   const int k = this->StripAt(l);
   if (k < 0)
@@ -368,7 +368,7 @@ Vector2 SmoothChart::Push(const Reference& l, const Direction& direction) const
     Moved(direction, k, strip, DerivativeAlong(FunctionAt(l, k, strip), k, direction)));
 }
 
-SmoothChart::Direction SmoothChart::Pull(const Reference& l, const Vector2& vector) const
+SmoothChart::Direction SmoothChart::Pullback(const Reference& l, const Vector2& vector) const
 {
   const Barycentric direction = this->Shape.VectorToBarycentric(vector);
   const int k = this->StripAt(l);

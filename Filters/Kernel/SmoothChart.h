@@ -11,12 +11,12 @@
 ///     Phi(l) = l_1 P_1 + l_2 P_2 + l_3 P_3 + D_1 B_1(l) + D_2 B_2(l) + D_3 B_3(l).
 ///
 /// For the edge opposite corner k, with ends i and j: D_k = - a / (a + a*) (P_k + P* - P_i - P_j),
-/// where P* is the apex of the neighbouring triangle, unfolded about the edge, and a and a* are the
+/// where P* is the apex of the neighboring triangle, unfolded about the edge, and a and a* are the
 /// two areas; D_k = 0 on the boundary. The function B_k = l_k W(u), u = l_k / (tau_k q),
 /// q = l_i l_j / (l_i + l_j), W(u) = (1 - u)^3 (1 + 3 u), lives on the edge's *strip*
 /// 0 <= u < 1 alone. The strips of a triangle are disjoint and the chart is affine outside them.
 ///
-/// Why it is C2: on the edge both neighbours' charts have the derivative
+/// Why it is C2: on the edge both neighbors' charts have the derivative
 /// V = (a* m - a m*) / (a + a*) across it, m and m* being the vectors from the edge's midpoint to
 /// the two apexes, and no second derivative but zero, because W'(0) = 0.
 
@@ -25,7 +25,7 @@
 
 #include "CoordinateSystem.h"
 #include "Geometry.h"
-#include "Vectorize.h"
+#include "Kernel/Simd/Vectorize.h"
 
 #include <array>
 #include <cstdint>
@@ -38,7 +38,7 @@ struct Neighbor
 {
   /// False on the boundary.
   bool Exists = false;
-  /// The neighbour's apex as the shared edge sees it, the edge being run through as in this
+  /// The neighbor's apex as the shared edge sees it, the edge being run through as in this
   /// triangle (see Reversed).
   EdgeView View;
 };
@@ -51,7 +51,7 @@ struct SmoothStrip
   double OffsetNext = 0.0;
   double OffsetPrevious = 0.0;
   /// kappa = 1 + d_k = 2 a* / (a + a*), kept because 1 + d_k cancels beside a far smaller
-  /// neighbour.
+  /// neighbor.
   double Kappa = 1.0;
   /// In (0, 1]; 0 on the boundary, where there is no strip.
   double Tau = 0.0;
@@ -93,7 +93,7 @@ using SmoothStrips = std::array<SmoothStrip, 3>;
 SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
 
 /// Points in arrays, so that the processor can deal with several at once.
-struct SmoothLanes
+struct SmoothBatch
 {
   static constexpr int Capacity = 256;
   /// With the room that whole vectors take.
@@ -119,22 +119,22 @@ inline int LeastCorner(double first, double second, double third)
   return third < lesser ? 2 : (second < first ? 1 : 0);
 }
 
-/// Puts points of one triangle into the lanes from @a begin to before @a end. @a
+/// Puts points of one triangle into the batch from @a begin to before @a end. @a
 /// coordinates[corner] points to arrays of the barycentric coordinates of the source's affine
-/// chart, one for each lane. Up to WidestVector - 1 lanes after the last are spoilt.
-void SetSmoothLanes(SmoothLanes& lanes, int begin, int end, const double* const coordinates[3],
+/// chart, one for each lane. Up to WidestVector - 1 batch after the last are spoilt.
+void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const coordinates[3],
   const SmoothStrips& source, const SmoothStrips& target);
 
-/// Fills lanes with a point that the map leaves where it is.
-void FillSmoothLanes(SmoothLanes& lanes, int begin, int end);
+/// Fills batch with a point that the map leaves where it is.
+void FillSmoothBatch(SmoothBatch& batch, int begin, int end);
 
 /// Takes the first @a count points from the source's chart to the target's: to the same bits as
-/// SmoothChart's ToReference and ToPoint. Lanes up to the next multiple of 32 are filled.
-void MapSmoothLanes(SmoothLanes& lanes, int count);
+/// SmoothChart's ToReference and ToPoint. Batch up to the next multiple of 32 are filled.
+void MapSmoothBatch(SmoothBatch& batch, int count);
 
-/// Takes the coordinates out of the lanes, into arrays as in SetSmoothLanes, where they spoil what
+/// Takes the coordinates out of the batch, into arrays as in SetSmoothBatch, where they spoil what
 /// comes after.
-void GetSmoothLanes(const SmoothLanes& lanes, int begin, int end, double* const coordinates[3]);
+void GetSmoothBatch(const SmoothBatch& batch, int begin, int end, double* const coordinates[3]);
 
 /// The chart of the Smooth system.
 class SmoothChart
@@ -157,8 +157,8 @@ public:
 
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& l) const;
-  Direction Pull(const Reference& l, const Vector2& vector) const;
-  Vector2 Push(const Reference& l, const Direction& direction) const;
+  Direction Pullback(const Reference& l, const Vector2& vector) const;
+  Vector2 Pushforward(const Reference& l, const Direction& direction) const;
 
   /// The Contour coordinates, in the equilateral triangle, of the point with the barycentric
   /// coordinates l.

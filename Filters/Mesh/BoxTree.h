@@ -81,17 +81,17 @@ public:
     {
       return;
     }
-    struct Place
+    struct ToSurfacePoint
     {
       std::size_t Level;
       std::size_t Index;
     };
-    std::array<Place, 2 * MaximumLevels> stack;
+    std::array<ToSurfacePoint, 2 * MaximumLevels> stack;
     std::size_t depth = 0;
     stack[depth++] = { this->Levels.size() - 1, 0 };
     while (depth > 0)
     {
-      const Place place = stack[--depth];
+      const ToSurfacePoint place = stack[--depth];
       if (!this->Nodes[this->Levels[place.Level] + place.Index].Meets(box))
       {
         continue;

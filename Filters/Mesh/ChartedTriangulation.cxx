@@ -3,7 +3,7 @@
 
 #include "ChartedTriangulation.h"
 
-#include "Kernel/EdgeLanes.h"
+#include "Kernel/Simd/EdgeBatch.h"
 
 #include "vtkSMPTools.h"
 
@@ -16,7 +16,7 @@ namespace
 
 /// What the triangle on one side of an edge is to the one on the other side. What an edge sees of a
 /// triangle does not change when the triangle turns about the edge.
-EdgeView Unfolded(const EdgeView& view, const AcrossEdge& across)
+EdgeView Unfolded(const EdgeView& view, const Twin& across)
 {
   return across.SameDirection ? view : Reversed(view);
 }
@@ -25,15 +25,15 @@ EdgeView Unfolded(const EdgeView& view, const AcrossEdge& across)
 class StripMaker
 {
 public:
-  StripMaker(const Triangulation& triangulation, const Embedding& embedding,
+  StripMaker(const Triangulation& triangulation, const MeshGeometry& geometry,
     LargeArray<SmoothStrips>& strips)
     : Topology(triangulation)
-    , Geometry(embedding)
+    , Geometry(geometry)
     , Strips(strips)
   {
   }
 
-  void Add(TriangleIndex triangle, int edge, const AcrossEdge& across)
+  void Add(TriangleIndex triangle, int edge, const Twin& across)
   {
     const int i = this->Count++;
     const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
@@ -45,7 +45,7 @@ public:
     this->Turned[i] = turned;
     this->Second.Set(i, across.Triangle, across.Edge, turned ? end : start, turned ? start : end,
       this->Geometry.GetPlanePoint(others[across.Edge]));
-    if (this->Count == EdgeLanes)
+    if (this->Count == EdgeBatchSize)
     {
       this->Finish();
     }
@@ -66,14 +66,14 @@ private:
   /// The triangles on one side of the edges.
   struct OneSide
   {
-    TriangleIndex Triangles[EdgeLanes];
-    int Edges[EdgeLanes];
-    LanesOfPoints Starts;
-    LanesOfPoints Ends;
-    LanesOfPoints Opposites;
-    ViewLanes Views;
+    TriangleIndex Triangles[EdgeBatchSize];
+    int Edges[EdgeBatchSize];
+    PointBatch Starts;
+    PointBatch Ends;
+    PointBatch Opposites;
+    ViewBatch Views;
     /// What they are to the triangles on the other side.
-    ViewLanes Unfolded;
+    ViewBatch Unfolded;
 
     void Set(int i, TriangleIndex triangle, int edge, const Vector2& start, const Vector2& end,
       const Vector2& opposite)
@@ -107,41 +107,41 @@ private:
   };
 
   const Triangulation& Topology;
-  const Embedding& Geometry;
+  const MeshGeometry& Geometry;
   LargeArray<SmoothStrips>& Strips;
   int Count = 0;
-  bool Turned[EdgeLanes];
+  bool Turned[EdgeBatchSize];
   OneSide First;
   OneSide Second;
-  SmoothStrip Made[EdgeLanes];
+  SmoothStrip Made[EdgeBatchSize];
 };
 
 /// The strips of all triangles. Each edge is looked at once, for both of its triangles.
-LargeArray<SmoothStrips> MakeStrips(const Triangulation& triangulation, const Embedding& embedding)
+LargeArray<SmoothStrips> MakeStrips(
+  const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
   LargeArray<SmoothStrips> strips(count);
-  const auto makeBoth = [&](TriangleIndex t, int k, const AcrossEdge& across) {
-    const EdgeView own = embedding.GetView(triangulation.GetCorners(t), k);
-    const EdgeView other =
-      embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
+  const auto makeBoth = [&](TriangleIndex t, int k, const Twin& across) {
+    const EdgeView own = geometry.GetView(triangulation.GetCorners(t), k);
+    const EdgeView other = geometry.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
     strips[t][k] = SmoothStrip(own, Unfolded(other, across));
     strips[across.Triangle][across.Edge] = SmoothStrip(other, Unfolded(own, across));
   };
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
-    StripMaker maker(triangulation, embedding, strips);
+    StripMaker maker(triangulation, geometry, strips);
     for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
     {
       for (int k = 0; k < 3; ++k)
       {
-        const AcrossEdge across = triangulation.GetAcross(t, k);
+        const Twin across = triangulation.GetTwin(t, k);
         if (across.Triangle < 0)
         {
           strips[t][k] = SmoothStrip();
         }
         else if (across.Triangle > t)
         {
-          if (embedding.IsPlanar())
+          if (geometry.IsPlanar())
           {
             maker.Add(t, k, across);
           }
@@ -160,29 +160,29 @@ LargeArray<SmoothStrips> MakeStrips(const Triangulation& triangulation, const Em
 } // namespace
 
 std::array<Neighbor, 3> UnfoldNeighbors(
-  const Triangulation& triangulation, const Embedding& embedding, TriangleIndex triangle)
+  const Triangulation& triangulation, const MeshGeometry& geometry, TriangleIndex triangle)
 {
   std::array<Neighbor, 3> neighbors;
   for (int k = 0; k < 3; ++k)
   {
-    const AcrossEdge across = triangulation.GetAcross(triangle, k);
+    const Twin across = triangulation.GetTwin(triangle, k);
     if (across.Triangle < 0)
     {
       continue;
     }
-    const EdgeView view = embedding.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
+    const EdgeView view = geometry.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
     neighbors[k] = { true, Unfolded(view, across) };
   }
   return neighbors;
 }
 
 std::vector<TriangleIndex> FindDiscordant(
-  const Triangulation& triangulation, const Embedding& embedding)
+  const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   std::vector<TriangleIndex> discordant;
   for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
   {
-    if (!triangulation.IsMasked(t) && !embedding.IsConcordant(triangulation.GetCorners(t)))
+    if (!triangulation.IsMasked(t) && !geometry.IsConcordant(triangulation.GetCorners(t)))
     {
       discordant.push_back(t);
     }
@@ -191,12 +191,12 @@ std::vector<TriangleIndex> FindDiscordant(
 }
 
 ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
-  const Embedding& embedding, CoordinateSystem system, CenterPoint center,
-  std::vector<std::uint8_t> carriedByLinear)
-  : Geometry(embedding)
+  const MeshGeometry& geometry, CoordinateSystem system, CenterPoint center,
+  std::vector<std::uint8_t> mappedByLinear)
+  : Geometry(geometry)
   , System(system)
   , Center(center)
-  , CarriedByLinear(std::move(carriedByLinear))
+  , MappedByLinear(std::move(mappedByLinear))
 {
   if (system == CoordinateSystem::Contour)
   {
@@ -206,13 +206,13 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
       for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
       {
         this->ContourViews[t] =
-          triangulation.IsMasked(t) ? EdgeViews{} : embedding.GetViews(triangulation.GetCorners(t));
+          triangulation.IsMasked(t) ? EdgeViews{} : geometry.GetViews(triangulation.GetCorners(t));
       }
     });
   }
   else if (system == CoordinateSystem::Smooth)
   {
-    this->Strips = MakeStrips(triangulation, embedding);
+    this->Strips = MakeStrips(triangulation, geometry);
   }
 }
 

@@ -7,8 +7,8 @@
 #ifndef homeomorphism_ChartedTriangulation_h
 #define homeomorphism_ChartedTriangulation_h
 
-#include "Embedding.h"
 #include "LargeArray.h"
+#include "MeshGeometry.h"
 #include "Triangulation.h"
 
 #include "Kernel/ContourChart.h"
@@ -22,32 +22,32 @@
 namespace homeomorphism
 {
 
-/// Neighbours of a triangle, unfolded about its edges into its plane.
+/// Neighbors of a triangle, unfolded about its edges into its plane.
 std::array<Neighbor, 3> UnfoldNeighbors(
-  const Triangulation& triangulation, const Embedding& embedding, TriangleIndex triangle);
+  const Triangulation& triangulation, const MeshGeometry& geometry, TriangleIndex triangle);
 
-/// Triangles, masked ones excepted, that are not concordant in an embedding.
+/// Triangles, masked ones excepted, that are not concordant in a geometry.
 std::vector<TriangleIndex> FindDiscordant(
-  const Triangulation& triangulation, const Embedding& embedding);
+  const Triangulation& triangulation, const MeshGeometry& geometry);
 
-/// Charts of all triangles of one embedding, made as they are asked for from what is expensive to
+/// Charts of all triangles of one geometry, made as they are asked for from what is expensive to
 /// find. Immutable; any number of threads may use it.
 class ChartedTriangulation
 {
 public:
-  /// Refers to the embedding, which must outlive it. @a carriedByLinear says for which triangles
+  /// Refers to the geometry, which must outlive it. @a mappedByLinear says for which triangles
   /// the Linear system stands in (empty: for none); it must be the same in both meshes of a pair.
-  ChartedTriangulation(const Triangulation& triangulation, const Embedding& embedding,
-    CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> carriedByLinear);
+  ChartedTriangulation(const Triangulation& triangulation, const MeshGeometry& geometry,
+    CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> mappedByLinear);
 
-  const Embedding& GetEmbedding() const { return this->Geometry; }
+  const MeshGeometry& GetGeometry() const { return this->Geometry; }
   CoordinateSystem GetSystem() const { return this->System; }
 
   /// The system that a triangle's chart belongs to.
   CoordinateSystem GetSystemOf(TriangleIndex triangle) const
   {
-    return this->System == CoordinateSystem::Contour && !this->CarriedByLinear.empty() &&
-        this->CarriedByLinear[triangle]
+    return this->System == CoordinateSystem::Contour && !this->MappedByLinear.empty() &&
+        this->MappedByLinear[triangle]
       ? CoordinateSystem::Linear
       : this->System;
   }
@@ -90,10 +90,10 @@ public:
   Vector2 FromCoordinates(TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
 private:
-  const Embedding& Geometry;
+  const MeshGeometry& Geometry;
   CoordinateSystem System;
   CenterPoint Center;
-  std::vector<std::uint8_t> CarriedByLinear;
+  std::vector<std::uint8_t> MappedByLinear;
   // A third of the charts' size, from which they are quickly made.
   LargeArray<EdgeViews> ContourViews;
   LargeArray<SmoothStrips> Strips;

@@ -5,7 +5,7 @@
 
 #include "MeshValidation.h"
 
-#include "Kernel/Vectorize.h"
+#include "Kernel/Simd/Vectorize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,17 +46,17 @@ void ForEachRun(const PointBlock& block, Use&& use, UseOther&& useOther)
 /// its interior or higher over the plane than @a highest. Returns the number of that one, @a end if
 /// there is none.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-int FindRun(const PlaneFrame& frame, const double working[3][PointBlock::Size], int begin, int end,
-  double highest, PointBlock& block)
+int FindRun(const PlaneFrame& frame, const double normalized[3][PointBlock::Size], int begin,
+  int end, double highest, PointBlock& block)
 {
   const PlaneFrame f = frame;
-  const double* x = working[0];
-  const double* y = working[1];
-  const double* height = working[2];
+  const double* x = normalized[0];
+  const double* y = normalized[1];
+  const double* height = normalized[2];
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::int64_t isIn[PointBlock::Size];
   const int stop = begin + InWholeVectors(end - begin);
-  HOMEOMORPHISM_LANES
+  HOMEOMORPHISM_SIMD
   for (int i = begin; i < stop; ++i)
   {
     const PlaneRelation relation(f, { x[i], y[i] });
@@ -85,14 +85,14 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
   const PlaneFrame f = frame;
   const double* apex = coordinates[f.Apex];
   const double* second = coordinates[PreviousCorner(f.Apex)];
-  const double side = f.Side;
+  const double orientation = f.Orientation;
   const int stop = begin + InWholeVectors(end - begin);
-  HOMEOMORPHISM_LANES
+  HOMEOMORPHISM_SIMD
   for (int i = begin; i < stop; ++i)
   {
     // As in TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
     const double x = f.Base * second[i] + f.ApexX * apex[i];
-    const double y = side * (f.Height * apex[i]);
+    const double y = orientation * (f.Height * apex[i]);
     plane[0][i] = f.Origin.x + (x * f.Tangent.x - y * f.Tangent.y);
     plane[1][i] = f.Origin.y + (x * f.Tangent.y + y * f.Tangent.x);
   }
@@ -102,7 +102,7 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
 constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
 
 /// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a
-/// triangle or its neighbour is so thin that the columns are almost parallel; the charts know
+/// triangle or its neighbor is so thin that the columns are almost parallel; the charts know
 /// better.
 double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
 {
@@ -131,7 +131,7 @@ double Determinant(const ContourChart&, const ContourChart&, const TriangleShape
 } // namespace
 
 std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vtkPolyData* target,
-  const HomeomorphismOptions& options, MeshProblems& problems)
+  const HomeomorphismOptions& options, MeshDiagnostics& problems)
 {
   std::unique_ptr<Homeomorphism> result(new Homeomorphism);
   result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
@@ -140,37 +140,38 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
     return nullptr;
   }
   const Triangulation& topology = result->Pair->GetTriangulation();
-  std::vector<Side> sides{ Side::Source };
+  std::vector<Domain> domains{ Domain::Source };
   if (target)
   {
-    sides.push_back(Side::Target);
+    domains.push_back(Domain::Target);
   }
 
-  std::vector<std::uint8_t> carriedByLinear;
+  std::vector<std::uint8_t> mappedByLinear;
   // Seen from the incenter every triangle is concordant.
   if (options.System == CoordinateSystem::Contour && options.Center == CenterPoint::Centroid)
   {
-    for (const Side side : sides)
+    for (const Domain domain : domains)
     {
       const std::vector<TriangleIndex> discordant =
-        FindDiscordant(topology, result->Pair->GetEmbedding(side));
+        FindDiscordant(topology, result->Pair->GetGeometry(domain));
       if (discordant.empty())
       {
         continue;
       }
-      carriedByLinear.resize(topology.GetNumberOfTriangles(), 0);
-      MeshProblem problem;
-      problem.What = MeshProblem::Kind::Discordant;
-      problem.Where = !target ? "triangulation" : (side == Side::Source ? "source" : "target");
+      mappedByLinear.resize(topology.GetNumberOfTriangles(), 0);
+      MeshDiagnostic problem;
+      problem.What = MeshDiagnostic::Kind::Discordant;
+      problem.Where = !target ? "triangulation" : (domain == Domain::Source ? "source" : "target");
       problem.Count = static_cast<vtkIdType>(discordant.size());
-      problem.Result = options.DiscordantByLinear ? MeshProblem::Outcome::CarriedByLinear
-                                                  : MeshProblem::Outcome::Refused;
+      problem.Result = options.DiscordantByLinear ? MeshDiagnostic::Outcome::MappedByLinear
+                                                  : MeshDiagnostic::Outcome::Refused;
       for (const TriangleIndex t : discordant)
       {
-        carriedByLinear[t] = 1;
-        if (problem.FirstCells.size() < MeshProblem::MaximumIds)
+        mappedByLinear[t] = 1;
+        if (problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
         {
-          problem.FirstCells.push_back(FirstPolygon(side == Side::Source ? source : target) + t);
+          problem.FirstCells.push_back(
+            FirstPolygon(domain == Domain::Source ? source : target) + t);
         }
       }
       problems.push_back(problem);
@@ -180,64 +181,66 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
       return nullptr;
     }
   }
-  for (const Side side : sides)
+  for (const Domain domain : domains)
   {
-    result->Charts[int(side)] = std::make_unique<ChartedTriangulation>(
-      topology, result->Pair->GetEmbedding(side), options.System, options.Center, carriedByLinear);
+    result->Charts[int(domain)] = std::make_unique<ChartedTriangulation>(
+      topology, result->Pair->GetGeometry(domain), options.System, options.Center, mappedByLinear);
   }
   return std::shared_ptr<const Homeomorphism>(std::move(result));
 }
 
-double Homeomorphism::GetReach(Side side, double tolerance, double precision) const
+double Homeomorphism::GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const
 {
-  const Embedding& embedding = this->Pair->GetEmbedding(side);
+  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
   // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself
   // is measured in a triangle's frame, as doubles, with edges up to three times as long as the
   // coordinates.
   const double rounding =
-    (8.0 * std::max(precision, embedding.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
-    embedding.GetLargestCoordinate();
-  return std::max(rounding, tolerance * embedding.GetDiagonal());
+    (8.0 * std::max(precision, geometry.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
+    geometry.GetLargestCoordinate();
+  return std::max(rounding, tolerance * geometry.GetDiagonal());
 }
 
-Location Homeomorphism::Locate(
-  Side side, const double point[3], double reach, TriangleIndex hint) const
+SurfacePoint Homeomorphism::Locate(
+  Domain domain, const double point[3], double tolerance, TriangleIndex hint) const
 {
-  return this->Locate(side, point, this->Pair->GetEmbedding(side).ToWorking(point), reach, hint);
+  return this->Locate(
+    domain, point, this->Pair->GetGeometry(domain).ToNormalized(point), tolerance, hint);
 }
 
-Location Homeomorphism::Locate(
-  Side side, const double point[3], const Vector3& working, double reach, TriangleIndex hint) const
+SurfacePoint Homeomorphism::Locate(Domain domain, const double point[3], const Vector3& normalized,
+  double tolerance, TriangleIndex hint) const
 {
-  Location place = this->Pair->GetLocation(side).Find(working, reach, hint);
-  if (place.Corner >= 0 &&
-    this->Pair->GetEmbedding(side).IsMeshPoint(
-      this->Pair->GetTriangulation().GetCorners(place.Triangle)[place.Corner], point))
+  SurfacePoint surfacePoint = this->Pair->GetLocation(domain).Find(normalized, tolerance, hint);
+  if (surfacePoint.Corner >= 0 &&
+    this->Pair->GetGeometry(domain).IsMeshPoint(
+      this->Pair->GetTriangulation().GetCorners(surfacePoint.Triangle)[surfacePoint.Corner], point))
   {
     // The rounding of its distance from a plane that is not parallel to two axes must not move it.
-    place.Point.Offset = 0.0;
+    surfacePoint.Point.Offset = 0.0;
   }
-  return place;
+  return surfacePoint;
 }
 
-int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const
+int Homeomorphism::LocateBlock(
+  Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const
 {
-  const Embedding& embedding = this->Pair->GetEmbedding(side);
+  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
   const Triangulation& topology = this->Pair->GetTriangulation();
-  const PointLocation& location = this->Pair->GetLocation(side);
+  const PointLocation& location = this->Pair->GetLocation(domain);
   // From triangle to adjacent triangle before a point is looked for with more care.
   constexpr int MaximumSteps = 4;
-  const bool planar = embedding.IsPlanar();
-  const bool columnar = embedding.IsColumnar();
+  const bool planar = geometry.IsPlanar();
+  const bool columnar = geometry.IsColumnar();
   const bool scattered = planar && hint.ScatteredBlocks > 0;
   TriangleIndex seeds[PointBlock::Capacity];
-  double working[3][PointBlock::Size];
+  double normalized[3][PointBlock::Size];
   for (int i = 0; i < block.Count; ++i)
   {
-    const Vector3 point = embedding.ToWorking(block.Points[i]);
+    const Vector3 point = geometry.ToNormalized(block.Points[i]);
     for (int axis = 0; axis < 3; ++axis)
     {
-      working[axis][i] = point[axis];
+      normalized[axis][i] = point[axis];
     }
     if (scattered)
     {
@@ -245,15 +248,15 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
       seeds[i] = location.GetSeed({ point[0], point[1] });
       if (seeds[i] >= 0)
       {
-        embedding.PrefetchFrame(seeds[i]);
-        topology.PrefetchAcross(seeds[i]);
+        geometry.PrefetchFrame(seeds[i]);
+        topology.PrefetchTwin(seeds[i]);
       }
     }
   }
   // What whole vectors read beyond the points.
   for (int i = block.Count; i < block.Count + WidestVector; ++i)
   {
-    working[0][i] = working[1][i] = working[2][i] = 0.0;
+    normalized[0][i] = normalized[1][i] = normalized[2][i] = 0.0;
     block.Apex[i] = block.First[i] = block.Second[i] = 0.0;
   }
   int moves = 0;
@@ -269,14 +272,14 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
       // more.
       const int end =
         scattered ? i + 1 : std::min(block.Count, i + std::max(WidestVector, 2 * hint.RunLength));
-      const PlaneFrame& frame = embedding.GetPlaneFrame(start);
-      const double highest = columnar ? std::numeric_limits<double>::max() : reach;
-      const int inside = FindRun(frame, working, i, end, highest, block);
+      const PlaneFrame& frame = geometry.GetPlaneFrame(start);
+      const double highest = columnar ? std::numeric_limits<double>::max() : tolerance;
+      const int inside = FindRun(frame, normalized, i, end, highest, block);
       for (int k = i; k < inside; ++k)
       {
         block.Triangles[k] = start;
         block.Corners[k] = -1;
-        block.Offsets[k] = columnar ? working[2][k] : 0.0;
+        block.Offsets[k] = columnar ? normalized[2][k] : 0.0;
       }
       if (inside > i)
       {
@@ -297,7 +300,7 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
         : (least == block.First[i] ? NextCorner(frame.Apex) : PreviousCorner(frame.Apex));
       moves += steps == 0 ? 1 : 0;
       ++steps;
-      const TriangleIndex next = isNear ? topology.GetAcross(start, edge).Triangle : -1;
+      const TriangleIndex next = isNear ? topology.GetTwin(start, edge).Triangle : -1;
       if (next >= 0)
       {
         start = next;
@@ -305,22 +308,22 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
       }
     }
     steps = 0;
-    const Location place = this->Locate(
-      side, block.Points[i], { working[0][i], working[1][i], working[2][i] }, reach, start);
-    block.Triangles[i] = place.Triangle;
-    block.Corners[i] = place.Corner;
-    block.InPlane[0][i] = place.Point.InPlane.x;
-    block.InPlane[1][i] = place.Point.InPlane.y;
-    block.Offsets[i] = place.Point.Offset;
-    if (place.Triangle >= 0)
+    const SurfacePoint surfacePoint = this->Locate(domain, block.Points[i],
+      { normalized[0][i], normalized[1][i], normalized[2][i] }, tolerance, start);
+    block.Triangles[i] = surfacePoint.Triangle;
+    block.Corners[i] = surfacePoint.Corner;
+    block.InPlane[0][i] = surfacePoint.Point.InPlane.x;
+    block.InPlane[1][i] = surfacePoint.Point.InPlane.y;
+    block.Offsets[i] = surfacePoint.Point.Offset;
+    if (surfacePoint.Triangle >= 0)
     {
-      const TriangleShape shape = embedding.GetShape(place.Triangle);
-      const Barycentric l = shape.ToBarycentric(place.Point.InPlane);
+      const TriangleShape shape = geometry.GetShape(surfacePoint.Triangle);
+      const Barycentric l = shape.ToBarycentric(surfacePoint.Point.InPlane);
       block.Apex[i] = l[shape.Apex];
       block.First[i] = l[NextCorner(shape.Apex)];
       block.Second[i] = l[PreviousCorner(shape.Apex)];
-      hint.Triangle = place.Triangle;
-      start = place.Triangle;
+      hint.Triangle = surfacePoint.Triangle;
+      start = surfacePoint.Triangle;
     }
     else
     {
@@ -340,7 +343,7 @@ int Homeomorphism::LocateBlock(Side side, PointBlock& block, double reach, Locat
   return outside;
 }
 
-void Homeomorphism::MapBlock(Side from, PointBlock& block) const
+void Homeomorphism::MapBlock(Domain from, PointBlock& block) const
 {
   const ChartedTriangulation& charts = this->GetCharts(from);
   if (charts.GetSystem() == CoordinateSystem::Smooth)
@@ -362,17 +365,17 @@ void Homeomorphism::MapBlock(Side from, PointBlock& block) const
     [&](int i) {
       if (block.Triangles[i] >= 0)
       {
-        this->MapPoint(from, block.GetPlace(i), block.Points[i]);
+        this->MapPoint(from, block.GetSurfacePoint(i), block.Points[i]);
       }
     });
 }
 
 /// Takes barycentric coordinates from the source's affine charts to the target's.
-void Homeomorphism::MapByStrips(Side from, PointBlock& block) const
+void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
 {
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
-  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const auto ignore = [](int) {};
   // Memory is slow to answer but takes many questions at a time.
   ForEachRun(
@@ -385,29 +388,29 @@ void Homeomorphism::MapByStrips(Side from, PointBlock& block) const
       target.PrefetchFrame(t);
     },
     ignore);
-  SmoothLanes lanes;
+  SmoothBatch batch;
   ForEachRun(
     block,
     [&](int begin, int end, TriangleIndex t) {
-      SetSmoothLanes(lanes, begin, end, this->ByCorner(from, t, block).data(),
+      SetSmoothBatch(batch, begin, end, this->ByCorner(from, t, block).data(),
         charts.GetSmoothStrips(t), otherCharts.GetSmoothStrips(t));
     },
-    [&](int other) { FillSmoothLanes(lanes, other, other + 1); });
-  MapSmoothLanes(lanes, block.Count);
+    [&](int other) { FillSmoothBatch(batch, other, other + 1); });
+  MapSmoothBatch(batch, block.Count);
   ForEachRun(
     block,
     [&](int begin, int end, TriangleIndex t) {
-      GetSmoothLanes(lanes, begin, end, this->ByCorner(from, t, block).data());
+      GetSmoothBatch(batch, begin, end, this->ByCorner(from, t, block).data());
     },
     ignore);
 }
 
 /// Maps the points whose triangles have contours.
-void Homeomorphism::MapByContours(Side from, PointBlock& block) const
+void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
 {
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
-  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   struct ChartPair
   {
     ContourChart From;
@@ -442,16 +445,16 @@ void Homeomorphism::MapByContours(Side from, PointBlock& block) const
   {
     const int i = numbers[n];
     const double offset = this->OffsetOfImage(from, block.Offsets[i]);
-    target.FromWorking(
+    target.FromNormalized(
       target.FromFrame(block.Triangles[i], { points[n], offset }), block.Points[i]);
   }
 }
 
 /// From barycentric coordinates in the target's affine chart of a triangle to its points.
 void Homeomorphism::LeaveTriangle(
-  Side from, TriangleIndex triangle, int begin, int end, PointBlock& block) const
+  Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const
 {
-  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const std::array<double*, 3> coordinates = this->ByCorner(from, triangle, block);
   if (!target.IsPlanar())
   {
@@ -460,24 +463,24 @@ void Homeomorphism::LeaveTriangle(
       const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
       const FramePoint point{ target.GetShape(triangle).FromBarycentric(l),
         this->OffsetOfImage(from, block.Offsets[i]) };
-      target.FromWorking(target.FromFrame(triangle, point), block.Points[i]);
+      target.FromNormalized(target.FromFrame(triangle, point), block.Points[i]);
     }
     return;
   }
   const PlaneFrame& frame = target.GetPlaneFrame(triangle);
-  const double side = target.IsColumnar() ? 1.0 : frame.Side;
+  const double orientation = target.IsColumnar() ? 1.0 : frame.Orientation;
   double mapped[3][PointBlock::Size];
   LeaveFrame(frame, begin, end, coordinates.data(), mapped);
   for (int i = begin; i < end; ++i)
   {
-    mapped[2][i] = side * this->OffsetOfImage(from, block.Offsets[i]);
+    mapped[2][i] = orientation * this->OffsetOfImage(from, block.Offsets[i]);
   }
-  target.FromWorking(
+  target.FromNormalized(
     mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin, block.Points + begin);
 }
 
 template <typename Use>
-auto Homeomorphism::VisitCharts(Side from, TriangleIndex triangle, Use&& use) const
+auto Homeomorphism::VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const
 {
   const ChartedTriangulation& source = this->GetCharts(from);
   const ChartedTriangulation& target = this->GetCharts(Opposite(from));
@@ -492,47 +495,48 @@ auto Homeomorphism::VisitCharts(Side from, TriangleIndex triangle, Use&& use) co
   }
 }
 
-void Homeomorphism::MapPoint(Side from, const Location& place, double image[3]) const
+void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
 {
-  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
-  const double offset = this->OffsetOfImage(from, place.Point.Offset);
-  if (place.Corner >= 0)
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+  const double offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
+  if (surfacePoint.Corner >= 0)
   {
     target.FromMeshPoint(
-      this->Pair->GetTriangulation().GetCorners(place.Triangle)[place.Corner], offset, image);
+      this->Pair->GetTriangulation().GetCorners(surfacePoint.Triangle)[surfacePoint.Corner], offset,
+      image);
     return;
   }
   FramePoint point;
   point.Offset = offset;
-  point.InPlane =
-    this->VisitCharts(from, place.Triangle, [&place](const auto& chart, const auto& other) {
-      return homeomorphism::MapPoint(chart, other, place.Point.InPlane);
+  point.InPlane = this->VisitCharts(
+    from, surfacePoint.Triangle, [&surfacePoint](const auto& chart, const auto& other) {
+      return homeomorphism::MapPoint(chart, other, surfacePoint.Point.InPlane);
     });
-  target.FromWorking(target.FromFrame(place.Triangle, point), image);
+  target.FromNormalized(target.FromFrame(surfacePoint.Triangle, point), image);
 }
 
 template <typename Chart>
-Jacobian Homeomorphism::Derive(Side from, TriangleIndex triangle, const Chart& chart,
+Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle, const Chart& chart,
   const Chart& other, const typename Chart::Reference& reference) const
 {
   const Matrix2 matrix = MapDerivative(chart, other, reference);
-  const TriangleShape& shape = this->Pair->GetEmbedding(from).GetShape(triangle);
-  const TriangleShape& otherShape = this->Pair->GetEmbedding(Opposite(from)).GetShape(triangle);
+  const TriangleShape& shape = this->Pair->GetGeometry(from).GetShape(triangle);
+  const TriangleShape& otherShape = this->Pair->GetGeometry(Opposite(from)).GetShape(triangle);
   return this->FromFrames(
     from, triangle, matrix, Determinant(chart, other, shape, otherShape, reference, matrix));
 }
 
-Jacobian Homeomorphism::GetJacobian(Side from, const Location& place) const
+Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoint) const
 {
   return this->VisitCharts(
-    from, place.Triangle, [this, from, &place](const auto& chart, const auto& other) {
+    from, surfacePoint.Triangle, [this, from, &surfacePoint](const auto& chart, const auto& other) {
       return this->Derive(
-        from, place.Triangle, chart, other, chart.ToReference(place.Point.InPlane));
+        from, surfacePoint.Triangle, chart, other, chart.ToReference(surfacePoint.Point.InPlane));
     });
 }
 
 Jacobian Homeomorphism::GetJacobian(
-  Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
+  Domain from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
 {
   return this->VisitCharts(
     from, triangle, [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
@@ -541,10 +545,10 @@ Jacobian Homeomorphism::GetJacobian(
 }
 
 Jacobian Homeomorphism::FromFrames(
-  Side from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const
+  Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const
 {
-  const Embedding& source = this->Pair->GetEmbedding(from);
-  const Embedding& target = this->Pair->GetEmbedding(Opposite(from));
+  const MeshGeometry& source = this->Pair->GetGeometry(from);
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const double rescale = source.GetScale() / target.GetScale();
   const std::array<Vector3, 3> from3 = source.GetAxes(triangle);
   const std::array<Vector3, 3> to3 = target.GetAxes(triangle);

@@ -59,8 +59,8 @@ struct LocationHint
 /// Some points that are located and mapped together, which takes a fraction of the time.
 struct PointBlock
 {
-  static constexpr int Capacity = SmoothLanes::Capacity;
-  static constexpr int Size = SmoothLanes::Size;
+  static constexpr int Capacity = SmoothBatch::Capacity;
+  static constexpr int Size = SmoothBatch::Size;
 
   int Count = 0;
   /// The points; after MapBlock, the images of those that are inside.
@@ -77,7 +77,7 @@ struct PointBlock
   double First[Size];
   double Second[Size];
 
-  Location GetPlace(int i) const
+  SurfacePoint GetSurfacePoint(int i) const
   {
     return { this->Triangles[i], { { this->InPlane[0][i], this->InPlane[1][i] }, this->Offsets[i] },
       this->Corners[i] };
@@ -92,86 +92,87 @@ public:
   /// Reads, validates and prepares. @a target may be null: then only coordinates can be asked for.
   /// Defects are added to @a problems; returns null if they made the meshes be refused.
   static std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target,
-    const HomeomorphismOptions& options, MeshProblems& problems);
+    const HomeomorphismOptions& options, MeshDiagnostics& problems);
 
   const TriangulationPair& GetPair() const { return *this->Pair; }
-  const ChartedTriangulation& GetCharts(Side side) const { return *this->Charts[int(side)]; }
+  const ChartedTriangulation& GetCharts(Domain domain) const { return *this->Charts[int(domain)]; }
 
-  /// The distance, in working coordinates, up to which a point is taken to the nearest point of the
-  /// domain: what rounding of the mesh's coordinates, or of the point's, stored with the relative
-  /// error @a precision, amounts to, or @a tolerance times the diagonal of the domain if that is
-  /// more.
-  double GetReach(Side side, double tolerance, double precision) const;
+  /// The distance, in normalized coordinates, up to which a point is taken to the nearest point of
+  /// the domain: what rounding of the mesh's coordinates, or of the point's, stored with the
+  /// relative error @a precision, amounts to, or @a tolerance times the diagonal of the domain if
+  /// that is more.
+  double GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const;
 
   /// The place of a point in a mesh's domain.
-  Location Locate(Side side, const double point[3], double reach, TriangleIndex hint) const;
+  SurfacePoint Locate(
+    Domain domain, const double point[3], double tolerance, TriangleIndex hint) const;
 
   /// The image of a place of @a from's domain. Corners go to corners exactly.
-  void MapPoint(Side from, const Location& place, double image[3]) const;
+  void MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
 
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
-  int LocateBlock(Side side, PointBlock& block, double reach, LocationHint& hint) const;
+  int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const;
 
   /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose
   /// place has no triangle stay.
-  void MapBlock(Side from, PointBlock& block) const;
+  void MapBlock(Domain from, PointBlock& block) const;
 
   /// The derivative at a place; on an edge, the limit from the place's triangle.
-  Jacobian GetJacobian(Side from, const Location& place) const;
+  Jacobian GetJacobian(Domain from, const SurfacePoint& surfacePoint) const;
 
   /// The derivative at the point of a triangle that has these coordinates; where the coordinate
   /// system is not differentiable, the limit along the contour that they name.
   Jacobian GetJacobian(
-    Side from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
+    Domain from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
   /// Triangular coordinates of a place of the domain.
-  TriangularCoordinates GetCoordinates(Side side, const Location& place) const
+  TriangularCoordinates GetCoordinates(Domain domain, const SurfacePoint& surfacePoint) const
   {
-    return this->GetCharts(side).ToCoordinates(place.Triangle, place.Point.InPlane);
+    return this->GetCharts(domain).ToCoordinates(surfacePoint.Triangle, surfacePoint.Point.InPlane);
   }
 
 private:
   Homeomorphism() = default;
 
   /// A point's place, given in both coordinates.
-  Location Locate(Side side, const double point[3], const Vector3& working, double reach,
-    TriangleIndex hint) const;
+  SurfacePoint Locate(Domain domain, const double point[3], const Vector3& normalized,
+    double tolerance, TriangleIndex hint) const;
 
   /// The distance of a place's image from the plane of its triangle. Distances from a plane are
-  /// lengths of the input's space, not of either working space.
-  double OffsetOfImage(Side from, double offset) const
+  /// lengths of the input's space, not of either normalized space.
+  double OffsetOfImage(Domain from, double offset) const
   {
     // Powers of two: nothing is rounded.
-    return offset * this->Pair->GetEmbedding(from).GetInverseScale() *
-      this->Pair->GetEmbedding(Opposite(from)).GetScale();
+    return offset * this->Pair->GetGeometry(from).GetInverseScale() *
+      this->Pair->GetGeometry(Opposite(from)).GetScale();
   }
 
   /// The block's barycentric coordinates, ordered as a triangle's corners.
-  std::array<double*, 3> ByCorner(Side side, TriangleIndex triangle, PointBlock& block) const
+  std::array<double*, 3> ByCorner(Domain domain, TriangleIndex triangle, PointBlock& block) const
   {
     std::array<double*, 3> coordinates;
-    const int apex = this->Pair->GetEmbedding(side).GetApex(triangle);
+    const int apex = this->Pair->GetGeometry(domain).GetApex(triangle);
     coordinates[apex] = block.Apex;
     coordinates[NextCorner(apex)] = block.First;
     coordinates[PreviousCorner(apex)] = block.Second;
     return coordinates;
   }
-  void MapByStrips(Side from, PointBlock& block) const;
-  void MapByContours(Side from, PointBlock& block) const;
+  void MapByStrips(Domain from, PointBlock& block) const;
+  void MapByContours(Domain from, PointBlock& block) const;
   void LeaveTriangle(
-    Side from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
+    Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
 
   template <typename Use>
-  auto VisitCharts(Side from, TriangleIndex triangle, Use&& use) const;
+  auto VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const;
 
   /// The derivative at a triangle's reference point.
   template <typename Chart>
-  Jacobian Derive(Side from, TriangleIndex triangle, const Chart& chart, const Chart& other,
+  Jacobian Derive(Domain from, TriangleIndex triangle, const Chart& chart, const Chart& other,
     const typename Chart::Reference& reference) const;
 
   /// From the triangle's frames to the input's coordinates. @a determinant is that of the matrix.
   Jacobian FromFrames(
-    Side from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
+    Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;

@@ -28,7 +28,7 @@ namespace
 class Offenders
 {
 public:
-  Offenders(MeshProblem::Kind kind, const std::string& where)
+  Offenders(MeshDiagnostic::Kind kind, const std::string& where)
   {
     this->Problem.What = kind;
     this->Problem.Where = where;
@@ -37,13 +37,13 @@ public:
   void Add(vtkIdType cell)
   {
     ++this->Problem.Count;
-    if (this->Problem.FirstCells.size() < MeshProblem::MaximumIds)
+    if (this->Problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
     {
       this->Problem.FirstCells.push_back(cell);
     }
   }
 
-  void Report(MeshProblems& problems, const std::string& details = std::string()) const
+  void Report(MeshDiagnostics& problems, const std::string& details = std::string()) const
   {
     if (this->Problem.Count > 0)
     {
@@ -53,13 +53,13 @@ public:
   }
 
 private:
-  MeshProblem Problem;
+  MeshDiagnostic Problem;
 };
 
 /// The whole mesh is at fault, not some of its triangles.
-void ReportWhole(MeshProblem::Kind kind, const std::string& details, MeshProblems& problems)
+void ReportWhole(MeshDiagnostic::Kind kind, const std::string& details, MeshDiagnostics& problems)
 {
-  MeshProblem problem;
+  MeshDiagnostic problem;
   problem.What = kind;
   problem.Count = 1;
   problem.Details = details;
@@ -130,7 +130,7 @@ void ReadPolygons(OffsetArray* offsetArray, OffsetArray* connectivityArray,
 
 /// Whether the interiors of two triangles of the plane have a point in common: not if the line
 /// through an edge of one separates them.
-bool InteriorsMeet(const Embedding& geometry, const Triangulation::Corners& first,
+bool InteriorsMeet(const MeshGeometry& geometry, const Triangulation::Corners& first,
   const Triangulation::Corners& second)
 {
   const auto separates = [&geometry](
@@ -152,18 +152,18 @@ bool InteriorsMeet(const Embedding& geometry, const Triangulation::Corners& firs
   return !separates(first, second) && !separates(second, first);
 }
 
-/// Whether a triangle and a neighbour across an edge lie on the same side of it.
-bool HasFold(const Triangulation& triangulation, const Embedding& embedding, TriangleIndex t)
+/// Whether a triangle and a neighbor across an edge lie on the same side of it.
+bool HasFold(const Triangulation& triangulation, const MeshGeometry& geometry, TriangleIndex t)
 {
-  const int orientation = embedding.GetOrientation(t);
+  const int orientation = geometry.GetOrientation(t);
   for (int k = 0; k < 3; ++k)
   {
-    const AcrossEdge across = triangulation.GetAcross(t, k);
+    const Twin across = triangulation.GetTwin(t, k);
     if (across.Triangle < 0)
     {
       continue;
     }
-    const int other = embedding.GetOrientation(across.Triangle);
+    const int other = geometry.GetOrientation(across.Triangle);
     if (orientation != (across.SameDirection ? -other : other))
     {
       return true;
@@ -173,7 +173,7 @@ bool HasFold(const Triangulation& triangulation, const Embedding& embedding, Tri
 }
 
 /// Whether there are such triangles.
-bool HasFolds(const Triangulation& triangulation, const Embedding& embedding)
+bool HasFolds(const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   if (!triangulation.HasMixedWinding())
   {
@@ -184,8 +184,8 @@ bool HasFolds(const Triangulation& triangulation, const Embedding& embedding)
     {
       if (!triangulation.IsMasked(t))
       {
-        left = left || embedding.GetOrientation(t) > 0;
-        right = right || embedding.GetOrientation(t) < 0;
+        left = left || geometry.GetOrientation(t) > 0;
+        right = right || geometry.GetOrientation(t) < 0;
       }
     }
     if (!left || !right)
@@ -194,17 +194,17 @@ bool HasFolds(const Triangulation& triangulation, const Embedding& embedding)
     }
   }
   return !FindTriangles(triangulation, [&](TriangleIndex t) {
-    return HasFold(triangulation, embedding, t);
+    return HasFold(triangulation, geometry, t);
   }).empty();
 }
 
 /// The box around some corners of a triangle of the plane.
-Box<2> BoxAround(const Embedding& embedding, std::initializer_list<std::int32_t> points)
+Box<2> BoxAround(const MeshGeometry& geometry, std::initializer_list<std::int32_t> points)
 {
   Box<2> box;
   for (const std::int32_t point : points)
   {
-    box.Add({ embedding.GetPlanePoint(point).x, embedding.GetPlanePoint(point).y });
+    box.Add({ geometry.GetPlanePoint(point).x, geometry.GetPlanePoint(point).y });
   }
   return box;
 }
@@ -212,13 +212,13 @@ Box<2> BoxAround(const Embedding& embedding, std::initializer_list<std::int32_t>
 /// Whether a triangle's interior meets that of one that is near a box. visitNear(box, visit) is
 /// like PointLocation::VisitNear.
 template <typename VisitNear>
-bool OverlapsNear(const Triangulation& triangulation, const Embedding& embedding,
+bool OverlapsNear(const Triangulation& triangulation, const MeshGeometry& geometry,
   VisitNear&& visitNear, TriangleIndex t, const Box<2>& box)
 {
   bool overlaps = false;
   visitNear(box, [&](TriangleIndex other) {
     overlaps = other != t &&
-      InteriorsMeet(embedding, triangulation.GetCorners(t), triangulation.GetCorners(other));
+      InteriorsMeet(geometry, triangulation.GetCorners(t), triangulation.GetCorners(other));
     return !overlaps;
   });
   return overlaps;
@@ -332,33 +332,33 @@ private:
 };
 
 /// Whether a triangle at the boundary overlaps one that is near its boundary edge.
-bool OverlapsAtBoundary(const Triangulation& triangulation, const Embedding& embedding)
+bool OverlapsAtBoundary(const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   const auto boxOf = [&](TriangleIndex t) {
     const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return BoxAround(embedding, { corners[0], corners[1], corners[2] });
+    return BoxAround(geometry, { corners[0], corners[1], corners[2] });
   };
   const auto boxOfEdge = [&](TriangleIndex t, int k) {
     const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return BoxAround(embedding, { corners[NextCorner(k)], corners[PreviousCorner(k)] });
+    return BoxAround(geometry, { corners[NextCorner(k)], corners[PreviousCorner(k)] });
   };
   const TriangleList atBoundary = FindTriangles(triangulation, [&](TriangleIndex t) {
-    return triangulation.GetAcross(t, 0).Triangle < 0 ||
-      triangulation.GetAcross(t, 1).Triangle < 0 || triangulation.GetAcross(t, 2).Triangle < 0;
+    return triangulation.GetTwin(t, 0).Triangle < 0 || triangulation.GetTwin(t, 1).Triangle < 0 ||
+      triangulation.GetTwin(t, 2).Triangle < 0;
   });
   const auto visitEdges = [&](const auto& visit) {
     return std::any_of(atBoundary.begin(), atBoundary.end(), [&](TriangleIndex t) {
       bool found = false;
       for (int k = 0; k < 3 && !found; ++k)
       {
-        found = triangulation.GetAcross(t, k).Triangle < 0 && visit(t, boxOfEdge(t, k));
+        found = triangulation.GetTwin(t, k).Triangle < 0 && visit(t, boxOfEdge(t, k));
       }
       return found;
     });
   };
   // Most triangles are far from all boundary edges.
   const double few = 0.5 * std::sqrt(static_cast<double>(triangulation.GetNumberOfTriangles()));
-  Cover cover(embedding.GetPlaneBounds(), 1 + static_cast<int>(std::min(few, 255.0)));
+  Cover cover(geometry.GetPlaneBounds(), 1 + static_cast<int>(std::min(few, 255.0)));
   visitEdges([&cover](TriangleIndex, const Box<2>& box) {
     cover.Put(box);
     return false;
@@ -369,7 +369,7 @@ bool OverlapsAtBoundary(const Triangulation& triangulation, const Embedding& emb
     FindTriangles(triangulation, [&](TriangleIndex t) { return cover.MayMeet(boxOf(t)); }), boxOf);
   const auto visitNear = [&tree](const Box<2>& box, const auto& visit) { tree.Search(box, visit); };
   return visitEdges([&](TriangleIndex t, const Box<2>& box) {
-    return OverlapsNear(triangulation, embedding, visitNear, t, box);
+    return OverlapsNear(triangulation, geometry, visitNear, t, box);
   });
 }
 
@@ -381,19 +381,19 @@ vtkIdType FirstPolygon(vtkPolyData* mesh)
 }
 
 LargeArray<Triangulation::Corners> ReadTriangles(
-  vtkPolyData* mesh, const std::string& where, MeshProblems& problems)
+  vtkPolyData* mesh, const std::string& where, MeshDiagnostics& problems)
 {
   LargeArray<Triangulation::Corners> triangles;
   const vtkIdType firstCell = FirstPolygon(mesh);
-  Offenders notTriangles(MeshProblem::Kind::NotTriangles, where);
-  Offenders badConnectivity(MeshProblem::Kind::BadConnectivity, where);
+  Offenders notTriangles(MeshDiagnostic::Kind::NotTriangles, where);
+  Offenders badConnectivity(MeshDiagnostic::Kind::BadConnectivity, where);
   vtkCellArray* polygons = mesh->GetPolys();
   const vtkIdType count = CountCells(polygons);
   const vtkIdType numberOfPoints = mesh->GetNumberOfPoints();
   if (count >= Triangulation::MaximumTriangles ||
     numberOfPoints >= std::numeric_limits<std::int32_t>::max())
   {
-    ReportWhole(MeshProblem::Kind::TooManyTriangles,
+    ReportWhole(MeshDiagnostic::Kind::TooManyTriangles,
       "The " + where + " has " + std::to_string(count) + " polygons and " +
         std::to_string(numberOfPoints) + " points; fewer than " +
         std::to_string(Triangulation::MaximumTriangles) + " and " +
@@ -417,7 +417,7 @@ LargeArray<Triangulation::Corners> ReadTriangles(
   notTriangles.Report(problems, "polygon with another number of corners than three");
   badConnectivity.Report(problems);
 
-  Offenders strips(MeshProblem::Kind::NotTriangles, where);
+  Offenders strips(MeshDiagnostic::Kind::NotTriangles, where);
   for (vtkIdType strip = 0; strip < CountCells(mesh->GetStrips()); ++strip)
   {
     strips.Add(firstCell + count + strip);
@@ -428,18 +428,18 @@ LargeArray<Triangulation::Corners> ReadTriangles(
 
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
-  const LargeArray<Triangulation::Corners>& targetTriangles, MeshProblems& problems)
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& problems)
 {
   if (source->GetNumberOfPoints() != target->GetNumberOfPoints())
   {
-    ReportWhole(MeshProblem::Kind::PointCountsDiffer,
+    ReportWhole(MeshDiagnostic::Kind::PointCountsDiffer,
       "The source has " + std::to_string(source->GetNumberOfPoints()) + " points, the target " +
         std::to_string(target->GetNumberOfPoints()),
       problems);
   }
   if (sourceTriangles.size() != targetTriangles.size())
   {
-    ReportWhole(MeshProblem::Kind::CellCountsDiffer,
+    ReportWhole(MeshDiagnostic::Kind::CellCountsDiffer,
       "The source has " + std::to_string(sourceTriangles.size()) + " triangles, the target " +
         std::to_string(targetTriangles.size()),
       problems);
@@ -448,7 +448,7 @@ void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   {
     return;
   }
-  Offenders different(MeshProblem::Kind::ConnectivityDiffers, "pair");
+  Offenders different(MeshDiagnostic::Kind::ConnectivityDiffers, "pair");
   const vtkIdType firstCell = FirstPolygon(source);
   for (std::size_t t = 0; t < sourceTriangles.size(); ++t)
   {
@@ -498,24 +498,24 @@ TriangleList FindRepeatedCorners(const Triangulation& triangulation)
   });
 }
 
-TriangleList FindNotFinite(const Triangulation& triangulation, const Embedding& embedding)
+TriangleList FindNotFinite(const Triangulation& triangulation, const MeshGeometry& geometry)
 {
-  if (embedding.IsFinite())
+  if (geometry.IsFinite())
   {
     return {};
   }
   return FindTriangles(triangulation,
-    [&](TriangleIndex t) { return !embedding.IsFinite(triangulation.GetCorners(t)); });
+    [&](TriangleIndex t) { return !geometry.IsFinite(triangulation.GetCorners(t)); });
 }
 
-TriangleList FindNoArea(const Triangulation& triangulation, const Embedding& embedding)
+TriangleList FindDegenerate(const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   return FindTriangles(
-    triangulation, [&](TriangleIndex t) { return embedding.HasNoArea(triangulation, t); });
+    triangulation, [&](TriangleIndex t) { return geometry.IsDegenerate(triangulation, t); });
 }
 
 TriangleList FindFlipped(
-  const Triangulation& triangulation, const Embedding& source, const Embedding& target)
+  const Triangulation& triangulation, const MeshGeometry& source, const MeshGeometry& target)
 {
   const auto isMirrored = [&](TriangleIndex t) {
     return source.GetOrientation(t) != target.GetOrientation(t);
@@ -534,13 +534,13 @@ TriangleList FindFlipped(
 }
 
 TriangleList FindOverlapping(
-  const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location)
+  const Triangulation& triangulation, const MeshGeometry& geometry, const PointLocation& location)
 {
   // Without folds, how often a point of the plane is covered changes only across boundary edges.
   // Beside a region that is covered twice there then is a boundary edge whose triangle is on the
   // side that is covered twice: there it overlaps a triangle that touches the edge. So only what is
   // near boundary edges has to be compared.
-  if (!HasFolds(triangulation, embedding) && !OverlapsAtBoundary(triangulation, embedding))
+  if (!HasFolds(triangulation, geometry) && !OverlapsAtBoundary(triangulation, geometry))
   {
     return {};
   }
@@ -550,8 +550,8 @@ TriangleList FindOverlapping(
   // Something overlaps: name all that do.
   return FindTriangles(triangulation, [&](TriangleIndex t) {
     const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return OverlapsNear(triangulation, embedding, visitNear, t,
-      BoxAround(embedding, { corners[0], corners[1], corners[2] }));
+    return OverlapsNear(triangulation, geometry, visitNear, t,
+      BoxAround(geometry, { corners[0], corners[1], corners[2] }));
   });
 }
 

@@ -9,8 +9,8 @@
 #ifndef homeomorphism_MeshValidation_h
 #define homeomorphism_MeshValidation_h
 
-#include "Embedding.h"
-#include "MeshProblem.h"
+#include "MeshDiagnostic.h"
+#include "MeshGeometry.h"
 #include "PointLocation.h"
 #include "Triangulation.h"
 
@@ -34,13 +34,13 @@ vtkIdType FirstPolygon(vtkPolyData* mesh);
 /// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
 /// exist, and counts beyond what can be numbered. @a where names the mesh in messages.
 LargeArray<Triangulation::Corners> ReadTriangles(
-  vtkPolyData* mesh, const std::string& where, MeshProblems& problems);
+  vtkPolyData* mesh, const std::string& where, MeshDiagnostics& problems);
 
 /// Reports what keeps source and target from being the same mesh: counts, and triangles that do not
 /// have the same three points. The order of the three points is free.
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
-  const LargeArray<Triangulation::Corners>& targetTriangles, MeshProblems& problems);
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& problems);
 
 /// The array of some attributes that marks what is hidden or belongs to another piece
 /// (vtkGhostType); null if there is none that has one value for each of @a tuples points or cells.
@@ -53,21 +53,21 @@ TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation);
 TriangleList FindRepeatedCorners(const Triangulation& triangulation);
 
 /// Triangles with a coordinate that is not finite.
-TriangleList FindNotFinite(const Triangulation& triangulation, const Embedding& embedding);
+TriangleList FindNotFinite(const Triangulation& triangulation, const MeshGeometry& geometry);
 
 /// Triangles without area.
-TriangleList FindNoArea(const Triangulation& triangulation, const Embedding& embedding);
+TriangleList FindDegenerate(const Triangulation& triangulation, const MeshGeometry& geometry);
 
 /// Of two planar meshes, the triangles that change their orientation if most do not, or keep it if
 /// most change it.
 TriangleList FindFlipped(
-  const Triangulation& triangulation, const Embedding& source, const Embedding& target);
+  const Triangulation& triangulation, const MeshGeometry& source, const MeshGeometry& target);
 
 /// Triangles of a planar mesh whose interior meets another's, by exact predicates. @a
 /// triangulation's adjacency and @a location must know which triangles are masked. Nearly linear in
 /// the number of triangles as long as there are none; @a location is asked only if there are some.
 TriangleList FindOverlapping(
-  const Triangulation& triangulation, const Embedding& embedding, const PointLocation& location);
+  const Triangulation& triangulation, const MeshGeometry& geometry, const PointLocation& location);
 
 } // namespace homeomorphism
 

@@ -26,7 +26,7 @@ Vector2 NearestInTriangle(const TriangleShape& shape, const Vector2& point)
 
 /// Whether a point is in a triangle of the plane: 1 inside, 0 on its boundary, -1 outside.
 int Containment(
-  const Embedding& geometry, const Triangulation::Corners& corners, const Vector2& point)
+  const MeshGeometry& geometry, const Triangulation::Corners& corners, const Vector2& point)
 {
   const Vector2& a = geometry.GetPlanePoint(corners[0]);
   const Vector2& b = geometry.GetPlanePoint(corners[1]);
@@ -46,10 +46,10 @@ int Containment(
 /// The best candidate so far among triangles at some distance: the nearest, then the lowest number.
 struct Nearest
 {
-  Location Found;
+  SurfacePoint Found;
   double Distance;
 
-  void Offer(TriangleIndex triangle, const FramePoint& place, double distance)
+  void Offer(TriangleIndex triangle, const FramePoint& framePoint, double distance)
   {
     const bool better = this->Found.Triangle < 0 ? distance <= this->Distance
                                                  : distance < this->Distance ||
@@ -57,7 +57,7 @@ struct Nearest
     if (better)
     {
       this->Found.Triangle = triangle;
-      this->Found.Point = place;
+      this->Found.Point = framePoint;
       this->Distance = distance;
     }
   }
@@ -65,11 +65,11 @@ struct Nearest
 
 } // namespace
 
-PointLocation::PointLocation(const Triangulation& triangulation, const Embedding& embedding)
+PointLocation::PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry)
   : Topology(triangulation)
-  , Geometry(embedding)
+  , Geometry(geometry)
 {
-  if (embedding.IsPlanar())
+  if (geometry.IsPlanar())
   {
     this->PlantSeeds();
   }
@@ -158,18 +158,22 @@ void PointLocation::PlantSeeds()
   }
 }
 
-Location PointLocation::Find(const Vector3& working, double tolerance, TriangleIndex hint) const
+SurfacePoint PointLocation::Find(
+  const Vector3& normalized, double tolerance, TriangleIndex hint) const
 {
-  if (!(std::isfinite(working[0]) && std::isfinite(working[1]) && std::isfinite(working[2])))
+  if (!(std::isfinite(normalized[0]) && std::isfinite(normalized[1]) &&
+        std::isfinite(normalized[2])))
   {
     return {};
   }
-  if (!this->Geometry.IsColumnar() && this->Geometry.IsPlanar() && std::abs(working[2]) > tolerance)
+  if (!this->Geometry.IsColumnar() && this->Geometry.IsPlanar() &&
+    std::abs(normalized[2]) > tolerance)
   {
     return {};
   }
-  Location location = this->Geometry.IsPlanar() ? this->FindInPlane(working, tolerance, hint)
-                                                : this->FindNearest(working, tolerance, hint);
+  SurfacePoint location = this->Geometry.IsPlanar()
+    ? this->FindInPlane(normalized, tolerance, hint)
+    : this->FindNearest(normalized, tolerance, hint);
   if (!this->Geometry.IsColumnar())
   {
     location.Point.Offset = 0.0;
@@ -177,15 +181,15 @@ Location PointLocation::Find(const Vector3& working, double tolerance, TriangleI
   return location;
 }
 
-int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& working) const
+int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized) const
 {
   const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
   int found = -1;
   for (int k = 0; k < 3; ++k)
   {
     const Vector3 corner = this->Geometry.GetPoint(corners[k]);
-    if (working[0] == corner[0] && working[1] == corner[1] &&
-      (this->Geometry.IsPlanar() || working[2] == corner[2]))
+    if (normalized[0] == corner[0] && normalized[1] == corner[1] &&
+      (this->Geometry.IsPlanar() || normalized[2] == corner[2]))
     {
       found = k;
     }
@@ -194,16 +198,16 @@ int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& working) co
 }
 
 /// The place of a point that is in a triangle of the plane.
-Location PointLocation::Place(TriangleIndex triangle, const Vector3& working) const
+SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3& normalized) const
 {
-  return { triangle, this->Geometry.ToFrame(triangle, working),
-    this->FindCorner(triangle, working) };
+  return { triangle, this->Geometry.ToFrame(triangle, normalized),
+    this->FindCorner(triangle, normalized) };
 }
 
 /// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for
 /// certain in the triangle's interior, @a location has its place.
 TriangleIndex PointLocation::Walk(
-  const Vector2& point, TriangleIndex start, Location& location) const
+  const Vector2& point, TriangleIndex start, SurfacePoint& location) const
 {
   // Walks in triangulations that are not Delaunay's may go round in circles.
   constexpr int longest = 64;
@@ -241,7 +245,7 @@ TriangleIndex PointLocation::Walk(
       int edges = 0;
       for (int k = 0; k < 3; ++k)
       {
-        const int side = frame.Side *
+        const int side = frame.Orientation *
           Orientation(this->Geometry.GetPlanePoint(corners[NextCorner(k)]),
             this->Geometry.GetPlanePoint(corners[PreviousCorner(k)]), point);
         if (side < 0)
@@ -262,11 +266,11 @@ TriangleIndex PointLocation::Walk(
         }
         // Within an edge of two triangles there is no third. At a vertex or on the boundary there
         // may be more, also such that share no point of the mesh with this one.
-        const TriangleIndex other = edges == 1 ? this->Topology.GetAcross(t, onEdge).Triangle : -1;
+        const TriangleIndex other = edges == 1 ? this->Topology.GetTwin(t, onEdge).Triangle : -1;
         return other >= 0 ? std::min(t, other) : -1;
       }
     }
-    t = this->Topology.GetAcross(t, edge).Triangle;
+    t = this->Topology.GetTwin(t, edge).Triangle;
     if (t < 0)
     {
       return -1;
@@ -290,12 +294,12 @@ TriangleIndex PointLocation::SearchPlane(const Vector2& point) const
   return found;
 }
 
-Location PointLocation::FindInPlane(
-  const Vector3& working, double tolerance, TriangleIndex hint) const
+SurfacePoint PointLocation::FindInPlane(
+  const Vector3& normalized, double tolerance, TriangleIndex hint) const
 {
-  const Vector2 point{ working[0], working[1] };
-  Location location;
-  location.Point.Offset = working[2];
+  const Vector2 point{ normalized[0], normalized[1] };
+  SurfacePoint location;
+  location.Point.Offset = normalized[2];
   // From a triangle that is many of its sizes away it is shorter by way of the seed.
   constexpr double far = -4.0;
   // The domain's coordinates are near 1; products of huge ones would overflow.
@@ -325,47 +329,47 @@ Location PointLocation::FindInPlane(
   }
   if (found >= 0)
   {
-    return this->Place(found, working);
+    return this->ToSurfacePoint(found, normalized);
   }
   Nearest nearest{ {}, tolerance };
-  Box<2> reach = Box<2>::Around({ point.x, point.y }, tolerance);
-  this->GetPlaneTree().Search(reach, [&](TriangleIndex t) {
-    FramePoint place = this->Geometry.ToFrame(t, working);
-    const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), place.InPlane);
-    const double distance = Distance(inTriangle, place.InPlane);
-    place.InPlane = inTriangle;
-    nearest.Offer(t, place, distance);
-    reach = Box<2>::Around({ point.x, point.y }, nearest.Distance);
+  Box<2> box = Box<2>::Around({ point.x, point.y }, tolerance);
+  this->GetPlaneTree().Search(box, [&](TriangleIndex t) {
+    FramePoint framePoint = this->Geometry.ToFrame(t, normalized);
+    const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), framePoint.InPlane);
+    const double distance = Distance(inTriangle, framePoint.InPlane);
+    framePoint.InPlane = inTriangle;
+    nearest.Offer(t, framePoint, distance);
+    box = Box<2>::Around({ point.x, point.y }, nearest.Distance);
     return true;
   });
   return nearest.Found;
 }
 
-Location PointLocation::FindNearest(
-  const Vector3& working, double tolerance, TriangleIndex hint) const
+SurfacePoint PointLocation::FindNearest(
+  const Vector3& normalized, double tolerance, TriangleIndex hint) const
 {
   Nearest nearest{ {}, tolerance };
   const auto offer = [&](TriangleIndex t) {
-    FramePoint place = this->Geometry.ToFrame(t, working);
-    const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), place.InPlane);
-    const double distance = std::hypot(Distance(inTriangle, place.InPlane), place.Offset);
-    place.InPlane = inTriangle;
-    nearest.Offer(t, place, distance);
+    FramePoint framePoint = this->Geometry.ToFrame(t, normalized);
+    const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), framePoint.InPlane);
+    const double distance = std::hypot(Distance(inTriangle, framePoint.InPlane), framePoint.Offset);
+    framePoint.InPlane = inTriangle;
+    nearest.Offer(t, framePoint, distance);
   };
   if (hint >= 0 && !this->Topology.IsMasked(hint))
   {
     // The nearest is no farther than this one.
     offer(hint);
   }
-  Box<3> reach = Box<3>::Around(working, nearest.Distance);
-  this->SpaceTree.Search(reach, [&](TriangleIndex t) {
+  Box<3> box = Box<3>::Around(normalized, nearest.Distance);
+  this->SpaceTree.Search(box, [&](TriangleIndex t) {
     offer(t);
-    reach = Box<3>::Around(working, nearest.Distance);
+    box = Box<3>::Around(normalized, nearest.Distance);
     return true;
   });
   if (nearest.Found.Triangle >= 0)
   {
-    nearest.Found.Corner = this->FindCorner(nearest.Found.Triangle, working);
+    nearest.Found.Corner = this->FindCorner(nearest.Found.Triangle, normalized);
   }
   return nearest.Found;
 }

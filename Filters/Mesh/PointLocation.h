@@ -8,10 +8,10 @@
 #define homeomorphism_PointLocation_h
 
 #include "BoxTree.h"
-#include "Embedding.h"
+#include "MeshGeometry.h"
 #include "Triangulation.h"
 
-#include "Kernel/Vectorize.h"
+#include "Kernel/Simd/Vectorize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace homeomorphism
 {
 
 /// Where a point was found.
-struct Location
+struct SurfacePoint
 {
   /// -1 if the point is outside.
   TriangleIndex Triangle = -1;
@@ -48,7 +48,7 @@ struct PlaneRelation
   HOMEOMORPHISM_ALWAYS_INLINE PlaneRelation(const PlaneFrame& frame, const Vector2& point)
   {
     const Vector2 d = point - frame.Origin;
-    this->InPlane = { Dot(d, frame.Tangent), frame.Side * Cross(frame.Tangent, d) };
+    this->InPlane = { Dot(d, frame.Tangent), frame.Orientation * Cross(frame.Tangent, d) };
     // As in TriangleShape::ToBarycentric.
     this->Apex = this->InPlane.y / frame.Height;
     this->Second = (this->InPlane.x - frame.ApexX * this->Apex) / frame.Base;
@@ -85,12 +85,12 @@ class PointLocation
 {
 public:
   /// Refers to the two, which must outlive it. Masked triangles are not found.
-  PointLocation(const Triangulation& triangulation, const Embedding& embedding);
+  PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry);
 
-  /// @a working is the point in the embedding's working coordinates, @a tolerance a distance in
-  /// them, @a hint the triangle where the point probably is, or -1. The embedding must have its
+  /// @a normalized is the point in the geometry's normalized coordinates, @a tolerance a distance
+  /// in them, @a hint the triangle where the point probably is, or -1. The geometry must have its
   /// frames.
-  Location Find(const Vector3& working, double tolerance, TriangleIndex hint) const;
+  SurfacePoint Find(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
 
   /// A triangle of a planar mesh that is probably near a point, or -1.
   TriangleIndex GetSeed(const Vector2& point) const
@@ -117,15 +117,15 @@ private:
   std::vector<TriangleIndex> ListTriangles() const;
   void PlantSeeds();
   const BoxTree<2>& GetPlaneTree() const;
-  int FindCorner(TriangleIndex triangle, const Vector3& working) const;
-  Location Place(TriangleIndex triangle, const Vector3& working) const;
-  Location FindInPlane(const Vector3& working, double tolerance, TriangleIndex hint) const;
-  TriangleIndex Walk(const Vector2& point, TriangleIndex start, Location& location) const;
+  int FindCorner(TriangleIndex triangle, const Vector3& normalized) const;
+  SurfacePoint ToSurfacePoint(TriangleIndex triangle, const Vector3& normalized) const;
+  SurfacePoint FindInPlane(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
+  TriangleIndex Walk(const Vector2& point, TriangleIndex start, SurfacePoint& location) const;
   TriangleIndex SearchPlane(const Vector2& point) const;
-  Location FindNearest(const Vector3& working, double tolerance, TriangleIndex hint) const;
+  SurfacePoint FindNearest(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
 
   const Triangulation& Topology;
-  const Embedding& Geometry;
+  const MeshGeometry& Geometry;
   BoxTree<3> SpaceTree;
   // Made when it is first needed, by whichever thread does first: often no point is outside or on
   // an edge, and one of the two directions is not used at all.

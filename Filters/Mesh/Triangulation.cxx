@@ -103,7 +103,7 @@ std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints
   return crowded;
 }
 
-std::vector<TriangleIndex> Triangulation::FindNotOrientable() const
+std::vector<TriangleIndex> Triangulation::FindNonOrientable() const
 {
   if (!this->MixedWinding)
   {
@@ -128,7 +128,7 @@ std::vector<TriangleIndex> Triangulation::FindNotOrientable() const
       waiting.pop_back();
       for (int k = 0; k < 3; ++k)
       {
-        const AcrossEdge across = this->GetAcross(t, k);
+        const Twin across = this->GetTwin(t, k);
         if (across.Triangle < 0)
         {
           continue;

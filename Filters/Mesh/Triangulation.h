@@ -32,14 +32,14 @@ inline void Prefetch(const void* place)
 }
 
 /// What lies across an edge of a triangle.
-struct AcrossEdge
+struct Twin
 {
   /// -1 on the boundary.
   TriangleIndex Triangle = -1;
   /// The shared edge in that triangle, 0 to 2.
   int Edge = 0;
   /// Whether that triangle's cyclic order runs through the edge in the same direction as this one's
-  /// (files that mix their winding do so; consistently wound neighbours run against each other).
+  /// (files that mix their winding do so; consistently wound neighbors run against each other).
   bool SameDirection = false;
 };
 
@@ -67,7 +67,7 @@ public:
   /// Whether the triangle was left out: nothing is mapped by it and its edges are boundary.
   bool IsMasked(TriangleIndex triangle) const { return this->Masked[triangle] != 0; }
 
-  AcrossEdge GetAcross(TriangleIndex triangle, int edge) const
+  Twin GetTwin(TriangleIndex triangle, int edge) const
   {
     const std::int32_t code = this->Adjacency[triangle][edge];
     if (code < 0)
@@ -77,8 +77,8 @@ public:
     return { code >> 3, (code >> 1) & 3, (code & 1) != 0 };
   }
 
-  /// Asks for what GetAcross will need, without waiting for it.
-  void PrefetchAcross(TriangleIndex triangle) const { Prefetch(&this->Adjacency[triangle]); }
+  /// Asks for what GetTwin will need, without waiting for it.
+  void PrefetchTwin(TriangleIndex triangle) const { Prefetch(&this->Adjacency[triangle]); }
 
   /// What lies across the edges is not known until FindAdjacency. @a scratch is an array of the
   /// same size that is no longer needed, whose memory can be used again.
@@ -91,17 +91,17 @@ public:
   /// boundary.
   std::vector<TriangleIndex> FindAdjacency(vtkIdType numberOfPoints);
 
-  /// Whether there are neighbours whose cyclic orders run through their edge in the same direction.
+  /// Whether there are neighbors whose cyclic orders run through their edge in the same direction.
   bool HasMixedWinding() const { return this->MixedWinding; }
 
-  /// Returns, ascending, the triangles whose winding contradicts a neighbour's, however the winding
+  /// Returns, ascending, the triangles whose winding contradicts a neighbor's, however the winding
   /// of triangles is reversed: none if the surface is orientable.
-  std::vector<TriangleIndex> FindNotOrientable() const;
+  std::vector<TriangleIndex> FindNonOrientable() const;
 
 private:
   LargeArray<Corners> Triangles;
   std::vector<std::uint8_t> Masked;
-  // Neighbour, its edge and the direction in one number: triangle * 8 + edge * 2 + same direction.
+  // Neighbor, its edge and the direction in one number: triangle * 8 + edge * 2 + same direction.
   LargeArray<Corners> Adjacency;
   bool MixedWinding = false;
   vtkIdType FirstCell = 0;

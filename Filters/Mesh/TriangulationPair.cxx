@@ -22,7 +22,7 @@ class TriangulationPair::Builder
 {
 public:
   Builder(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshProblems& problems)
+    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems)
     : Meshes{ source, target }
     , Names{ target ? "source" : "triangulation", "target" }
     , MaskInvalidTriangles(maskInvalidTriangles)
@@ -56,11 +56,11 @@ public:
     {
       return nullptr;
     }
-    for (const auto& embedding : this->Pair->Embeddings)
+    for (const auto& geometry : this->Pair->Geometries)
     {
-      if (embedding)
+      if (geometry)
       {
-        embedding->ComputeFrames(this->Pair->Topology);
+        geometry->ComputeFrames(this->Pair->Topology);
       }
     }
     return std::shared_ptr<const TriangulationPair>(std::move(this->Pair));
@@ -70,24 +70,24 @@ private:
   /// Masks or refuses triangles. Returns whether there were any.
   /// Of a pair's defects, the ids are those of the source's cells.
   bool Exclude(
-    MeshProblem::Kind kind, int side, const std::string& where, const TriangleList& triangles)
+    MeshDiagnostic::Kind kind, int domain, const std::string& where, const TriangleList& triangles)
   {
     if (triangles.empty())
     {
       return false;
     }
-    MeshProblem problem;
+    MeshDiagnostic problem;
     problem.What = kind;
     problem.Where = where;
     problem.Count = static_cast<vtkIdType>(triangles.size());
     // One side only surfaces are not the fault of single triangles.
-    const bool mask = this->MaskInvalidTriangles && kind != MeshProblem::Kind::NotOrientable;
-    problem.Result = mask ? MeshProblem::Outcome::Masked : MeshProblem::Outcome::Refused;
+    const bool mask = this->MaskInvalidTriangles && kind != MeshDiagnostic::Kind::NonOrientable;
+    problem.Result = mask ? MeshDiagnostic::Outcome::Masked : MeshDiagnostic::Outcome::Refused;
     for (const TriangleIndex t : triangles)
     {
-      if (problem.FirstCells.size() < MeshProblem::MaximumIds)
+      if (problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
       {
-        problem.FirstCells.push_back(FirstPolygon(this->Meshes[side]) + t);
+        problem.FirstCells.push_back(FirstPolygon(this->Meshes[domain]) + t);
       }
       if (mask)
       {
@@ -127,7 +127,7 @@ private:
       }
     }
     this->Exclude(
-      MeshProblem::Kind::RepeatedCorner, 0, this->Names[0], FindRepeatedCorners(topology));
+      MeshDiagnostic::Kind::RepeatedCorner, 0, this->Names[0], FindRepeatedCorners(topology));
   }
 
   void ReadGeometry()
@@ -135,36 +135,36 @@ private:
     const Triangulation& topology = this->Pair->Topology;
     const vtkNew<vtkPoints> none;
     // The second is read in view of the first, which must not be one of an earlier pass.
-    this->Pair->Embeddings = {};
-    for (int side = 0; side < 2 && this->Meshes[side]; ++side)
+    this->Pair->Geometries = {};
+    for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
-      vtkPoints* points = this->Meshes[side]->GetPoints();
-      this->Pair->Embeddings[side] = std::make_unique<Embedding>(
-        points ? points : none.Get(), topology, this->Pair->Embeddings[0].get());
-      const Embedding& embedding = *this->Pair->Embeddings[side];
-      if (this->Exclude(MeshProblem::Kind::NotFinite, side, this->Names[side],
-            FindNotFinite(topology, embedding)) &&
+      vtkPoints* points = this->Meshes[domain]->GetPoints();
+      this->Pair->Geometries[domain] = std::make_unique<MeshGeometry>(
+        points ? points : none.Get(), topology, this->Pair->Geometries[0].get());
+      const MeshGeometry& geometry = *this->Pair->Geometries[domain];
+      if (this->Exclude(MeshDiagnostic::Kind::NotFinite, domain, this->Names[domain],
+            FindNotFinite(topology, geometry)) &&
         !this->MaskInvalidTriangles)
       {
         // Areas mean nothing then.
         continue;
       }
-      this->Exclude(
-        MeshProblem::Kind::NoArea, side, this->Names[side], FindNoArea(topology, embedding));
+      this->Exclude(MeshDiagnostic::Kind::DegenerateTriangle, domain, this->Names[domain],
+        FindDegenerate(topology, geometry));
     }
-    const bool planar = this->Pair->Embeddings[0]->IsPlanar() &&
-      (!this->Meshes[1] || this->Pair->Embeddings[1]->IsPlanar());
-    for (const auto& embedding : this->Pair->Embeddings)
+    const bool planar = this->Pair->Geometries[0]->IsPlanar() &&
+      (!this->Meshes[1] || this->Pair->Geometries[1]->IsPlanar());
+    for (const auto& geometry : this->Pair->Geometries)
     {
-      if (embedding)
+      if (geometry)
       {
-        embedding->SetColumnar(planar);
+        geometry->SetColumnar(planar);
       }
     }
     if (planar && this->Meshes[1] && !IsRefused(this->Problems))
     {
-      this->Exclude(MeshProblem::Kind::Flipped, 0, "pair",
-        FindFlipped(topology, *this->Pair->Embeddings[0], *this->Pair->Embeddings[1]));
+      this->Exclude(MeshDiagnostic::Kind::Flipped, 0, "pair",
+        FindFlipped(topology, *this->Pair->Geometries[0], *this->Pair->Geometries[1]));
     }
   }
 
@@ -172,26 +172,26 @@ private:
   {
     Triangulation& topology = this->Pair->Topology;
     const vtkIdType numberOfPoints = this->Meshes[0]->GetNumberOfPoints();
-    if (this->Exclude(MeshProblem::Kind::EdgeOfManyTriangles, 0, this->Names[0],
+    if (this->Exclude(MeshDiagnostic::Kind::NonManifoldEdge, 0, this->Names[0],
           topology.FindAdjacency(numberOfPoints)) &&
       this->MaskInvalidTriangles)
     {
       topology.FindAdjacency(numberOfPoints);
     }
     this->Exclude(
-      MeshProblem::Kind::NotOrientable, 0, this->Names[0], topology.FindNotOrientable());
+      MeshDiagnostic::Kind::NonOrientable, 0, this->Names[0], topology.FindNonOrientable());
   }
 
   void ExcludeOverlaps()
   {
     Triangulation& topology = this->Pair->Topology;
-    for (int side = 0; side < 2 && this->Meshes[side]; ++side)
+    for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
-      const Embedding& embedding = *this->Pair->Embeddings[side];
-      this->Pair->Locations[side] = std::make_unique<PointLocation>(topology, embedding);
-      if (embedding.IsPlanar() &&
-        this->Exclude(MeshProblem::Kind::Overlapping, side, this->Names[side],
-          FindOverlapping(topology, embedding, *this->Pair->Locations[side])) &&
+      const MeshGeometry& geometry = *this->Pair->Geometries[domain];
+      this->Pair->Locations[domain] = std::make_unique<PointLocation>(topology, geometry);
+      if (geometry.IsPlanar() &&
+        this->Exclude(MeshDiagnostic::Kind::Overlapping, domain, this->Names[domain],
+          FindOverlapping(topology, geometry, *this->Pair->Locations[domain])) &&
         this->MaskInvalidTriangles)
       {
         // What has been left out is gone for the other mesh, too, before it is looked at.
@@ -204,12 +204,12 @@ private:
   std::array<std::string, 2> Names;
   bool MaskInvalidTriangles;
   bool HasMasked = false;
-  MeshProblems& Problems;
+  MeshDiagnostics& Problems;
   std::unique_ptr<TriangulationPair> Pair;
 };
 
 std::shared_ptr<const TriangulationPair> TriangulationPair::Read(
-  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshProblems& problems)
+  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems)
 {
   return Builder(source, target, maskInvalidTriangles, problems).Build();
 }

@@ -7,8 +7,8 @@
 #ifndef homeomorphism_TriangulationPair_h
 #define homeomorphism_TriangulationPair_h
 
-#include "Embedding.h"
-#include "MeshProblem.h"
+#include "MeshDiagnostic.h"
+#include "MeshGeometry.h"
 #include "PointLocation.h"
 #include "Triangulation.h"
 
@@ -21,18 +21,18 @@ namespace homeomorphism
 {
 
 /// Which of the two meshes.
-enum class Side
+enum class Domain
 {
   Source = 0,
   Target = 1
 };
 
-inline Side Opposite(Side side)
+inline Domain Opposite(Domain domain)
 {
-  return side == Side::Source ? Side::Target : Side::Source;
+  return domain == Domain::Source ? Domain::Target : Domain::Source;
 }
 
-/// An immutable triangulation with one or two embeddings. Any number of threads may use it.
+/// An immutable triangulation with one or two geometries. Any number of threads may use it.
 class TriangulationPair
 {
 public:
@@ -41,12 +41,12 @@ public:
   /// Defects are added to @a problems. Returns null if they made the meshes be refused; with
   /// @a maskInvalidTriangles, triangles that are defective by themselves are left out instead.
   static std::shared_ptr<const TriangulationPair> Read(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshProblems& problems);
+    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems);
 
   const Triangulation& GetTriangulation() const { return this->Topology; }
-  bool HasTarget() const { return this->Embeddings[1] != nullptr; }
-  const Embedding& GetEmbedding(Side side) const { return *this->Embeddings[int(side)]; }
-  const PointLocation& GetLocation(Side side) const { return *this->Locations[int(side)]; }
+  bool HasTarget() const { return this->Geometries[1] != nullptr; }
+  const MeshGeometry& GetGeometry(Domain domain) const { return *this->Geometries[int(domain)]; }
+  const PointLocation& GetLocation(Domain domain) const { return *this->Locations[int(domain)]; }
 
 private:
   TriangulationPair() = default;
@@ -54,7 +54,7 @@ private:
   class Builder;
 
   Triangulation Topology;
-  std::array<std::unique_ptr<Embedding>, 2> Embeddings;
+  std::array<std::unique_ptr<MeshGeometry>, 2> Geometries;
   std::array<std::unique_ptr<PointLocation>, 2> Locations;
 };
 

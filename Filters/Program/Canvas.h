@@ -71,7 +71,7 @@ public:
   void DrawDot(double x, double y, double radius, const Color& color);
   /// An image of 1 to 4 components (the brightest of a type being white), at its place.
   void DrawImage(vtkImageData* image);
-  /// Text whose line is centred (or begins) at a place of the page.
+  /// Text whose line is centerd (or begins) at a place of the page.
   void Write(const std::string& text, double x, double y, double size, bool centered = true);
 
   /// Ends the drawing. Throws Failure if it cannot be written.

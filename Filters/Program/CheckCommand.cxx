@@ -26,7 +26,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 using homeomorphism::ListIds;
-using homeomorphism::MeshProblem;
+using homeomorphism::MeshDiagnostic;
 
 std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
@@ -50,9 +50,9 @@ Json ToJson(const Extreme& extreme)
   return extreme.Cell < 0 ? Json() : Json{ { "value", extreme.Value }, { "cell", extreme.Cell } };
 }
 
-const char* NameOf(MeshProblem::Kind kind)
+const char* NameOf(MeshDiagnostic::Kind kind)
 {
-  using Kind = MeshProblem::Kind;
+  using Kind = MeshDiagnostic::Kind;
   switch (kind)
   {
     case Kind::PointCountsDiffer:
@@ -71,11 +71,11 @@ const char* NameOf(MeshProblem::Kind kind)
       return "repeated corner";
     case Kind::NotFinite:
       return "not finite";
-    case Kind::NoArea:
+    case Kind::DegenerateTriangle:
       return "no area";
-    case Kind::EdgeOfManyTriangles:
+    case Kind::NonManifoldEdge:
       return "edge of many triangles";
-    case Kind::NotOrientable:
+    case Kind::NonOrientable:
       return "not orientable";
     case Kind::Flipped:
       return "flipped";
@@ -92,17 +92,17 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   Json json;
   json["valid"] = report.Valid;
   json["problems"] = Json::array();
-  for (const MeshProblem& problem : report.Problems)
+  for (const MeshDiagnostic& problem : report.Problems)
   {
     json["problems"].push_back(
       { { "kind", NameOf(problem.What) }, { "where", problem.Where }, { "count", problem.Count },
         { "first_cells", problem.FirstCells }, { "message", Describe(problem, leaveOut) } });
   }
-  const char* const sides[2] = { "source", "target" };
+  const char* const domains[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
   {
     const MeshReport& mesh = report.Meshes[side];
-    Json& object = json[sides[side]];
+    Json& object = json[domains[side]];
     object = { { "file", pair.Names[side] }, { "points", mesh.Points },
       { "triangles", mesh.Triangles }, { "unused_points", mesh.UnusedPoints },
       { "duplicate_points", mesh.DuplicatePoints }, { "first_duplicates", mesh.FirstDuplicates } };
@@ -143,7 +143,7 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
     if (measured.ContinuityMeasured)
     {
       object["differentiable_edges"] = measured.DifferentiableEdges;
-      object["kinks"] = measured.Kinks;
+      object["creases"] = measured.Creases;
       object["undecided_edges"] = measured.UndecidedEdges;
       object["largest_jump"] = measured.LargestJump;
     }
@@ -252,7 +252,8 @@ void PrintSystems(const PairReport& report)
   {
     row("edges: differentiable",
       [](const SystemReport& system) { return std::to_string(system.DifferentiableEdges); });
-    row("edges: kinks", [](const SystemReport& system) { return std::to_string(system.Kinks); });
+    row(
+      "edges: creases", [](const SystemReport& system) { return std::to_string(system.Creases); });
     row("edges: undecided",
       [](const SystemReport& system) { return std::to_string(system.UndecidedEdges); });
     row("largest jump of J, relative",
@@ -275,7 +276,7 @@ void PrintAllOfMeshes(const PairReport& report, const MeshPair& pair)
 {
   std::cout << pair.GetName() << ": " << (report.Valid ? "a valid pair" : "NOT a valid pair")
             << "\n";
-  for (const MeshProblem& problem : report.Problems)
+  for (const MeshDiagnostic& problem : report.Problems)
   {
     std::cout << "  - " << Describe(problem, leaveOut) << "\n";
   }

@@ -178,7 +178,7 @@ void PictureOptions::AddTo(CLI::App& command, const std::string& sizeDescription
     ->group("Results");
   command
     .add_option("--background", this->Background,
-      "Colour outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
+      "Color outside the domain: transparent (default, but white in .jpg and .ppm), white, black "
       "or #rrggbb")
     ->type_name("COLOUR")
     ->group("Results");

@@ -61,7 +61,7 @@ struct MapOptions
     filter->SetCoordinateSystem(this->System);
     filter->SetCenterPoint(this->Incenter ? Filter::INCENTER : Filter::CENTROID);
     filter->SetDiscordantTriangles(
-      this->LinearWhereDiscordant ? Filter::CARRY_BY_LINEAR : Filter::REFUSE);
+      this->LinearWhereDiscordant ? Filter::USE_LINEAR : Filter::REFUSE);
     filter->SetMaskInvalidTriangles(this->MaskInvalid);
     filter->SetTolerance(this->Tolerance);
   }

@@ -256,7 +256,7 @@ void WritePicture(vtkDataObject* data, const OutputFile& file)
 
 void WriteTextMesh(vtkPolyData* mesh, const OutputFile& file)
 {
-  vtkDataArray* mask = mesh->GetPointData()->GetArray("ValidPointMask");
+  vtkDataArray* mask = mesh->GetPointData()->GetArray("vtkValidPointMask");
   if (mask && mesh->GetNumberOfPoints() > 0 && mask->GetRange()[0] == 0.0)
   {
     throw Failure(REFUSED,
@@ -270,7 +270,7 @@ void WriteTextMesh(vtkPolyData* mesh, const OutputFile& file)
     for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
     {
       const char* name = arrays->GetAbstractArray(i)->GetName();
-      if (name && name != std::string("ValidPointMask"))
+      if (name && name != std::string("vtkValidPointMask"))
       {
         lost += (lost.empty() ? "" : ", ") + std::string(name);
       }

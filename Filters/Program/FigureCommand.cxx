@@ -163,7 +163,7 @@ std::vector<double> ReadCloseUp(const std::string& text)
   if (!text.empty() && (values.size() != 3 || !(values[2] > 0.0)))
   {
     throw Failure(
-      WRONG_USAGE, "A close-up is X,Y,R: centre and half the side of a square in the target.");
+      WRONG_USAGE, "A close-up is X,Y,R: center and half the side of a square in the target.");
   }
   return values;
 }
@@ -173,7 +173,7 @@ std::array<double, 4> SquareAround(double x, double y, double r)
   return { x - r, x + r, y - r, y + r };
 }
 
-/// From 0 to 1, of the colour components of all pixels.
+/// From 0 to 1, of the color components of all pixels.
 double MeanBrightness(vtkImageData* image)
 {
   vtkDataArray* pixels = image->GetPointData()->GetScalars();
@@ -277,7 +277,7 @@ void MakeFigure(const Options& options)
     panel.Mesh = pair.Target();
     panel.Bounds = BoundsOf(pair.Target());
     const auto carried = MapPoints(pair, map, grid, false);
-    vtkDataArray* mask = carried->GetPointData()->GetArray("ValidPointMask");
+    vtkDataArray* mask = carried->GetPointData()->GetArray("vtkValidPointMask");
     panel.Lines =
       options.Contours ? CoordinateLines(pair.Target(), map) : Connect(carried->GetPoints(), mask);
     if (!closeUp.empty())
@@ -349,7 +349,7 @@ void AddFigure(CLI::App& program)
     ->group("Results");
   command
     ->add_option("--close-up", options->CloseUp,
-      "Add close-ups: centre and half the side of a square in the target")
+      "Add close-ups: center and half the side of a square in the target")
     ->type_name("X,Y,R")
     ->group("Results");
   command->add_option("--width", options->Width, "Width of a panel in pixels (default: 420)")

@@ -134,7 +134,7 @@ Background ReadBackground(const std::string& text)
   {
     throw Failure(WRONG_USAGE,
       "\"" + text +
-        "\" is no colour: transparent, white, black, or #rrggbb, such as #ff8000 for orange.");
+        "\" is no color: transparent, white, black, or #rrggbb, such as #ff8000 for orange.");
   }
   return color;
 }
@@ -278,14 +278,14 @@ vtkSmartPointer<vtkImageData> Blend(vtkImageData* first, vtkImageData* second, d
   }
   vtkSmartPointer<vtkImageData> result = LikeWithout(first);
   result->GetPointData()->SetScalars(pixels);
-  result->GetPointData()->AddArray(first->GetPointData()->GetArray("ValidPointMask"));
+  result->GetPointData()->AddArray(first->GetPointData()->GetArray("vtkValidPointMask"));
   return result;
 }
 
 vtkSmartPointer<vtkImageData> Finish(vtkImageData* warped, const Background& background)
 {
   vtkDataArray* from = PixelsOf(warped);
-  vtkDataArray* mask = warped->GetPointData()->GetArray("ValidPointMask");
+  vtkDataArray* mask = warped->GetPointData()->GetArray("vtkValidPointMask");
   const int components = from->GetNumberOfComponents();
   const bool hasAlpha = components == 2 || components == 4;
   const int colors = components - (hasAlpha ? 1 : 0);

@@ -25,7 +25,7 @@ struct MapOptions;
 /// The brightest, or the fully opaque, value of pixels of this type.
 double Brightest(vtkDataArray* pixels);
 
-/// What pixels outside the domain get: a colour, red, green and blue from 0 to 1, or none, which is
+/// What pixels outside the domain get: a color, red, green and blue from 0 to 1, or none, which is
 /// transparent.
 using Background = std::optional<std::array<double, 3>>;
 
@@ -48,7 +48,7 @@ void RequireOverlap(vtkImageData* image, const std::string& imageName, vtkPolyDa
   const std::string& meshName);
 
 /// The image over the source's domain, seen on a grid over the target's (the other way round if @a
-/// inverse); its point data are the image's pixels and `ValidPointMask`. Throws Failure.
+/// inverse); its point data are the image's pixels and `vtkValidPointMask`. Throws Failure.
 vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source,
   vtkPolyData* target, vtkImageData* grid, bool inverse, const MapOptions& map,
   const std::string& what);
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkImageData> WarpImage(vtkImageData* image, vtkPolyData* source
 /// both have values. Throws Failure if they are not of the same kind.
 vtkSmartPointer<vtkImageData> Blend(vtkImageData* first, vtkImageData* second, double t);
 
-/// Only the pixels, as a picture file takes them: those that `ValidPointMask` leaves out get the
+/// Only the pixels, as a picture file takes them: those that `vtkValidPointMask` leaves out get the
 /// background, or are transparent in an alpha component that is added if there is none.
 vtkSmartPointer<vtkImageData> Finish(vtkImageData* warped, const Background& background);
 

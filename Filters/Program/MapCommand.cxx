@@ -145,7 +145,7 @@ struct DataOptions
       {
         throw Failure(REFUSED, message + ".");
       }
-      Warn(message + ": marked 0 in ValidPointMask.");
+      Warn(message + ": marked 0 in vtkValidPointMask.");
     }
     if (asTable)
     {
@@ -173,7 +173,7 @@ void AddMap(CLI::App& program)
     bool Jacobian = false;
     bool Determinant = false;
     bool TriangleId = false;
-    bool CarryAllVectors = false;
+    bool TransformAllInputVectors = false;
     bool KeepVectors = false;
   };
   CLI::App* command =
@@ -200,7 +200,7 @@ void AddMap(CLI::App& program)
       "--triangle-id", options->TriangleId, "Add the number of each point's triangle: TriangleId")
     ->group("Results");
   command
-    ->add_flag("--carry-all-vectors", options->CarryAllVectors,
+    ->add_flag("--carry-all-vectors", options->TransformAllInputVectors,
       "Carry all arrays of 3, 6 and 9 components by the derivative, not only the active vectors, "
       "normals and tensors")
     ->group("Results");
@@ -221,8 +221,8 @@ void AddMap(CLI::App& program)
         map->SetComputeJacobian(options->Jacobian);
         map->SetComputeJacobianDeterminant(options->Determinant);
         map->SetComputeTriangleId(options->TriangleId);
-        map->SetCarryAllVectors(options->CarryAllVectors);
-        map->SetCarryVectors(!options->KeepVectors);
+        map->SetTransformAllInputVectors(options->TransformAllInputVectors);
+        map->SetTransformActiveAttributes(!options->KeepVectors);
         WorkWith(pair, [&] { Run(map, "Mapping"); });
         result = map->GetOutputDataObject(0);
         return map->GetNumberOfOutsidePoints();
@@ -257,7 +257,7 @@ void AddCoordinates(CLI::App& program)
   options->Map.AddTo(*command);
   command->footer(
     "The arrays: TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), "
-    "ContourParameter (c, 0 at the centre, 1 on the edge), ValidPointMask.");
+    "ContourParameter (c, 0 at the center, 1 on the edge), vtkValidPointMask.");
   command->callback([options] {
     const auto mesh = ReadMesh(options->Files[0], options->InputFormat);
     options->Data.Process(

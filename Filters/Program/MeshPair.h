@@ -96,7 +96,7 @@ MeshPair ReadMeshPair(const std::vector<std::string>& files, const MeshPairOptio
 vtkSmartPointer<vtkPolyData> ReadMesh(const std::string& fileName, const std::string& inputFormat);
 
 /// Moves meshes that came from xmorph from their own units to the pixels of pictures of these
-/// sizes, as VTK counts them (y upwards, the first pixel's centre is at 0); others stay. Throws
+/// sizes, as VTK counts them (y upwards, the first pixel's center is at 0); others stay. Throws
 /// Failure if the extent of the meshes' pictures is not known.
 void FitToPictures(
   MeshPair& pair, const std::array<int, 2>& sourceSize, const std::array<int, 2>& targetSize);

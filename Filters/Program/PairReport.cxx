@@ -32,12 +32,12 @@ namespace dhm
 namespace
 {
 
-using homeomorphism::AcrossEdge;
-using homeomorphism::MeshProblem;
-using homeomorphism::MeshProblems;
-using homeomorphism::Side;
+using homeomorphism::Domain;
+using homeomorphism::MeshDiagnostic;
+using homeomorphism::MeshDiagnostics;
 using homeomorphism::Triangulation;
 using homeomorphism::TriangulationPair;
+using homeomorphism::Twin;
 using TriangleIndex = homeomorphism::TriangleIndex;
 
 void TakeLarger(Extreme& extreme, double value, vtkIdType cell)
@@ -99,7 +99,7 @@ void CountPoints(vtkPolyData* mesh, MeshReport& report)
   }
   std::sort(duplicates.begin(), duplicates.end());
   report.DuplicatePoints = static_cast<vtkIdType>(duplicates.size());
-  duplicates.resize(std::min(duplicates.size(), MeshProblem::MaximumIds));
+  duplicates.resize(std::min(duplicates.size(), MeshDiagnostic::MaximumIds));
   report.FirstDuplicates = duplicates;
 }
 
@@ -144,17 +144,17 @@ void CountConnections(const Triangulation& triangulation, PairReport& report)
       otherwise += own < 0;
       for (int edge = 0; edge < 3; ++edge)
       {
-        const AcrossEdge across = triangulation.GetAcross(triangle, edge);
+        const Twin across = triangulation.GetTwin(triangle, edge);
         if (across.Triangle < 0)
         {
           ++report.BoundaryEdges;
           continue;
         }
         report.InteriorEdges += across.Triangle > triangle;
-        auto& neighbour = winding[static_cast<std::size_t>(across.Triangle)];
-        if (neighbour == 0)
+        auto& neighbor = winding[static_cast<std::size_t>(across.Triangle)];
+        if (neighbor == 0)
         {
-          neighbour = static_cast<signed char>(across.SameDirection ? -own : own);
+          neighbor = static_cast<signed char>(across.SameDirection ? -own : own);
           reached.push_back(across.Triangle);
         }
       }
@@ -181,8 +181,8 @@ void StepAlongBoundary(
     return e;
   };
   edge = other(triangle, edge, end);
-  for (AcrossEdge across = triangulation.GetAcross(triangle, edge); across.Triangle >= 0;
-       across = triangulation.GetAcross(triangle, edge))
+  for (Twin across = triangulation.GetTwin(triangle, edge); across.Triangle >= 0;
+       across = triangulation.GetTwin(triangle, edge))
   {
     triangle = across.Triangle;
     edge = other(triangle, across.Edge, end);
@@ -207,7 +207,7 @@ vtkIdType CountBoundaryLoops(const Triangulation& triangulation)
   {
     for (int edge = 0; edge < 3; ++edge)
     {
-      if (triangulation.IsMasked(first) || triangulation.GetAcross(first, edge).Triangle >= 0 ||
+      if (triangulation.IsMasked(first) || triangulation.GetTwin(first, edge).Triangle >= 0 ||
         seen[static_cast<std::size_t>(first)][static_cast<std::size_t>(edge)])
       {
         continue;
@@ -272,10 +272,10 @@ void MeasureShapes(const MeshPair& pair, const Triangulation& triangulation, Pai
       flat[side] = Flatten(mesh, triangulation.GetCorners(triangle));
       for (int edge = 0; edge < 3; ++edge)
       {
-        const TriangleIndex neighbour = triangulation.GetAcross(triangle, edge).Triangle;
-        if (neighbour > triangle)
+        const TriangleIndex neighbor = triangulation.GetTwin(triangle, edge).Triangle;
+        if (neighbor > triangle)
         {
-          const FlatTriangle other = Flatten(mesh, triangulation.GetCorners(neighbour));
+          const FlatTriangle other = Flatten(mesh, triangulation.GetCorners(neighbor));
           const double ratio = flat[side].Length * flat[side].Y / (other.Length * other.Y);
           TakeLarger(report.Meshes[static_cast<std::size_t>(side)].LargestAreaRatio,
             std::max(ratio, 1.0 / ratio), cell);
@@ -449,7 +449,7 @@ void MeasureDeterminants(
 void MeasureContinuity(const MeshPair& pair, PairReport& report)
 {
   vtkNew<vtkJacobianContinuity> continuity;
-  continuity->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
+  continuity->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
   continuity->MaskInvalidTrianglesOn();
   continuity->SetSourceData(pair.Source());
   continuity->SetTargetData(pair.Target());
@@ -460,7 +460,7 @@ void MeasureContinuity(const MeshPair& pair, PairReport& report)
     Run(continuity, std::string("Measuring the continuity of ") + SystemNames[system], false);
     result.ContinuityMeasured = true;
     result.DifferentiableEdges = continuity->GetNumberOfDifferentiableEdges();
-    result.Kinks = continuity->GetNumberOfKinks();
+    result.Creases = continuity->GetNumberOfCreases();
     result.UndecidedEdges = continuity->GetNumberOfUndecidedEdges();
     result.LargestJump = continuity->GetLargestJump();
   }
@@ -468,13 +468,13 @@ void MeasureContinuity(const MeshPair& pair, PairReport& report)
 
 void RequireMap(const MeshPair& pair, bool maskInvalid, const std::string& advice)
 {
-  MeshProblems problems;
+  MeshDiagnostics problems;
   if (!TriangulationPair::Read(pair.Source(), pair.Target(), maskInvalid, problems))
   {
     std::string text;
-    for (const MeshProblem& problem : problems)
+    for (const MeshDiagnostic& problem : problems)
     {
-      if (problem.Result == MeshProblem::Outcome::Refused)
+      if (problem.Result == MeshDiagnostic::Outcome::Refused)
       {
         text += (text.empty() ? "" : "\n") + Describe(problem, advice);
       }
@@ -489,7 +489,7 @@ void DescribePair(const MeshPair& pair, const TriangulationPair& read, PairRepor
   const Triangulation& triangulation = read.GetTriangulation();
   for (std::size_t side = 0; side < 2; ++side)
   {
-    report.Meshes[side].Planar = read.GetEmbedding(static_cast<Side>(side)).IsPlanar();
+    report.Meshes[side].Planar = read.GetGeometry(static_cast<Domain>(side)).IsPlanar();
     MeasureTriangles(pair.Meshes[side], triangulation, report.Meshes[side]);
   }
   for (TriangleIndex triangle = 0; triangle < triangulation.GetNumberOfTriangles(); ++triangle)
@@ -514,8 +514,8 @@ void DescribePair(const MeshPair& pair, const TriangulationPair& read, PairRepor
       ++first;
     }
     const auto& corners = triangulation.GetCorners(first);
-    report.Mirrored = read.GetEmbedding(Side::Source).GetOrientation(corners) !=
-      read.GetEmbedding(Side::Target).GetOrientation(corners);
+    report.Mirrored = read.GetGeometry(Domain::Source).GetOrientation(corners) !=
+      read.GetGeometry(Domain::Target).GetOrientation(corners);
   }
   MeasureShapes(pair, triangulation, report);
   report.Measured = true;
@@ -540,7 +540,7 @@ PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent,
   }
   else
   {
-    for (const MeshProblem& problem : report.Problems)
+    for (const MeshDiagnostic& problem : report.Problems)
     {
       report.InvalidTriangles.insert(
         report.InvalidTriangles.end(), problem.FirstCells.begin(), problem.FirstCells.end());
@@ -576,10 +576,10 @@ void RequireMap(const MeshPair& pair)
   RequireMap(pair, false, "");
 }
 
-std::string Describe(const MeshProblem& problem, const std::string& advice)
+std::string Describe(const MeshDiagnostic& problem, const std::string& advice)
 {
-  MeshProblem refused = problem;
-  refused.Result = MeshProblem::Outcome::Refused;
+  MeshDiagnostic refused = problem;
+  refused.Result = MeshDiagnostic::Outcome::Refused;
   std::string message = refused.Message();
   const std::string setter = ", or turn MaskInvalidTriangles on to leave them out";
   const std::size_t at = message.find(setter);

@@ -9,7 +9,7 @@
 
 #include "MeshPair.h"
 
-#include "Mesh/MeshProblem.h"
+#include "Mesh/MeshDiagnostic.h"
 
 #include "vtkType.h"
 
@@ -66,7 +66,7 @@ struct SystemReport
   /// What vtkJacobianContinuity found at the interior edges.
   bool ContinuityMeasured = false;
   vtkIdType DifferentiableEdges = 0;
-  vtkIdType Kinks = 0;
+  vtkIdType Creases = 0;
   vtkIdType UndecidedEdges = 0;
   double LargestJump = 0.0;
 };
@@ -76,7 +76,7 @@ struct PairReport
   /// Whether the pair defines a map: no problems.
   bool Valid = false;
   /// All kinds of defects, each with the first offenders.
-  homeomorphism::MeshProblems Problems;
+  homeomorphism::MeshDiagnostics Problems;
   /// Cell ids of all triangles that are invalid, ascending, if the rest makes a pair; else of those
   /// that the problems name.
   std::vector<vtkIdType> InvalidTriangles;
@@ -125,7 +125,7 @@ void RequireMap(const MeshPair& pair);
 
 /// A defect as a sentence, in which the program's options have their own names. @a advice says how
 /// triangles are left out, if they can be.
-std::string Describe(const homeomorphism::MeshProblem& problem, const std::string& advice);
+std::string Describe(const homeomorphism::MeshDiagnostic& problem, const std::string& advice);
 
 } // namespace dhm
 

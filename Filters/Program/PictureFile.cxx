@@ -97,7 +97,7 @@ struct PngReader
   static void OnWarning(png_structp, png_const_charp) {}
 };
 
-/// Reads all before the pixels, and asks for them as whole bytes of gray or colours.
+/// Reads all before the pixels, and asks for them as whole bytes of gray or colors.
 bool ReadPngHeader(PngReader& reader, std::FILE* file)
 {
   if (setjmp(png_jmpbuf(reader.Png)))
@@ -198,7 +198,7 @@ int Get(TIFF* tiff, std::uint32_t tag)
   return value;
 }
 
-/// Palettes, compressed colours, bits, tiles: as libtiff shows them, 8 bits of four components.
+/// Palettes, compressed colors, bits, tiles: as libtiff shows them, 8 bits of four components.
 bool ReadShownTiff(TIFF* tiff, vtkImageData* image)
 {
   const int* size = image->GetDimensions();
@@ -215,7 +215,7 @@ bool ReadShownTiff(TIFF* tiff, vtkImageData* image)
     const auto opacity = static_cast<unsigned int>(TIFFGetA(pixel));
     for (const auto value : { TIFFGetR(pixel), TIFFGetG(pixel), TIFFGetB(pixel) })
     {
-      // Colours come multiplied by the opacity.
+      // Colors come multiplied by the opacity.
       const unsigned int color = opacity > 0 ? (value * 255u + opacity / 2) / opacity : 0;
       *to++ = static_cast<unsigned char>(std::min(color, 255u));
     }

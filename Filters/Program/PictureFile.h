@@ -19,7 +19,7 @@ class InputFile;
 class OutputFile;
 
 /// @name Reading
-/// Pixels of one, two, three or four components (gray or colours, and opacity) of 8 or 16 bits,
+/// Pixels of one, two, three or four components (gray or colors, and opacity) of 8 or 16 bits,
 /// from the lower left. They throw Failure if the file is no such picture, or is damaged.
 ///@{
 vtkSmartPointer<vtkImageData> ReadPng(const InputFile& file);

@@ -422,7 +422,7 @@ void PointTable::AddColumnsTo(vtkPolyData* points) const
 
 void PointTable::Update(vtkDataSet* data, bool moved)
 {
-  vtkDataArray* mask = moved ? data->GetPointData()->GetArray("ValidPointMask") : nullptr;
+  vtkDataArray* mask = moved ? data->GetPointData()->GetArray("vtkValidPointMask") : nullptr;
   for (std::size_t row = 0; row < this->Rows.size(); ++row)
   {
     double point[3];

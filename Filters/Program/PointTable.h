@@ -42,8 +42,8 @@ public:
   void AddColumnsTo(vtkPolyData* points) const;
 
   /// Takes the coordinates from @a data, and its point arrays as columns, in the place of columns
-  /// of the same names. If points were moved, coordinates of those that `ValidPointMask` leaves out
-  /// become nan. z stays if there is no column for it.
+  /// of the same names. If points were moved, coordinates of those that `vtkValidPointMask` leaves
+  /// out become nan. z stays if there is no column for it.
   void Update(vtkDataSet* data, bool moved);
 
   void Write(std::ostream& file) const;

@@ -243,7 +243,7 @@ public:
     vtkNew<vtkCellArray> polygons;
     for (const std::size_t part : this->GetParts())
     {
-      // All wound alike, anticlockwise in the source.
+      // All wound alike, counterclockwise in the source.
       std::array<vtkIdType, 3> ids = this->Parts[part].Points;
       const auto corner = [this, &ids](std::size_t k) {
         return this->Points[0][static_cast<std::size_t>(ids[k])];
@@ -474,7 +474,7 @@ private:
     this->Map->SetDataObject(data);
     Run(this->Map, "", false);
     auto* output = vtkPolyData::SafeDownCast(this->Map->GetOutputDataObject(0));
-    vtkDataArray* mask = output->GetPointData()->GetArray("ValidPointMask");
+    vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
     std::vector<Point> images(points.size());
     for (std::size_t i = 0; i < images.size(); ++i)
     {

@@ -29,7 +29,7 @@ void AddWarp(CLI::App& program)
     program.add_subcommand("warp", "Warp an image from the source's domain to the target's");
   const auto options = std::make_shared<Options>();
   options->Inputs.AddTo(*command, "SOURCE [TARGET] IMAGE", 1,
-    "The pair, in pixels of the image (the first pixel's centre, at the lower left, is (0, 0), y "
+    "The pair, in pixels of the image (the first pixel's center, at the lower left, is (0, 0), y "
     "runs upwards) or, for xmorph's meshes, in their own units; and a .png .jpg .tif .ppm or .vti");
   options->Output.AddTo(
     *command, "The warped image: .png .jpg .tif .ppm .vti, or - for standard output", "png");

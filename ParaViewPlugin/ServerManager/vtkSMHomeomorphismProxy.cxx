@@ -16,7 +16,8 @@ vtkSMHomeomorphismProxy::~vtkSMHomeomorphismProxy() = default;
 
 void vtkSMHomeomorphismProxy::UpdatePropertyInformationInternal(vtkSMProperty* property)
 {
-  if (this->ObjectsCreated && this->Location != 0 && (!property || property->GetInformationOnly()))
+  if (this->ObjectsCreated && this->SurfacePoint != 0 &&
+    (!property || property->GetInformationOnly()))
   {
     // The null object as an id, since pointers do not travel to other processes.
     vtkClientServerStream stream;

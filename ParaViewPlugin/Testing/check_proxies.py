@@ -67,10 +67,10 @@ wavelet = simple.Wavelet(WholeExtent=[-5, 5, -5, 5, 0, 0])
 data = simple.Calculator(Input=wavelet, ResultArrayName="Tangent", Function="coordsX*iHat+2*jHat")
 mapped = simple.DifferentiableHomeomorphism(Source=source, Target=target, Data=data)
 ranges = []
-for transport in "0", "1", "2":
-    mapped.ArrayTransports = ["Tangent", transport]
+for transformation in "0", "1", "2":
+    mapped.AttributeTransformations = ["Tangent", transformation]
     mapped.UpdatePipeline()
     ranges.append(mapped.PointData["Tangent"].GetRange(0))
 if len(set(ranges)) != 3:
-    sys.exit("Array Transports does nothing: " + str(ranges))
+    sys.exit("Attribute Transformations does nothing: " + str(ranges))
 print("%d defaults are the classes' own" % compared)

@@ -75,7 +75,7 @@ for system in "Linear", "Contour", "Smooth":
     settings.update({"Source": source, "Target": target})
     # The first process measures.
     counts = [getattr(continuity, "NumberOf" + what)
-              for what in ("DifferentiableEdges", "Kinks", "UndecidedEdges")]
+              for what in ("DifferentiableEdges", "Creases", "UndecidedEdges")]
     if sum(counts) != 96 or (counts[1] == 0) != (system == "Smooth"):
         sys.exit("%s: %d edges are differentiable, %d are not, %d are undecided" % (system, *counts))
     for name, data, grid in (("image", whole_image, None), ("grid", whole_surface, image),

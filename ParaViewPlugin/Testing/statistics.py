@@ -35,7 +35,7 @@ def count_in_data(filter):
     """Outside points of all processes, as ParaView itself finds them; of this one if each runs the script."""
     points = simple.MaskPoints(Input=filter, OnRatio=1, MaximumNumberofPoints=1000000,
                                GenerateVertices=1, SingleVertexPerCell=1)
-    outside = simple.Threshold(Input=points, Scalars=["POINTS", "ValidPointMask"],
+    outside = simple.Threshold(Input=points, Scalars=["POINTS", "vtkValidPointMask"],
                                LowerThreshold=0, UpperThreshold=0)
     outside.UpdatePipeline()
     return outside.GetDataInformation().GetNumberOfCells()
@@ -54,7 +54,7 @@ for system in "Contour", "Smooth":
     resampled = simple.ResampleThroughHomeomorphism(Data=image, Grid=plane, **settings)
     count("resampled " + system, resampled, outside)
     continuity = simple.JacobianContinuity(**settings)
-    count("continuity " + system, continuity, "NumberOfKinks", "NumberOfDifferentiableEdges",
+    count("continuity " + system, continuity, "NumberOfCreases", "NumberOfDifferentiableEdges",
           "NumberOfUndecidedEdges", "LargestJump")
     # Asked again, nothing is added again.
     first = dict(counts)

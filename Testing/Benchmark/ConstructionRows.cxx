@@ -59,7 +59,7 @@ void AddHomeomorphism(
   row.Run = [map, system, &workload](Task&) {
     HomeomorphismOptions options;
     options.System = system;
-    MeshProblems problems;
+    MeshDiagnostics problems;
     *map = Homeomorphism::Make(workload.Source, workload.Target, options, problems);
     if (!*map)
     {

@@ -46,7 +46,7 @@ public:
     {
       HomeomorphismOptions options;
       options.System = this->System;
-      MeshProblems problems;
+      MeshDiagnostics problems;
       this->Map = Homeomorphism::Make(this->Meshes.Source, this->Meshes.Target, options, problems);
       if (!this->Map)
       {
@@ -62,20 +62,21 @@ private:
   std::shared_ptr<const Homeomorphism> Map;
 };
 
-void MapPointByPoint(const Homeomorphism& map, Side from, Task& task)
+void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
 {
   const double* in = Coordinates(task.In);
   double* out = Coordinates(task.Out);
   const vtkIdType count = task.In->GetNumberOfPoints();
-  const double reach = map.GetReach(from, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
+  const double tolerance =
+    map.GetAbsoluteTolerance(from, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
   TriangleIndex hint = -1;
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const Location place = map.Locate(from, in + 3 * i, reach, hint);
-    hint = place.Triangle;
-    if (place.Triangle >= 0)
+    const SurfacePoint surfacePoint = map.Locate(from, in + 3 * i, tolerance, hint);
+    hint = surfacePoint.Triangle;
+    if (surfacePoint.Triangle >= 0)
     {
-      map.MapPoint(from, place, out + 3 * i);
+      map.MapPoint(from, surfacePoint, out + 3 * i);
     }
   }
 }
@@ -144,7 +145,7 @@ void AddHomeomorphismRows(const Workload& workload, Rows& rows)
     auto map = std::make_shared<LazyHomeomorphism>(workload, systems[system]);
     for (const bool inverse : { false, true })
     {
-      const Side from = inverse ? Side::Target : Side::Source;
+      const Domain from = inverse ? Domain::Target : Domain::Source;
       Row& row = rows[std::string("pointwise/") + systemNames[system] + Direction(inverse)];
       row.Before = [map](Task&) { map->Get(); };
       row.Run = [map, from](Task& task) { MapPointByPoint(map->Get(), from, task); };

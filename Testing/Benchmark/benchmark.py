@@ -165,7 +165,7 @@ class Benchmark:
         self.compare_images(images, "reslice/Linear", "warp/PiecewiseAffineTransform")
 
     def compare_images(self, images, first, second):
-        self.check("image", f"{first} = {second}, in grey levels", numpy.abs(images[first] - images[second]).max(), 1.0)
+        self.check("image", f"{first} = {second}, in gray levels", numpy.abs(images[first] - images[second]).max(), 1.0)
 
     def construction(self):
         self.results["memory"] = {}

@@ -36,7 +36,7 @@ def delaunay_triangles(points, n):
 
 
 def grid_in_scan_order(n, columns, rows):
-    """The centres of the pixels of an image of [0, n] x [0, n]."""
+    """The centers of the pixels of an image of [0, n] x [0, n]."""
     x, y = numpy.meshgrid((numpy.arange(columns) + 0.5) * n / columns, (numpy.arange(rows) + 0.5) * n / rows)
     return numpy.column_stack([x.ravel(), y.ravel()])
 

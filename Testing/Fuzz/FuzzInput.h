@@ -41,7 +41,7 @@ public:
     }
     if (code < 252)
     {
-      // A neighbour of a number of the grid, or one far smaller or larger.
+      // A neighbor of a number of the grid, or one far smaller or larger.
       const double grid = (this->Byte() - 120) / 16.0;
       const int unsignedExponent = this->Byte();
       const int exponent = unsignedExponent < 128 ? unsignedExponent : unsignedExponent - 256;

@@ -100,14 +100,14 @@ vtkSmartPointer<vtkCellArray> AnyCells(Input& input, int points)
   if (input.Chance(2))
   {
     // A grid, which is a mesh more often than random ids are.
-    const int side = 1 + input.Below(3);
+    const int domain = 1 + input.Below(3);
     auto cells = vtkSmartPointer<vtkCellArray>::New();
-    for (int j = 0; j < side; ++j)
+    for (int j = 0; j < domain; ++j)
     {
-      for (int i = 0; i < side; ++i)
+      for (int i = 0; i < domain; ++i)
       {
-        const vtkIdType a = j * (side + 1) + i;
-        const vtkIdType c = a + side + 1;
+        const vtkIdType a = j * (domain + 1) + i;
+        const vtkIdType c = a + domain + 1;
         cells->InsertNextCell({ a, a + 1, c + 1 });
         cells->InsertNextCell({ a, c + 1, c });
       }
@@ -205,7 +205,7 @@ void Configure(Algorithm* algorithm, const Setting& setting)
 constexpr double HalfUlp = 0.5 * std::numeric_limits<double>::epsilon();
 
 std::shared_ptr<const homeomorphism::Homeomorphism> MakeMap(vtkPolyData* source,
-  vtkPolyData* target, const Setting& setting, homeomorphism::MeshProblems& problems)
+  vtkPolyData* target, const Setting& setting, homeomorphism::MeshDiagnostics& problems)
 {
   homeomorphism::HomeomorphismOptions options;
   options.System = static_cast<homeomorphism::CoordinateSystem>(setting.System);
@@ -218,11 +218,11 @@ std::shared_ptr<const homeomorphism::Homeomorphism> MakeMap(vtkPolyData* source,
 /// Whether rounding an image may move it out of the domain: not if it is in the mesh, but if it is
 /// as far beside a plane that is parallel to no axes.
 bool IsFarBeside(
-  const homeomorphism::Homeomorphism& map, homeomorphism::Side side, const double image[3])
+  const homeomorphism::Homeomorphism& map, homeomorphism::Domain domain, const double image[3])
 {
   const double largest = std::max({ std::abs(image[0]), std::abs(image[1]), std::abs(image[2]) });
-  const double scale = map.GetPair().GetEmbedding(side).GetScale();
-  return 4.0 * HalfUlp * largest * scale > map.GetReach(side, 0.0, HalfUlp);
+  const double scale = map.GetPair().GetGeometry(domain).GetScale();
+  return 4.0 * HalfUlp * largest * scale > map.GetAbsoluteTolerance(domain, 0.0, HalfUlp);
 }
 
 /// The floor below the filters, which is far faster.
@@ -230,7 +230,7 @@ void MapDirectly(
   vtkPolyData* source, vtkPolyData* target, vtkPoints* points, const Setting& setting, bool tame)
 {
   using namespace homeomorphism;
-  MeshProblems problems;
+  MeshDiagnostics problems;
   const auto map = MakeMap(source, target, setting, problems);
   if (!map)
   {
@@ -240,19 +240,20 @@ void MapDirectly(
     }
     return;
   }
-  const Side from = setting.Inverse ? Side::Target : Side::Source;
+  const Domain from = setting.Inverse ? Domain::Target : Domain::Source;
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
     double point[3];
     points->GetPoint(i, point);
-    const Location place = map->Locate(from, point, map->GetReach(from, 0.0, HalfUlp), -1);
-    if (place.Triangle < 0)
+    const SurfacePoint surfacePoint =
+      map->Locate(from, point, map->GetAbsoluteTolerance(from, 0.0, HalfUlp), -1);
+    if (surfacePoint.Triangle < 0)
     {
       continue;
     }
     double image[3];
-    map->MapPoint(from, place, image);
-    const Jacobian jacobian = map->GetJacobian(from, place);
+    map->MapPoint(from, surfacePoint, image);
+    const Jacobian jacobian = map->GetJacobian(from, surfacePoint);
     if (!tame)
     {
       continue;
@@ -266,8 +267,9 @@ void MapDirectly(
       Fail("a determinant that is not a number");
     }
     if (!IsFarBeside(*map, Opposite(from), image) &&
-      map->Locate(Opposite(from), image, map->GetReach(Opposite(from), 0.0, HalfUlp), -1).Triangle <
-        0)
+      map->Locate(
+           Opposite(from), image, map->GetAbsoluteTolerance(Opposite(from), 0.0, HalfUlp), -1)
+          .Triangle < 0)
     {
       Fail("an image outside the other domain");
     }
@@ -295,13 +297,13 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
   if (taken)
   {
     auto* valid =
-      vtkUnsignedCharArray::SafeDownCast(output->GetPointData()->GetArray("ValidPointMask"));
+      vtkUnsignedCharArray::SafeDownCast(output->GetPointData()->GetArray("vtkValidPointMask"));
     vtkDataArray* determinant = output->GetPointData()->GetArray("JacobianDeterminant");
     if (!valid || !determinant)
     {
       Fail("no mask or no determinant");
     }
-    homeomorphism::MeshProblems problems;
+    homeomorphism::MeshDiagnostics problems;
     const auto map = MakeMap(meshes[0], meshes[1], setting, problems);
     if (!map)
     {
@@ -316,7 +318,7 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
     back->Update();
     auto* returned = vtkPointSet::SafeDownCast(back->GetOutputDataObject(0));
     auto* returnedValid =
-      vtkUnsignedCharArray::SafeDownCast(returned->GetPointData()->GetArray("ValidPointMask"));
+      vtkUnsignedCharArray::SafeDownCast(returned->GetPointData()->GetArray("vtkValidPointMask"));
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
       if (!valid->GetValue(i) || !tame)
@@ -333,7 +335,8 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
       {
         Fail("a determinant that is not a number");
       }
-      const auto to = setting.Inverse ? homeomorphism::Side::Source : homeomorphism::Side::Target;
+      const auto to =
+        setting.Inverse ? homeomorphism::Domain::Source : homeomorphism::Domain::Target;
       if (!IsFarBeside(*map, to, image) && !(returnedValid && returnedValid->GetValue(i)))
       {
         Fail("an image outside the other domain");
@@ -412,20 +415,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   vtkNew<vtkPolyData> meshes[2];
   const auto cells = AnyCells(input, numberOfPoints);
   const bool ownCells = input.Chance(8);
-  for (int side = 0; side < 2; ++side)
+  for (int domain = 0; domain < 2; ++domain)
   {
-    meshes[side]->SetPoints(AnyPoints(input, numberOfPoints));
-    meshes[side]->SetPolys(side == 1 && ownCells ? AnyCells(input, numberOfPoints) : cells);
+    meshes[domain]->SetPoints(AnyPoints(input, numberOfPoints));
+    meshes[domain]->SetPolys(domain == 1 && ownCells ? AnyCells(input, numberOfPoints) : cells);
     if (input.Chance(16))
     {
-      meshes[side]->SetLines(RawCells<vtkTypeInt64Array>(input, input.Below(3), numberOfPoints));
+      meshes[domain]->SetLines(RawCells<vtkTypeInt64Array>(input, input.Below(3), numberOfPoints));
     }
     if (input.Chance(16))
     {
-      meshes[side]->SetStrips(RawCells<vtkTypeInt64Array>(input, input.Below(2), numberOfPoints));
+      meshes[domain]->SetStrips(RawCells<vtkTypeInt64Array>(input, input.Below(2), numberOfPoints));
     }
-    AddGhosts(input, meshes[side]->GetPointData(), numberOfPoints);
-    AddGhosts(input, meshes[side]->GetCellData(), meshes[side]->GetPolys()->GetNumberOfCells());
+    AddGhosts(input, meshes[domain]->GetPointData(), numberOfPoints);
+    AddGhosts(input, meshes[domain]->GetCellData(), meshes[domain]->GetPolys()->GetNumberOfCells());
   }
   vtkNew<vtkPolyData> cloud;
   cloud->SetPoints(AnyPoints(input, 1 + input.Below(12)));

@@ -45,7 +45,7 @@ Result = collections.namedtuple("Result", "status out err")
 
 
 def make_grid(columns, rows, width=1.0, height=1.0):
-    """Points of a grid over a rectangle, row by row, and its triangles, anticlockwise."""
+    """Points of a grid over a rectangle, row by row, and its triangles, counterclockwise."""
     x, y = numpy.meshgrid(numpy.linspace(0, width, columns + 1), numpy.linspace(0, height, rows + 1))
     points = numpy.column_stack((x.ravel(), y.ravel()))
     triangles = []
@@ -461,7 +461,7 @@ class Map(ProgramTest):
         write_csv(self.path("points.csv"), points)
         table = read_csv(self.run_dhm("coordinates", "pair.json", "points.csv", "-o", "-").out.decode())
         self.assertEqual(places(table).tolist(), points)
-        self.assertEqual(table["ValidPointMask"].tolist(), [1, 0])
+        self.assertEqual(table["vtkValidPointMask"].tolist(), [1, 0])
 
     def test_points_outside_are_marked(self):
         points = [[0.5, 0.5], [1.5, 0.5], [0.2, 0.2]]
@@ -469,7 +469,7 @@ class Map(ProgramTest):
         result = self.run_dhm("map", "pair.json", "points.csv", "-o", "-")
         self.assertIn("1 point is outside the domain", result.err)
         table = read_csv(result.out.decode())
-        self.assertEqual(table["ValidPointMask"].tolist(), [1, 0, 1])
+        self.assertEqual(table["vtkValidPointMask"].tolist(), [1, 0, 1])
         self.assertEqual(numpy.isnan(places(table)).any(axis=1).tolist(), [False, True, False])
         self.refuse(REFUSED, "map", "--require-inside", "pair.json", "points.csv", "-o", "new.csv",
                     says="1 point is outside the domain")
@@ -477,9 +477,9 @@ class Map(ProgramTest):
 
     def test_tolerance_takes_points_beside_the_domain(self):
         points = [[0.5, -1e-6], [1 + 1e-6, 0.5]]
-        self.assertEqual(self.map(points=points)["ValidPointMask"].tolist(), [0, 0])
+        self.assertEqual(self.map(points=points)["vtkValidPointMask"].tolist(), [0, 0])
         near = self.map("--tolerance", "1e-5", points=points)
-        self.assertEqual(near["ValidPointMask"].tolist(), [1, 1])
+        self.assertEqual(near["vtkValidPointMask"].tolist(), [1, 1])
         self.assert_near(places(near), places(self.map(points=[[0.5, 0], [1, 0.5]])), 1e-5)
 
     def test_tables_keep_what_is_not_mapped(self):
@@ -489,7 +489,7 @@ class Map(ProgramTest):
         out = self.run_dhm("map", "pair.json", "table.csv", "-o", "-", "-s", "linear").out.decode()
         lines = list(csv.reader(io.StringIO(out.split("\n", 1)[1]), delimiter=";"))
         self.assertTrue(out.startswith("# measured in 1990\n"))
-        self.assertEqual(lines[0], ["Name", "N", "E", "Remark; long", "ValidPointMask"])
+        self.assertEqual(lines[0], ["Name", "N", "E", "Remark; long", "vtkValidPointMask"])
         self.assertEqual([line[0] for line in lines[1:]], ['Old "Oak"', "Stone"])
         self.assertEqual([line[3] for line in lines[1:]], ["x", "two\nlines"])
         images = numpy.array([[float(line[2]), float(line[1])] for line in lines[1:]])
@@ -545,7 +545,7 @@ class Map(ProgramTest):
                      ("Rechtswert", "Hochwert"), ("lon", "lat"), ("Longitude", "Latitude"), (" X", "y ")):
             self.path("table.csv").write_text(f"id;{y};{x}\n7;0.5;0.25\n")
             out = self.run_dhm("map", "pair.json", "table.csv", "-s", "linear", "-o", "-").out.decode()
-            self.assertEqual(out.splitlines()[0], f"id;{y};{x};ValidPointMask")
+            self.assertEqual(out.splitlines()[0], f"id;{y};{x};vtkValidPointMask")
             image = [float(word) for word in out.splitlines()[1].split(";")]
             self.assert_near(image, [7, expected[1], expected[0], 1], 1e-15)
         # Guessing would carry something else than points.
@@ -587,7 +587,7 @@ class Map(ProgramTest):
         result = self.run_dhm("map", "pair.json", "table.csv", "-o", "-")
         self.assertIn("3 points are outside the domain (of 2, the coordinates are no finite numbers; the "
                       "first is point 1,", result.err)
-        self.assertEqual(read_csv(result.out.decode())["ValidPointMask"].tolist(), [1, 0, 0, 0])
+        self.assertEqual(read_csv(result.out.decode())["vtkValidPointMask"].tolist(), [1, 0, 0, 0])
 
     def test_tables_that_are_mapped_again(self):
         """What a column of the same name said before is replaced."""
@@ -598,9 +598,9 @@ class Map(ProgramTest):
         self.assertEqual(len(names), len(set(names)))
         self.assertEqual(names[:4], self.path("once.csv").read_text().splitlines()[0].split(","))
         table = read_csv(out.decode())
-        self.assertEqual(table["ValidPointMask"].tolist(), [1, 0])
+        self.assertEqual(table["vtkValidPointMask"].tolist(), [1, 0])
         self.assert_near(places(table)[0], [0.5, 0.5], 1e-12)
-        for name in set(names) - {"ValidPointMask", "TriangleId", "x", "y"}:
+        for name in set(names) - {"vtkValidPointMask", "TriangleId", "x", "y"}:
             self.assertTrue(name.startswith("Jacobian_"))
 
     def test_empty_table(self):
@@ -665,7 +665,7 @@ class Map(ProgramTest):
                              says=("folded.json: ", "flipped", "--mask-invalid"))
         self.assertNotIn("MaskInvalid", result.err)
         table = self.map_points(["folded.json"], self.points, "--mask-invalid")
-        valid = table["ValidPointMask"] == 1
+        valid = table["vtkValidPointMask"] == 1
         self.assertTrue(0 < valid.sum() < len(valid))
         flipped = numpy.flatnonzero(doubled_areas(target, pair.triangles) <= 0)
         found, _ = barycentric(self.points, pair.source, pair.triangles)
@@ -717,7 +717,7 @@ class Coordinates(ProgramTest):
         self.assert_near(numpy.abs(p[2 * n:2 * n + m] - 0.5), numpy.full(m, 0.5), 1e-15)
         # Points stay where they are.
         self.assert_near(places(table)[2 * n + m:], random, 0)
-        self.assertTrue((table["ValidPointMask"] == 1).all())
+        self.assertTrue((table["vtkValidPointMask"] == 1).all())
         found, _ = barycentric(random, pair.source, pair.triangles)
         self.assertTrue((table["TriangleId"][2 * n + m:] == found).all())
 
@@ -798,8 +798,8 @@ class Check(ProgramTest):
             self.assertGreater(system["smallest_determinant"]["value"], 0)
         edges = report["interior_edges"]
         self.assertEqual(systems["Smooth"]["differentiable_edges"], edges)
-        self.assertEqual(systems["Smooth"]["kinks"], 0)
-        self.assertEqual(systems["Linear"]["kinks"], edges)
+        self.assertEqual(systems["Smooth"]["creases"], 0)
+        self.assertEqual(systems["Linear"]["creases"], edges)
         for side, p in zip(("source", "target"), corners):
             angles = []
             for k in range(3):
@@ -931,7 +931,7 @@ class Check(ProgramTest):
         self.assertIn("pair.json: a valid pair", out)
         self.assertRegex(out, r"boundary loops +2\n")
         self.assertRegex(out, r"points +24 +24\n")
-        self.assertRegex(out, r"edges: kinks +24 +\d+ +0\n")
+        self.assertRegex(out, r"edges: creases +24 +\d+ +0\n")
         pair = make_pair(2, 2)
         write_json(self.path("pair.json"), pair._replace(target=pair.target[::-1] * 0))
         result = self.run_dhm("check", "pair.json", status=REFUSED)
@@ -1125,9 +1125,9 @@ class Warp(ProgramTest):
         write_json(self.path("pair.json"), self.pair)
         def refuse(*options, output="new.png", says):
             self.refuse(WRONG_USAGE, "warp", "pair.json", "image.ppm", *options, "-o", output, says=says)
-        for colour in ("red", "#12345", "#12345g", "#1234567", ""):
-            if colour:
-                refuse("--background", colour, says=(colour, "#rrggbb"))
+        for color in ("red", "#12345", "#12345g", "#1234567", ""):
+            if color:
+                refuse("--background", color, says=(color, "#rrggbb"))
         for size in ("0x5", "5", "x", "5x", "-3x4", "3x4x5", "1e3x2", "200000x2", "4.5x3"):
             refuse("--size=" + size, says=(size, "WIDTHxHEIGHT", "from 1 to 100000"))
         refuse("--background", "transparent", output="new.ppm", says=("transparent", ".ppm"))
@@ -2091,7 +2091,7 @@ class Finland(ProgramTest):
         self.assertEqual(report["mended_windings"], 148)
         self.assertEqual(report["mended_windings"], min((areas > 0).sum(), (areas < 0).sum()))
         self.assertEqual(report["systems"]["Smooth"]["not_positive"], 0)
-        self.assertEqual(report["systems"]["Smooth"]["kinks"], 0)
+        self.assertEqual(report["systems"]["Smooth"]["creases"], 0)
         edges = edges_of(self.pair.triangles)
         self.assertEqual(report["boundary_edges"], sum(count == 1 for count in edges.values()))
         self.assertEqual(report["interior_edges"], sum(count == 2 for count in edges.values()))

@@ -69,7 +69,7 @@ def count(algorithm, piece, pieces, ghosts):
     """From the mask, without what belongs to other pieces."""
     algorithm.UpdatePiece(piece, pieces, ghosts)
     arrays = algorithm.GetOutputDataObject(0).GetPointData()
-    outside = vtk_to_numpy(arrays.GetArray("ValidPointMask")) == 0
+    outside = vtk_to_numpy(arrays.GetArray("vtkValidPointMask")) == 0
     ghost_types = arrays.GetArray("vtkGhostType")
     if ghost_types:
         outside &= (vtk_to_numpy(ghost_types) & 1) == 0
@@ -131,8 +131,8 @@ vtkObject.GlobalWarningDisplayOn()
 
 def measured(algorithm):
     return (algorithm.GetNumberOfBoundaryEdges(), algorithm.GetNumberOfDifferentiableEdges(),
-            algorithm.GetNumberOfKinks(), algorithm.GetNumberOfUndecidedEdges(),
-            algorithm.GetNumberOfPlaces(algorithm.SPOKE, algorithm.KINK), algorithm.GetLargestJump())
+            algorithm.GetNumberOfCreases(), algorithm.GetNumberOfUndecidedEdges(),
+            algorithm.GetNumberOfFeatures(algorithm.SPOKE, algorithm.CREASE), algorithm.GetLargestJump())
 
 
 def continuity():

@@ -14,7 +14,7 @@ The closed forms are used only for the checks that run while the values are comp
 
 Conventions: corners 1, 2, 3, counterclockwise. Edge k is opposite corner k, directed from the next corner in cyclic
 order to the one after. The triangular coordinates are (e, p, c): e the edge, p the position along it as a proportion of
-its length, c how far along the contour, 0 at the centre and 1 on the edge.
+its length, c how far along the contour, 0 at the center and 1 on the edge.
 
 Usage:
     reference_values.py --output DIR             write the files
@@ -209,7 +209,7 @@ class LinearSystem:
 
     def __init__(self, corners):
         self.corners = corners
-        self.centre = centroid(corners)
+        self.center = centroid(corners)
 
     def triangular(self, point):
         """(e, p, c) of a point, and the piece of the system it lies in."""
@@ -219,30 +219,30 @@ class LinearSystem:
             raise Unsuitable("on a spoke")
         i, j = edge_ends(e)
         start, edge = self.corners[i], subtract(self.corners[j], self.corners[i])
-        ray = subtract(point, self.centre)
-        p = cross(subtract(self.centre, start), ray) / cross(edge, ray)
-        c = length(ray) / length(subtract(between(start, self.corners[j], p), self.centre))
+        ray = subtract(point, self.center)
+        p = cross(subtract(self.center, start), ray) / cross(edge, ray)
+        c = length(ray) / length(subtract(between(start, self.corners[j], p), self.center))
         return (e, p, c), (e,)
 
     def cartesian(self, coordinates):
         """The point with coordinates (e, p, c), and the piece of the system it lies in."""
         e, p, c = coordinates
         i, j = edge_ends(e)
-        return between(self.centre, between(self.corners[i], self.corners[j], p), c), (e,)
+        return between(self.center, between(self.corners[i], self.corners[j], p), c), (e,)
 
 
 # ------------------------------------------------------------------------------------------------- Contour
 
 
 class Contour:
-    """One contour of a half edge, constructed in the half edge's frame: foot (0,0), vertex (b,0), centre (0,h)."""
+    """One contour of a half edge, constructed in the half edge's frame: foot (0,0), vertex (b,0), center (0,h)."""
 
     def __init__(self, b, h, s):
         # The wing segment joins the midpoint of the center segment to the vertex; s numbers its points.
-        self.centre = (mpf(0), h)
+        self.center = (mpf(0), h)
         self.wing_point = between((mpf(0), h / 2), (b, mpf(0)), s)
-        straight = subtract(self.wing_point, self.centre)
-        # The arc's centre is where the perpendicular to the straight piece at the wing point meets the edge's line:
+        straight = subtract(self.wing_point, self.center)
+        # The arc's center is where the perpendicular to the straight piece at the wing point meets the edge's line:
         # (arc_centre - wing_point) . straight = 0 with arc_centre = (o, 0).
         wx, wy = self.wing_point
         self.o = wx + wy * straight[1] / straight[0]
@@ -252,7 +252,7 @@ class Contour:
     def position_at_level(self, y):
         """Where the contour crosses the parallel to the edge at height y."""
         if y >= self.wing_point[1]:
-            return between(self.centre, self.wing_point, (self.centre[1] - y) / -self.straight[1])[0]
+            return between(self.center, self.wing_point, (self.center[1] - y) / -self.straight[1])[0]
         return self.o + mp.sqrt(self.r * self.r - y * y)
 
     def edge_point(self):
@@ -262,7 +262,7 @@ class Contour:
         return length(self.straight)
 
     def arc_angle(self, point):
-        """The angle at the arc's centre between the wing point and a point."""
+        """The angle at the arc's center between the wing point and a point."""
         to_wing_point = (self.wing_point[0] - self.o, self.wing_point[1])
         to_point = (point[0] - self.o, point[1])
         return mp.atan2(cross(to_point, to_wing_point), dot(to_point, to_wing_point))
@@ -277,17 +277,17 @@ class Contour:
         return point[1] >= self.wing_point[1]
 
     def length_to(self, point):
-        """Arc length from the centre to a point of the contour."""
+        """Arc length from the center to a point of the contour."""
         if self.is_straight_at(point):
-            return length(subtract(point, self.centre))
+            return length(subtract(point, self.center))
         return self.straight_length() + self.r * self.arc_angle(point)
 
     def point_at(self, arc_length):
-        """The point at an arc length from the centre, and whether it lies on the straight piece."""
+        """The point at an arc length from the center, and whether it lies on the straight piece."""
         rest = arc_length - self.straight_length()
         if rest <= 0:
-            return between(self.centre, self.wing_point, arc_length / self.straight_length()), True
-        # Turn the wing point about the arc's centre, clockwise (towards the edge).
+            return between(self.center, self.wing_point, arc_length / self.straight_length()), True
+        # Turn the wing point about the arc's center, clockwise (towards the edge).
         angle = rest / self.r
         cosine, sine = mp.cos(angle), mp.sin(angle)
         x, y = self.wing_point[0] - self.o, self.wing_point[1]
@@ -295,10 +295,10 @@ class Contour:
 
 
 class HalfEdge:
-    """The part of a triangle between a center segment and a spoke: the triangle centre, foot, vertex."""
+    """The part of a triangle between a center segment and a spoke: the triangle center, foot, vertex."""
 
-    def __init__(self, centre, foot, vertex):
-        along, up = subtract(vertex, foot), subtract(centre, foot)
+    def __init__(self, center, foot, vertex):
+        along, up = subtract(vertex, foot), subtract(center, foot)
         self.foot = foot
         self.b, self.h = length(along), length(up)
         self.x_axis, self.y_axis = scaled(along, 1 / self.b), scaled(up, 1 / self.h)
@@ -323,26 +323,26 @@ class HalfEdge:
 
 
 class ContourSystem:
-    """Contours that are a straight piece and a circular arc, about a centre."""
+    """Contours that are a straight piece and a circular arc, about a center."""
 
-    def __init__(self, corners, centre_of=centroid):
+    def __init__(self, corners, center_of=centroid):
         self.corners = corners
-        self.centre = centre_of(corners)
+        self.center = center_of(corners)
         self.feet, self.half_edges = [], []
         for i, j in map(edge_ends, range(3)):
             edge = subtract(corners[j], corners[i])
-            t = dot(subtract(self.centre, corners[i]), edge) / dot(edge, edge)
+            t = dot(subtract(self.center, corners[i]), edge) / dot(edge, edge)
             if not 0 < t < 1:
                 raise Unsuitable("discordant")
             foot = between(corners[i], corners[j], t)
             self.feet.append(foot)
-            self.half_edges.append([HalfEdge(self.centre, foot, corners[n]) for n in (i, j)])
+            self.half_edges.append([HalfEdge(self.center, foot, corners[n]) for n in (i, j)])
 
     def half_edge_of(self, point):
-        """The edge and the half of it (0: at its start, 1: at its end) whose triangle centre, foot, vertex has the point."""
+        """The edge and the half of it (0: at its start, 1: at its end) whose triangle center, foot, vertex has the point."""
         for e in range(3):
             i, j = edge_ends(e)
-            sides = [twice_area(self.centre, end, point) for end in (self.corners[i], self.feet[e], self.corners[j])]
+            sides = [twice_area(self.center, end, point) for end in (self.corners[i], self.feet[e], self.corners[j])]
             if sides[0] > 0 > sides[2]:
                 if sides[1] == 0:
                     raise Unsuitable("on a center segment")
@@ -384,7 +384,7 @@ EQUILATERAL_SYSTEM = ContourSystem(EQUILATERAL)
 
 
 class Chart:
-    """The chart Phi of a triangle with its three neighbours: reference coordinates l to the plane."""
+    """The chart Phi of a triangle with its three neighbors: reference coordinates l to the plane."""
 
     def __init__(self, corners, apexes):
         self.corners, self.apexes = corners, apexes
@@ -631,8 +631,8 @@ def evaluate(system, case, thorough):
         if system == "Linear":
             system_p, system_q = LinearSystem(corners_p), LinearSystem(corners_q)
         else:
-            centre_of = incenter if system == "ContourIncenter" else centroid
-            system_p, system_q = ContourSystem(corners_p, centre_of), ContourSystem(corners_q, centre_of)
+            center_of = incenter if system == "ContourIncenter" else centroid
+            system_p, system_q = ContourSystem(corners_p, center_of), ContourSystem(corners_q, center_of)
 
         def forward(x):
             coordinates, piece_p = system_p.triangular(x)
@@ -798,12 +798,12 @@ def concordant_triangle(rng):
                 return corners
 
 
-def random_apexes(rng, corners, has_neighbour):
+def random_apexes(rng, corners, has_neighbor):
     """Apexes across the edges: usual ones, very high or low ones, sheared ones."""
     apexes = []
     for k in range(3):
         i, j = edge_ends(k)
-        if not has_neighbour[k]:
+        if not has_neighbor[k]:
             apexes.append(None)
             continue
         edge = subtract(corners[j], corners[i])
@@ -842,7 +842,7 @@ def near_segment(rng, start, end, size):
     return (point[0] - offset * direction[1], point[1] + offset * direction[0])
 
 
-def special_point(rng, corners, place, centre_of=centroid):
+def special_point(rng, corners, place, center_of=centroid):
     """A point close to a special place of a triangle."""
     size = smallest_height(corners)
     if place == "vertex":
@@ -857,17 +857,17 @@ def special_point(rng, corners, place, centre_of=centroid):
         l[i] = (1 - l[k]) * rng.uniform(0.001, 0.999)
         l[j] = 1 - l[k] - l[i]
         return affine(corners, l)
-    if place == "centre":
-        direction = subtract(affine(corners, barycentric_direction(rng)), centre_of(corners))
-        return add(centre_of(corners), scaled(direction, mpf(decade(rng, -9, -3))))
+    if place == "center":
+        direction = subtract(affine(corners, barycentric_direction(rng)), center_of(corners))
+        return add(center_of(corners), scaled(direction, mpf(decade(rng, -9, -3))))
     if place == "spoke":
-        return near_segment(rng, centre_of(corners), rng.choice(corners), size)
-    system = ContourSystem(corners, centre_of)
+        return near_segment(rng, center_of(corners), rng.choice(corners), size)
+    system = ContourSystem(corners, center_of)
     e = rng.randrange(3)
     if place == "center segment":
-        return near_segment(rng, system.centre, system.feet[e], size)
+        return near_segment(rng, system.center, system.feet[e], size)
     require(place == "wing segment", "unknown place")
-    middle = between(system.centre, system.feet[e], mpf(1) / 2)
+    middle = between(system.center, system.feet[e], mpf(1) / 2)
     return near_segment(rng, middle, corners[rng.choice(edge_ends(e))], size)
 
 
@@ -880,7 +880,7 @@ def barycentric_direction(rng):
 
 
 def strip_point(rng, chart, u):
-    """Reference coordinates with strip coordinate u in the strip of an edge that has a neighbour (if any has)."""
+    """Reference coordinates with strip coordinate u in the strip of an edge that has a neighbor (if any has)."""
     candidates = [k for k in range(3) if chart.apexes[k] is not None] or [0, 1, 2]
     k = rng.choice(candidates)
     i, j = edge_ends(k)
@@ -892,9 +892,9 @@ def strip_point(rng, chart, u):
     return l
 
 
-CONTOUR_PLACES = ("edge", "vertex", "centre", "wing segment", "center segment", "spoke")
+CONTOUR_PLACES = ("edge", "vertex", "center", "wing segment", "center segment", "spoke")
 PLACES = {
-    "Linear": ("edge", "vertex", "centre", "spoke"),
+    "Linear": ("edge", "vertex", "center", "spoke"),
     "Contour": CONTOUR_PLACES,
     "ContourIncenter": CONTOUR_PLACES,
     "Smooth": CONTOUR_PLACES + ("strip border", "strip border", "strip", "strip"),
@@ -920,16 +920,16 @@ def special_point_of_pair(rng, system, case):
             raise Unsuitable("outside")
         point = chart_p.point(l)
     else:
-        centre_of = incenter if system == "ContourIncenter" else centroid
+        center_of = incenter if system == "ContourIncenter" else centroid
         corners = corners_q if of_q else corners_p
-        point = special_point(rng, corners, place, centre_of)
+        point = special_point(rng, corners, place, center_of)
         if min(barycentric(corners, point)) <= 0:
             raise Unsuitable("outside")
         if of_q and system == "Linear":
             point = affine(corners_p, barycentric(corners_q, point))
         elif of_q:
-            coordinates, _ = ContourSystem(corners_q, centre_of).triangular(point)
-            point, _ = ContourSystem(corners_p, centre_of).cartesian(coordinates)
+            coordinates, _ = ContourSystem(corners_q, center_of).triangular(point)
+            point, _ = ContourSystem(corners_p, center_of).cartesian(coordinates)
     return tuple(float(value) for value in point)
 
 
@@ -938,9 +938,9 @@ def random_case(rng, system):
     triangle = concordant_triangle if system == "Contour" else any_triangle
     case = {"p": triangle(rng), "q": triangle(rng)}
     if system == "Smooth":
-        has_neighbour = [rng.random() < 0.9 for _ in range(3)]
-        case["p_apexes"] = random_apexes(rng, case["p"], has_neighbour)
-        case["q_apexes"] = random_apexes(rng, case["q"], has_neighbour)
+        has_neighbor = [rng.random() < 0.9 for _ in range(3)]
+        case["p_apexes"] = random_apexes(rng, case["p"], has_neighbor)
+        case["q_apexes"] = random_apexes(rng, case["q"], has_neighbor)
     if rng.random() < 0.6:
         case["x"] = uniform_point(rng, case["p"])
     else:
@@ -954,9 +954,9 @@ ROWS = {"Linear": 1000, "Contour": 1000, "ContourIncenter": 300, "Smooth": 1500}
 
 DESCRIPTIONS = {
     "Linear": "the Linear coordinate system (any triangles)",
-    "Contour": "the Contour coordinate system with the centroid as centre (concordant triangles)",
-    "ContourIncenter": "the Contour coordinate system with the incenter as centre (any triangles)",
-    "Smooth": "the Smooth coordinate system (any triangles, with the apexes of the neighbours)",
+    "Contour": "the Contour coordinate system with the centroid as center (concordant triangles)",
+    "ContourIncenter": "the Contour coordinate system with the incenter as center (any triangles)",
+    "Smooth": "the Smooth coordinate system (any triangles, with the apexes of the neighbors)",
 }
 
 
@@ -986,12 +986,12 @@ def comments_of(system):
     ]
     if system == "Smooth":
         lines += [
-            "pnx1..pny3, qnx1..qny3: the apexes of the neighbours across the edges opposite corners 1, 2, 3; nan on the boundary.",
+            "pnx1..pny3, qnx1..qny3: the apexes of the neighbors across the edges opposite corners 1, 2, 3; nan on the boundary.",
         ]
     lines += [
         "x, y: a point strictly inside P.",
         "e, p, c: its triangular coordinates. Edge e (1, 2, 3) is opposite corner e; p runs from 0 at the next corner in cyclic",
-        "order to 1 at the one after; c is 0 at the centre and 1 on the edge.",
+        "order to 1 at the one after; c is 0 at the center and 1 on the edge.",
         "u, v: the point of Q it is mapped to. J11, J12, J21, J22: the map's Jacobian, du/dx, du/dy, dv/dx, dv/dy.",
     ]
     if system == "Smooth":

@@ -192,7 +192,7 @@ inline double LargestCoordinate(vtkDataSet* mesh)
 }
 
 /// The number rounded to float. Stored in between: GCC 12 vectorizes the conversion to float and
-/// back of neighbouring elements away.
+/// back of neighboring elements away.
 inline double RoundedToFloat(double x)
 {
   const volatile float rounded = static_cast<float>(x);
@@ -306,7 +306,7 @@ void SetSystem(Algorithm* algorithm, const System& system)
 {
   algorithm->SetCoordinateSystem(system.CoordinateSystem);
   algorithm->SetCenterPoint(system.CenterPoint);
-  algorithm->SetDiscordantTriangles(Algorithm::CARRY_BY_LINEAR);
+  algorithm->SetDiscordantTriangles(Algorithm::USE_LINEAR);
 }
 
 inline vtkSmartPointer<vtkDifferentiableHomeomorphism> MakeFilter(
@@ -409,7 +409,7 @@ private:
 };
 
 /// A point of a mesh: a triangle and the weights of its three points.
-struct Place
+struct ToSurfacePoint
 {
   vtkIdType Triangle;
   Point Weights;
@@ -431,39 +431,41 @@ inline Point RandomWeights(Random& random, double margin = 0.0)
 
 /// Everywhere in the triangles, and one in four on an edge, close to an edge or close to a vertex,
 /// by any power of ten down to the rounding.
-inline std::vector<Place> RandomPlaces(vtkPolyData* mesh, vtkIdType count, std::uint64_t seed)
+inline std::vector<ToSurfacePoint> RandomPlaces(
+  vtkPolyData* mesh, vtkIdType count, std::uint64_t seed)
 {
   Random random(seed);
-  std::vector<Place> places(count);
-  for (Place& place : places)
+  std::vector<ToSurfacePoint> places(count);
+  for (ToSurfacePoint& surfacePoint : places)
   {
-    place.Triangle = random.Below(mesh->GetNumberOfCells());
-    place.Weights = RandomWeights(random);
+    surfacePoint.Triangle = random.Below(mesh->GetNumberOfCells());
+    surfacePoint.Weights = RandomWeights(random);
     const vtkIdType kind = random.Below(12);
     if (kind < 3)
     {
       const auto k = static_cast<std::size_t>(random.Below(3));
-      const double small =
-        kind == 0 ? 0.0 : 0.5 * std::pow(10.0, random.Uniform(-17.0, 0.0)) * place.Weights[k];
+      const double small = kind == 0
+        ? 0.0
+        : 0.5 * std::pow(10.0, random.Uniform(-17.0, 0.0)) * surfacePoint.Weights[k];
       const double t = random.Uniform();
       const double next = kind == 2 ? small * t : t * (1.0 - small);
-      place.Weights[k] = small;
-      place.Weights[(k + 1) % 3] = next;
-      place.Weights[(k + 2) % 3] = 1.0 - small - next;
+      surfacePoint.Weights[k] = small;
+      surfacePoint.Weights[(k + 1) % 3] = next;
+      surfacePoint.Weights[(k + 2) % 3] = 1.0 - small - next;
     }
   }
   return places;
 }
 
 /// Inside triangles, all weights at least @a margin.
-inline std::vector<Place> InnerPlaces(
+inline std::vector<ToSurfacePoint> InnerPlaces(
   vtkPolyData* mesh, vtkIdType count, std::uint64_t seed, double margin)
 {
   Random random(seed);
-  std::vector<Place> places(count);
-  for (Place& place : places)
+  std::vector<ToSurfacePoint> places(count);
+  for (ToSurfacePoint& surfacePoint : places)
   {
-    place = { random.Below(mesh->GetNumberOfCells()), RandomWeights(random, margin) };
+    surfacePoint = { random.Below(mesh->GetNumberOfCells()), RandomWeights(random, margin) };
   }
   return places;
 }
@@ -476,11 +478,11 @@ inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
     PointOf(mesh, ids->GetId(2)) };
 }
 
-inline Point PositionOf(vtkPolyData* mesh, const Place& place)
+inline Point PositionOf(vtkPolyData* mesh, const ToSurfacePoint& surfacePoint)
 {
-  const std::array<Point, 3> corners = CornersOf(mesh, place.Triangle);
-  return place.Weights[0] * corners[0] + place.Weights[1] * corners[1] +
-    place.Weights[2] * corners[2];
+  const std::array<Point, 3> corners = CornersOf(mesh, surfacePoint.Triangle);
+  return surfacePoint.Weights[0] * corners[0] + surfacePoint.Weights[1] * corners[1] +
+    surfacePoint.Weights[2] * corners[2];
 }
 
 /// Points without cells.
@@ -499,13 +501,14 @@ inline vtkSmartPointer<vtkPolyData> MakeCloud(
   return cloud;
 }
 
-inline vtkSmartPointer<vtkPolyData> MakeCloud(vtkPolyData* mesh, const std::vector<Place>& places)
+inline vtkSmartPointer<vtkPolyData> MakeCloud(
+  vtkPolyData* mesh, const std::vector<ToSurfacePoint>& places)
 {
   std::vector<Point> positions;
   positions.reserve(places.size());
-  for (const Place& place : places)
+  for (const ToSurfacePoint& surfacePoint : places)
   {
-    positions.push_back(PositionOf(mesh, place));
+    positions.push_back(PositionOf(mesh, surfacePoint));
   }
   return MakeCloud(positions);
 }

@@ -33,9 +33,9 @@ inline std::vector<Point> PointsOf(vtkPolyData* mesh)
   return points;
 }
 
-inline void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& place)
+inline void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& surfacePoint)
 {
-  mesh->GetPoints()->SetPoint(id, place.data());
+  mesh->GetPoints()->SetPoint(id, surfacePoint.data());
   mesh->GetPoints()->Modified();
 }
 

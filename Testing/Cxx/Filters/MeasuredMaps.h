@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MeasuredMaps.h
-/// Maps that are no homeomorphisms of triangulations: one with kinks of known size in known places,
-/// and one with none.
+/// Maps that are no homeomorphisms of triangulations: one with creases of known size in known
+/// places, and one with none.
 
 #ifndef MeasuredMaps_h
 #define MeasuredMaps_h

@@ -94,7 +94,7 @@ vtkSmartPointer<vtkImageData> LargeImage(int n)
 
 vtkIdType CountValid(vtkDataSet* data)
 {
-  vtkDataArray* mask = PointArray(data, "ValidPointMask");
+  vtkDataArray* mask = PointArray(data, "vtkValidPointMask");
   vtkIdType count = 0;
   for (vtkIdType i = 0; mask && i < mask->GetNumberOfTuples(); ++i)
   {
@@ -121,7 +121,7 @@ TEST(Abort, Homeomorphism)
       EXPECT_LT(valid, image->GetNumberOfPoints());
       EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - valid);
       vtkDataArray* jacobian = PointArray(output, "Jacobian");
-      vtkDataArray* mask = PointArray(output, "ValidPointMask");
+      vtkDataArray* mask = PointArray(output, "vtkValidPointMask");
       ASSERT_TRUE(jacobian);
       for (vtkIdType i = 0; i < output->GetNumberOfPoints(); i += 97)
       {
@@ -213,7 +213,7 @@ TEST(Abort, Resample)
     for (vtkIdType i = 0; brightness && i < output->GetNumberOfPoints(); ++i)
     {
       ASSERT_EQ(std::isnan(brightness->GetTuple1(i)),
-        PointArray(output, "ValidPointMask")->GetTuple1(i) == 0.0);
+        PointArray(output, "vtkValidPointMask")->GetTuple1(i) == 0.0);
     }
   }
   filter->Modified();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // A table of everything that can be wrong with an input, or look as if it were: what is said then,
-// and what comes out. Documentation/Errors.md is this table, written by
+// and what comes out. Documentation/diagnostics.md is this table, written by
 //
 //   FilterTests --gtest_filter='BadInput.*' with the environment variable WRITE_ERRORS set to its
 //   path.
@@ -134,7 +134,7 @@ Outcome Run(const MeshPair& pair, bool taken, const System& system = Smooth, boo
       filter->GetNumberOfOutsidePoints() == -1;
     return outcome;
   }
-  vtkDataArray* mask0 = PointArray(output, "ValidPointMask");
+  vtkDataArray* mask0 = PointArray(output, "vtkValidPointMask");
   outcome.AsItShouldBe = output->GetNumberOfPoints() == 3 && filter->GetErrorCode() == 0 && mask0 &&
     mask0->GetComponent(2, 0) == 0.0 && SameBits(PointOf(output, 2)[0], 50.0);
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -169,9 +169,9 @@ std::function<Outcome()> Spoilt(Which which, const std::function<void(vtkPolyDat
   };
 }
 
-void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& place)
+void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& surfacePoint)
 {
-  mesh->GetPoints()->SetPoint(id, place.data());
+  mesh->GetPoints()->SetPoint(id, surfacePoint.data());
 }
 
 void SetTriangles(vtkPolyData* mesh, const std::vector<Triangle>& triangles)
@@ -730,7 +730,7 @@ std::vector<BadInput> Table()
     return RunWithData(
       MakeCloud({ { NotANumber, 1.0, 0.0 }, { 1.0, Infinity, 0.0 }, { 1.0, 1.0, 0.0 } }),
       [](vtkPointSet* output) {
-        vtkDataArray* mask = PointArray(output, "ValidPointMask");
+        vtkDataArray* mask = PointArray(output, "vtkValidPointMask");
         return mask && mask->GetComponent(0, 0) == 0.0 && mask->GetComponent(1, 0) == 0.0 &&
           mask->GetComponent(2, 0) == 1.0 && std::isnan(PointOf(output, 0)[0]);
       },
@@ -923,7 +923,7 @@ std::vector<BadInput> Table()
       return Outcome{ listener.GetText(),
         filter->GetCoordinateSystem() == vtkDifferentiableHomeomorphism::SMOOTH &&
           filter->GetCenterPoint() == vtkDifferentiableHomeomorphism::CENTROID &&
-          filter->GetDiscordantTriangles() == vtkDifferentiableHomeomorphism::CARRY_BY_LINEAR &&
+          filter->GetDiscordantTriangles() == vtkDifferentiableHomeomorphism::USE_LINEAR &&
           filter->GetTolerance() == 0.0 && coordinates->GetNumberOfContours() == 1 &&
           coordinates->GetLineResolution() == 1000 && continuity->GetSamplesPerEdge() == 1 &&
           continuity->GetResolution() == 1.0 };
@@ -938,13 +938,14 @@ std::vector<BadInput> Table()
     filter->Update();
     return Outcome{ listener.GetText(), filter->GetNumberOfOutsidePoints() == 1 };
   });
-  add(use, "SetArrayTransport without a name, or with an unknown transport",
-    { "SetArrayTransport takes an array's name and a transport from" }, "Ignored.", []() {
+  add(use, "SetAttributeTransformation without a name, or with an unknown transformation",
+    { "SetAttributeTransformation takes an array's name and a transformation from" }, "Ignored.",
+    []() {
       vtkNew<vtkDifferentiableHomeomorphism> filter;
       Listener listener;
       listener.ListenTo(filter);
-      filter->SetArrayTransport(nullptr, 0);
-      filter->SetArrayTransport("Velocity", 99);
+      filter->SetAttributeTransformation(nullptr, 0);
+      filter->SetAttributeTransformation("Velocity", 99);
       return Outcome{ listener.GetText() };
     });
   add(use, "A transform is used before its meshes are set",
@@ -982,7 +983,7 @@ std::vector<BadInput> Table()
       transform->SetSource(pair.Source);
       transform->SetTarget(pair.Target);
       transform->Update();
-      const std::vector<Place> places = RandomPlaces(pair.Source, 2000, 17);
+      const std::vector<ToSurfacePoint> places = RandomPlaces(pair.Source, 2000, 17);
       const auto run = [&](std::vector<Point>& images) {
         for (std::size_t i = 0; i < places.size(); ++i)
         {
@@ -1070,7 +1071,7 @@ TEST(BadInput, SaysWhatIsWrongWhereAndWhatToDo)
   document
     << "# What is said when something is wrong\n\n"
     << "Written by the test of this table, `Testing/Cxx/Filters/TestBadInput.cxx`, which provokes "
-       "each of these and\nreads the message:\n\n```sh\nWRITE_ERRORS=Documentation/Errors.md "
+       "each of these and\nreads the message:\n\n```sh\nWRITE_ERRORS=Documentation/diagnostics.md "
        "build/release/bin/FilterTests --gtest_filter='BadInput.*'\n```\n\n"
     << "A message about triangles says how many there are, of which mesh, and the ids of the "
        "first ten. Filters set an\nerror code (`GetErrorCode`) and leave their output empty; the "
@@ -1107,7 +1108,7 @@ TEST(BadInput, SaysWhatIsWrongWhereAndWhatToDo)
   const std::string written{ std::istreambuf_iterator<char>(file),
     std::istreambuf_iterator<char>() };
   EXPECT_TRUE(written == document.str())
-    << "Documentation/Errors.md is not what the test found; see there how to write it anew.";
+    << "Documentation/diagnostics.md is not what the test found; see there how to write it anew.";
 }
 
 } // namespace

@@ -78,7 +78,7 @@ double SignedArea(const Vector2& a, const Vector2& b, const Vector2& c)
   return 0.5 * homeomorphism::Cross(b - a, c - a);
 }
 
-/// Of corners that run anticlockwise: 1 if the point is inside, 0 if it is on the boundary, -1
+/// Of corners that run counterclockwise: 1 if the point is inside, 0 if it is on the boundary, -1
 /// outside.
 int Containment(const std::array<Vector2, 3>& corners, const Vector2& point)
 {
@@ -268,9 +268,10 @@ TEST(BijectivityOfSmooth, WithNeedles)
   ExpectBijective(Smooth, { pair.Source, target }, 91);
 }
 
-// --- What the torture found ----------------------------------------------------------------------
+// --- What the stress test found
+// ----------------------------------------------------------------------
 
-/// Where a neighbour is far smaller, the columns of the Jacobian are almost parallel, and the
+/// Where a neighbor is far smaller, the columns of the Jacobian are almost parallel, and the
 /// determinant as a difference of their products was anything.
 TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
 {
@@ -288,9 +289,9 @@ TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
                { 15.042583642223518, 7.2082027694053439, 0 } },
       triangles) };
   std::vector<Point> points{ { -0.0010156480399538691, -0.0014540839480793751, 0.0 } };
-  for (const Place& place : RandomPlaces(pair.Source, 20000, 5))
+  for (const ToSurfacePoint& surfacePoint : RandomPlaces(pair.Source, 20000, 5))
   {
-    points.push_back(PositionOf(pair.Source, place));
+    points.push_back(PositionOf(pair.Source, surfacePoint));
   }
   const auto filter = MakeFilter(Smooth, pair, MakeCloud(points));
   filter->ComputeJacobianDeterminantOn();

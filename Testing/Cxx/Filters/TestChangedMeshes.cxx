@@ -164,10 +164,10 @@ public:
     this->Told.Clear();
     this->Transform->Update();
     std::vector<double> answer;
-    for (const Point& place : this->Told.HasError() ? std::vector<Point>() : Places)
+    for (const Point& surfacePoint : this->Told.HasError() ? std::vector<Point>() : Places)
     {
       Point image;
-      this->Transform->TransformPoint(place.data(), image.data());
+      this->Transform->TransformPoint(surfacePoint.data(), image.data());
       answer.insert(answer.end(), image.begin(), image.end());
     }
     return answer;
@@ -473,7 +473,7 @@ TEST_F(Builds, OfOptions)
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
   filter->SetCenterPoint(vtkDifferentiableHomeomorphism::INCENTER);
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
-  filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::CARRY_BY_LINEAR);
+  filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::USE_LINEAR);
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
   // These say how the map is used, not what it is.
   filter->ComputeJacobianOn();
@@ -521,13 +521,13 @@ TEST(ChangedMeshes, CopiesAndInversesOfATransformNotice)
   FlipDiagonal(pair.Target);
   const MeshPair anew = Anew(pair);
   TransformUser fresh(anew);
-  for (const Point& place : Places)
+  for (const Point& surfacePoint : Places)
   {
     Point expected;
     Point image;
     Point back;
-    fresh.Transform->TransformPoint(place.data(), expected.data());
-    copy->TransformPoint(place.data(), image.data());
+    fresh.Transform->TransformPoint(surfacePoint.data(), expected.data());
+    copy->TransformPoint(surfacePoint.data(), image.data());
     EXPECT_EQ(image, expected);
     inverse->TransformPoint(expected.data(), back.data());
     Point expectedBack;

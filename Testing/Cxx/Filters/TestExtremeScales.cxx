@@ -127,7 +127,7 @@ Mapped MapPoints(
   {
     return result;
   }
-  auto* mask = output->GetPointData()->GetArray("ValidPointMask");
+  auto* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   auto* triangles = output->GetPointData()->GetArray("TriangleId");
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
   {
@@ -288,7 +288,7 @@ MeshPair MakePairWithTinyTriangle(double tiny, double targetStretch)
   return { MakeMesh(source, triangles), MakeMesh(target, triangles) };
 }
 
-/// Maps points of a tiny triangle of a unit mesh and of its neighbours there and back.
+/// Maps points of a tiny triangle of a unit mesh and of its neighbors there and back.
 void ExpectTinyTriangleMapped(double tiny, int system)
 {
   SCOPED_TRACE(tiny);
@@ -411,7 +411,7 @@ TEST(ExtremeScales, ATinyTriangleHasCoordinates)
   ASSERT_FALSE(messages.HasError()) << messages.Error();
   auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
   EXPECT_EQ(output->GetPointData()->GetArray("TriangleId")->GetTuple1(0), 0.0);
-  EXPECT_EQ(output->GetPointData()->GetArray("ValidPointMask")->GetTuple1(0), 1.0);
+  EXPECT_EQ(output->GetPointData()->GetArray("vtkValidPointMask")->GetTuple1(0), 1.0);
 }
 
 TEST(ExtremeScales, ATinyTriangleWithoutAreaIsStillRefused)

@@ -117,7 +117,8 @@ TEST_P(FilterInEverySystem, InverseIsTheMapOfTheMeshesExchanged)
     vtkPointSet* b = Output(exchanged);
     EXPECT_EQ(CountDifferentPoints(a, b), 0) << pairing.Name;
     EXPECT_GT(CountDifferentPoints(a, cloud), 4000) << pairing.Name;
-    for (const char* name : { "ValidPointMask", "TriangleId", "Jacobian", "JacobianDeterminant" })
+    for (const char* name :
+      { "vtkValidPointMask", "TriangleId", "Jacobian", "JacobianDeterminant" })
     {
       EXPECT_EQ(CountDifferentValues(PointArray(a, name), PointArray(b, name)), 0)
         << pairing.Name << " " << name;
@@ -239,7 +240,7 @@ TEST_P(FilterInEverySystem, EdgesAreMappedLinearly)
   {
     const MeshPair& pair = pairing.Meshes;
     Random random(5);
-    std::vector<Place> places;
+    std::vector<ToSurfacePoint> places;
     for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
     {
       for (std::size_t k = 0; k < 3; ++k)
@@ -247,10 +248,10 @@ TEST_P(FilterInEverySystem, EdgesAreMappedLinearly)
         for (int i = 0; i < 8; ++i)
         {
           const double p = i < 4 ? random.Uniform() : std::pow(10.0, random.Uniform(-15.0, 0.0));
-          Place place{ t, {} };
-          place.Weights[(k + 1) % 3] = 1.0 - p;
-          place.Weights[(k + 2) % 3] = p;
-          places.push_back(place);
+          ToSurfacePoint surfacePoint{ t, {} };
+          surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
+          surfacePoint.Weights[(k + 2) % 3] = p;
+          places.push_back(surfacePoint);
         }
       }
     }
@@ -325,11 +326,11 @@ TEST_P(FilterInEverySystem, MirroredPairs)
 /// How well a Jacobian can be known: all systems but Linear are like cones around the vertices,
 /// where J depends on the direction from the vertex, and a point that is stored to an ulp of its
 /// coordinates is seen from there the worse the closer it is.
-double JacobianBound(vtkPolyData* mesh, const Place& place)
+double JacobianBound(vtkPolyData* mesh, const ToSurfacePoint& surfacePoint)
 {
-  const Point position = PositionOf(mesh, place);
+  const Point position = PositionOf(mesh, surfacePoint);
   double nearest = SizeOf(mesh);
-  for (const Point& corner : CornersOf(mesh, place.Triangle))
+  for (const Point& corner : CornersOf(mesh, surfacePoint.Triangle))
   {
     nearest = std::min(nearest, Distance(corner, position));
   }
@@ -347,7 +348,7 @@ TEST_P(FilterInEverySystem, AffinePairs)
   const auto source = MakePlanarPair(10, 180).Source;
   const auto image = [&](const Point& p) { return matrix * p + shift; };
   const MeshPair pair{ source, Moved(source, image) };
-  const std::vector<Place> places = RandomPlaces(source, 20000, 8);
+  const std::vector<ToSurfacePoint> places = RandomPlaces(source, 20000, 8);
   const auto cloud = MakeCloud(source, places);
   const auto filter = MakeFilter(GetParam(), pair, cloud);
   filter->ComputeJacobianOn();
@@ -378,7 +379,7 @@ TEST_P(FilterInEverySystem, SurfacesThatAreMovedInSpace)
   for (const auto& source : { MakeSheet(8, 185, 0.7), MakeClosedPair(2, 186).Target })
   {
     const MeshPair pair{ source, Tilted(source, turn, shift) };
-    const std::vector<Place> places = RandomPlaces(source, 10000, 9);
+    const std::vector<ToSurfacePoint> places = RandomPlaces(source, 10000, 9);
     const auto cloud = MakeCloud(source, places);
     const auto filter = MakeFilter(GetParam(), pair, cloud);
     filter->ComputeJacobianOn();
@@ -451,9 +452,9 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
   const auto places = RandomPlaces(pair.Source, 10000, 11);
   Random random(12);
   std::vector<Point> positions;
-  for (const Place& place : places)
+  for (const ToSurfacePoint& surfacePoint : places)
   {
-    Point p = PositionOf(pair.Source, place);
+    Point p = PositionOf(pair.Source, surfacePoint);
     p[2] = random.Uniform(-5.0, 5.0);
     positions.push_back(p);
   }
@@ -530,9 +531,9 @@ TEST_P(FilterInEverySystem, HeightsAreLengths)
     });
     Random random(13);
     std::vector<Point> positions;
-    for (const Place& place : RandomPlaces(pair.Source, 2000, 14))
+    for (const ToSurfacePoint& surfacePoint : RandomPlaces(pair.Source, 2000, 14))
     {
-      positions.push_back(PositionOf(pair.Source, place));
+      positions.push_back(PositionOf(pair.Source, surfacePoint));
       positions.back()[2] = random.Uniform(-20.0, 20.0);
     }
     const auto cloud = MakeCloud(positions);
@@ -635,7 +636,7 @@ protected:
     vtkPointSet* expected = Output(filter);
     EXPECT_EQ(CountDifferentPoints(output, expected), 0) << input->GetClassName();
     EXPECT_EQ(CountDifferentValues(
-                PointArray(output, "ValidPointMask"), PointArray(expected, "ValidPointMask")),
+                PointArray(output, "vtkValidPointMask"), PointArray(expected, "vtkValidPointMask")),
       0);
 
     ASSERT_EQ(output->GetNumberOfCells(), input->GetNumberOfCells());
@@ -735,9 +736,9 @@ protected:
     const auto places = RandomPlaces(this->Pair.Source, 40, 26);
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
-    for (const Place& place : places)
+    for (const ToSurfacePoint& surfacePoint : places)
     {
-      Point p = PositionOf(this->Pair.Source, place);
+      Point p = PositionOf(this->Pair.Source, surfacePoint);
       p[2] = 0.25 * static_cast<double>(points->GetNumberOfPoints() % 7);
       points->InsertNextPoint(p.data());
     }
@@ -862,7 +863,7 @@ TEST_F(KindsOfData, MultiBlockDataSet)
   vtkIdType outside = 0;
   for (vtkDataObject* block : { output->GetBlock(0), output->GetBlock(3) })
   {
-    vtkDataArray* mask = PointArray(vtkDataSet::SafeDownCast(block), "ValidPointMask");
+    vtkDataArray* mask = PointArray(vtkDataSet::SafeDownCast(block), "vtkValidPointMask");
     for (vtkIdType i = 0; i < mask->GetNumberOfTuples(); ++i)
     {
       outside += mask->GetComponent(i, 0) == 0.0;
@@ -875,7 +876,7 @@ TEST_F(KindsOfData, MultiBlockDataSet)
   ExpectArraysPassed(data->GetFieldData(), output->GetFieldData());
 
   // The input is not touched, in particular not given the output's arrays.
-  EXPECT_FALSE(PointArray(vtkDataSet::SafeDownCast(data->GetBlock(0)), "ValidPointMask"));
+  EXPECT_FALSE(PointArray(vtkDataSet::SafeDownCast(data->GetBlock(0)), "vtkValidPointMask"));
   EXPECT_TRUE(vtkImageData::SafeDownCast(data->GetBlock(0)));
 }
 
@@ -962,10 +963,10 @@ TEST_F(KindsOfData, WithoutDataTheMeshIsMapped)
 TEST_F(KindsOfData, PrecisionOfPoints)
 {
   std::vector<Point> positions;
-  for (const Place& place : RandomPlaces(this->Pair.Source, 5000, 30))
+  for (const ToSurfacePoint& surfacePoint : RandomPlaces(this->Pair.Source, 5000, 30))
   {
     // Points that are the same in both precisions.
-    positions.push_back(RoundedToFloat(PositionOf(this->Pair.Source, place)));
+    positions.push_back(RoundedToFloat(PositionOf(this->Pair.Source, surfacePoint)));
   }
   struct Case
   {
@@ -1056,7 +1057,7 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
       const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0;
       // Those of another piece are marked, but not counted.
       outside += isOutside && !(hasGhosts && i % 5 == 0);
-      ASSERT_EQ(PointArray(output, "ValidPointMask")->GetComponent(i, 0), isOutside ? 0 : 1);
+      ASSERT_EQ(PointArray(output, "vtkValidPointMask")->GetComponent(i, 0), isOutside ? 0 : 1);
       ASSERT_EQ(PointArray(output, "TriangleId")->GetComponent(i, 0) < 0, isOutside);
       ASSERT_EQ(
         std::isnan(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0)), isOutside);
@@ -1084,7 +1085,7 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     {
       image->GetCellPoints(cell, ids);
       const bool isOutside = std::any_of(ids->begin(), ids->end(), [&](vtkIdType i) {
-        return PointArray(output, "ValidPointMask")->GetComponent(i, 0) == 0.0;
+        return PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) == 0.0;
       });
       const int before = hasGhosts && cell % 7 == 0 ? vtkDataSetAttributes::DUPLICATECELL : 0;
       ASSERT_EQ(Ghosts(output->GetCellData())->GetValue(cell),
@@ -1135,7 +1136,7 @@ TEST_P(FilterInEverySystem, ToleranceTakesPointsToTheNearestOfTheDomain)
   vtkPointSet* output = Output(filter);
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 1);
   EXPECT_LE(Distance(PointOf(output, 0), PointOf(output, 1)), 1e-14 * diagonal);
-  EXPECT_EQ(PointArray(output, "ValidPointMask")->GetComponent(2, 0), 0.0);
+  EXPECT_EQ(PointArray(output, "vtkValidPointMask")->GetComponent(2, 0), 0.0);
   filter->SetTolerance(-1.0);
   EXPECT_EQ(filter->GetTolerance(), 0.0);
 }
@@ -1149,12 +1150,12 @@ TEST_P(FilterInEverySystem, PointsOffASurfaceAreOutside)
     const MeshPair& pair = pairing.Meshes;
     const double size = SizeOf(pair.Source);
     std::vector<Point> positions;
-    const std::vector<Place> places = InnerPlaces(pair.Source, 300, 33, 0.2);
-    for (const Place& place : places)
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 300, 33, 0.2);
+    for (const ToSurfacePoint& surfacePoint : places)
     {
-      const std::array<Point, 3> c = CornersOf(pair.Source, place.Triangle);
+      const std::array<Point, 3> c = CornersOf(pair.Source, surfacePoint.Triangle);
       const Point normal = Unit(Cross(c[1] - c[0], c[2] - c[0]));
-      positions.push_back(PositionOf(pair.Source, place) + 1e-4 * size * normal);
+      positions.push_back(PositionOf(pair.Source, surfacePoint) + 1e-4 * size * normal);
     }
     const auto cloud = MakeCloud(positions);
     const auto filter = MakeFilter(GetParam(), pair, cloud);
@@ -1193,7 +1194,7 @@ TEST(HomeomorphismFilter, PointsThatAreNotFiniteAreOutside)
     vtkPointSet* output = Output(filter);
     for (vtkIdType i = 0; i < 6; ++i)
     {
-      EXPECT_EQ(PointArray(output, "ValidPointMask")->GetComponent(i, 0), 0.0) << pairing.Name;
+      EXPECT_EQ(PointArray(output, "vtkValidPointMask")->GetComponent(i, 0), 0.0) << pairing.Name;
     }
     EXPECT_EQ(CountDifferentPoints(output, cloud), 7 - filter->GetNumberOfOutsidePoints());
   }
@@ -1215,7 +1216,7 @@ TEST_P(FilterInEverySystem, TriangleIdIsTheCellOfTheSource)
       (*mesh)->SetVerts(verts);
     }
     Random random(34);
-    std::vector<Place> places;
+    std::vector<ToSurfacePoint> places;
     for (int i = 0; i < 3000; ++i)
     {
       places.push_back(
@@ -1242,7 +1243,7 @@ TEST_P(FilterInEverySystem, TriangleIdIsTheCellOfTheSource)
 }
 
 /// Places at which a stencil around them has the same triangle and the same e throughout, so that
-/// no kink of the Linear and Contour systems lies between its points.
+/// no crease of the Linear and Contour systems lies between its points.
 std::vector<bool> HaveNoKink(
   const System& system, const MeshPair& pair, vtkPolyData* stencils, vtkIdType pointsOfStencil)
 {
@@ -1274,7 +1275,7 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
   for (const Pairing& pairing : AllPairings(8, 2, 330))
   {
     const MeshPair& pair = pairing.Meshes;
-    const std::vector<Place> places = InnerPlaces(pair.Source, 4000, 35, 1e-3);
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 4000, 35, 1e-3);
     const auto filter = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, places));
     filter->ComputeJacobianOn();
     filter->ComputeJacobianDeterminantOn();
@@ -1288,14 +1289,14 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
     // Steps along two of the triangle's edges: a point of the triangle stays in its plane.
     constexpr double h = 2e-5;
     const double steps[] = { -2.0, -1.0, 1.0, 2.0 };
-    std::vector<Place> stencils;
-    for (const Place& place : places)
+    std::vector<ToSurfacePoint> stencils;
+    for (const ToSurfacePoint& surfacePoint : places)
     {
       for (const std::size_t direction : { 1u, 2u })
       {
         for (const double step : steps)
         {
-          Place moved = place;
+          ToSurfacePoint moved = surfacePoint;
           moved.Weights[direction] += step * h;
           moved.Weights[0] -= step * h;
           stencils.push_back(moved);
@@ -1359,14 +1360,14 @@ TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
   {
     const bool isPlanar = pair.Source == planar.Source;
     constexpr double h = 1e-6;
-    std::vector<Place> corners;
-    const std::vector<Place> places = InnerPlaces(pair.Source, 2000, 36, 1e-3);
-    for (const Place& place : places)
+    std::vector<ToSurfacePoint> corners;
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 2000, 36, 1e-3);
+    for (const ToSurfacePoint& surfacePoint : places)
     {
-      corners.push_back(place);
+      corners.push_back(surfacePoint);
       for (const std::size_t direction : { 1u, 2u })
       {
-        Place moved = place;
+        ToSurfacePoint moved = surfacePoint;
         moved.Weights[direction] += h;
         moved.Weights[0] -= h;
         corners.push_back(moved);
@@ -1462,14 +1463,14 @@ TEST(HomeomorphismFilter, ArraysOfTheSameNameAreReplaced)
   vtkNew<vtkPolyData> data;
   data->ShallowCopy(pair.Source);
   const vtkIdType count = data->GetNumberOfPoints();
-  for (const char* name : { "ValidPointMask", "TriangleId", "Jacobian", "JacobianDeterminant" })
+  for (const char* name : { "vtkValidPointMask", "TriangleId", "Jacobian", "JacobianDeterminant" })
   {
     data->GetPointData()->AddArray(RandomArray<vtkIntArray>(name, 2, count, 37));
   }
   const auto filter = MakeFilter(Smooth, pair, data);
   vtkPointSet* output = Output(filter);
-  EXPECT_EQ(PointArray(output, "ValidPointMask")->GetNumberOfComponents(), 1);
-  EXPECT_EQ(PointArray(output, "ValidPointMask")->GetDataType(), VTK_UNSIGNED_CHAR);
+  EXPECT_EQ(PointArray(output, "vtkValidPointMask")->GetNumberOfComponents(), 1);
+  EXPECT_EQ(PointArray(output, "vtkValidPointMask")->GetDataType(), VTK_UNSIGNED_CHAR);
   // Only what is added replaces.
   EXPECT_EQ(PointArray(output, "Jacobian")->GetNumberOfComponents(), 2);
   filter->ComputeJacobianOn();
@@ -1589,7 +1590,7 @@ TEST(HomeomorphismFilter, UpdatingTwiceIsStable)
     EXPECT_EQ(CountDifferentPoints(first, again), 0);
     EXPECT_EQ(
       first->GetPointData()->GetNumberOfArrays(), again->GetPointData()->GetNumberOfArrays());
-    for (const char* name : { "Velocity", "Jacobian", "ValidPointMask" })
+    for (const char* name : { "Velocity", "Jacobian", "vtkValidPointMask" })
     {
       EXPECT_EQ(CountDifferentValues(PointArray(first, name), PointArray(again, name)), 0);
     }
@@ -1607,14 +1608,15 @@ TEST(HomeomorphismFilter, ChangingAPropertyExecutesAgain)
                                                           },
     [](Filter* f) { f->SetCoordinateSystemToContour(); },
     [](Filter* f) { f->SetCenterPoint(Filter::INCENTER); },
-    [](Filter* f) { f->SetDiscordantTriangles(Filter::CARRY_BY_LINEAR); },
+    [](Filter* f) { f->SetDiscordantTriangles(Filter::USE_LINEAR); },
     [](Filter* f) { f->SetCoordinateSystemToSmooth(); },
     [](Filter* f) { f->MaskInvalidTrianglesOn(); }, [](Filter* f) { f->SetTolerance(0.125); },
     [](Filter* f) { f->ComputeTriangleIdOn(); }, [](Filter* f) { f->ComputeJacobianOn(); },
-    [](Filter* f) { f->ComputeJacobianDeterminantOn(); }, [](Filter* f) { f->CarryVectorsOff(); },
-    [](Filter* f) { f->CarryAllVectorsOn(); },
-    [](Filter* f) { f->SetArrayTransport("Any", Filter::GRADIENT_TRANSPORT); },
-    [](Filter* f) { f->ClearArrayTransports(); }, [](Filter* f) { f->BlankOutsideOff(); },
+    [](Filter* f) { f->ComputeJacobianDeterminantOn(); },
+    [](Filter* f) { f->TransformActiveAttributesOff(); },
+    [](Filter* f) { f->TransformAllInputVectorsOn(); },
+    [](Filter* f) { f->SetAttributeTransformation("Any", Filter::GRADIENT_TRANSFORMATION); },
+    [](Filter* f) { f->ClearAttributeTransformations(); }, [](Filter* f) { f->BlankOutsideOff(); },
     [](Filter* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); },
     [](Filter* f) { f->InverseOn(); } };
   filter->SetDiscordantTriangles(Filter::REFUSE);
@@ -1641,14 +1643,16 @@ TEST(HomeomorphismFilter, PropertiesAreClampedAndPrinted)
   EXPECT_EQ(filter->GetCoordinateSystem(), vtkDifferentiableHomeomorphism::LINEAR);
   filter->SetCoordinateSystem(17);
   EXPECT_EQ(filter->GetCoordinateSystem(), vtkDifferentiableHomeomorphism::SMOOTH);
-  filter->SetArrayTransport("Force", vtkDifferentiableHomeomorphism::NORMAL_TRANSPORT);
+  filter->SetAttributeTransformation(
+    "Force", vtkDifferentiableHomeomorphism::NORMAL_TRANSFORMATION);
   std::ostringstream text;
   filter->Print(text);
-  for (const char* word : { "CoordinateSystem: 2", "Inverse: 0", "CenterPoint: 0",
-         "DiscordantTriangles: 0", "MaskInvalidTriangles: 0", "Tolerance: 0",
-         "ComputeTriangleId: 0", "ComputeJacobian: 0", "ComputeJacobianDeterminant: 0",
-         "CarryVectors: 1", "CarryAllVectors: 0", "ArrayTransport of Force: 3", "BlankOutside: 1",
-         "OutputPointsPrecision: 2", "NumberOfOutsidePoints: 0" })
+  for (const char* word :
+    { "CoordinateSystem: 2", "Inverse: 0", "CenterPoint: 0", "DiscordantTriangles: 0",
+      "MaskInvalidTriangles: 0", "Tolerance: 0", "ComputeTriangleId: 0", "ComputeJacobian: 0",
+      "ComputeJacobianDeterminant: 0", "TransformActiveAttributes: 1",
+      "TransformAllInputVectors: 0", "AttributeTransformation of Force: 3", "BlankOutside: 1",
+      "OutputPointsPrecision: 2", "NumberOfOutsidePoints: 0" })
   {
     EXPECT_NE(text.str().find(word), std::string::npos) << word;
   }
@@ -1692,7 +1696,7 @@ TEST_P(FilterInEverySystem, EmptyInputsGiveEmptyOutputsQuietly)
     auto* points = vtkPointSet::SafeDownCast(output);
     ASSERT_TRUE(points);
     EXPECT_EQ(CountDifferentPoints(points, pair.Source), 0);
-    EXPECT_EQ(PointArray(points, "ValidPointMask")->GetRange()[1], 0.0);
+    EXPECT_EQ(PointArray(points, "vtkValidPointMask")->GetRange()[1], 0.0);
     EXPECT_EQ(PointArray(points, "TriangleId")->GetRange()[1], -1.0);
   }
   for (const vtkSmartPointer<vtkDataObject>& data :

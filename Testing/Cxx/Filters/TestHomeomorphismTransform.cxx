@@ -47,15 +47,15 @@ std::vector<MeshPair> PlanarPairs(std::uint64_t seed)
 std::vector<Point> PositionsAround(vtkPolyData* mesh, std::uint64_t seed)
 {
   std::vector<Point> positions;
-  for (const Place& place : RandomPlaces(mesh, 4000, seed))
+  for (const ToSurfacePoint& surfacePoint : RandomPlaces(mesh, 4000, seed))
   {
-    positions.push_back(PositionOf(mesh, place));
+    positions.push_back(PositionOf(mesh, surfacePoint));
   }
   Random random(seed + 1);
   const double size = SizeOf(mesh);
-  for (const Place& place : RandomPlaces(mesh, 1000, seed + 2))
+  for (const ToSurfacePoint& surfacePoint : RandomPlaces(mesh, 1000, seed + 2))
   {
-    positions.push_back(PositionOf(mesh, place) + 0.5 * size * random.Vector());
+    positions.push_back(PositionOf(mesh, surfacePoint) + 0.5 * size * random.Vector());
   }
   return positions;
 }
@@ -89,7 +89,7 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
       filter->SetInverse(inverse);
       filter->ComputeJacobianOn();
       vtkPointSet* mapped = Output(filter);
-      vtkDataArray* mask = PointArray(mapped, "ValidPointMask");
+      vtkDataArray* mask = PointArray(mapped, "vtkValidPointMask");
       EXPECT_GT(filter->GetNumberOfOutsidePoints(), 100);
 
       const auto transform = MakeTransform(GetParam(), pair);
@@ -223,7 +223,7 @@ TEST_P(TransformInEverySystem, FloatVersions)
       filter->SetInverse(inverse);
       filter->ComputeJacobianOn();
       vtkPointSet* mapped = Output(filter);
-      vtkDataArray* mask = PointArray(mapped, "ValidPointMask");
+      vtkDataArray* mask = PointArray(mapped, "vtkValidPointMask");
       const auto transform = MakeTransform(GetParam(), pair);
       if (inverse)
       {
@@ -283,7 +283,7 @@ TEST_P(TransformInEverySystem, NormalsAndVectorsAgreeWithTheFilter)
       cloud->GetPointData()->AddArray(RandomArray("More", 3, count, 66));
       const auto filter = MakeFilter(GetParam(), pair, cloud);
       filter->SetInverse(inverse);
-      filter->CarryAllVectorsOn();
+      filter->TransformAllInputVectorsOn();
       vtkPointSet* mapped = Output(filter);
 
       // GetInverse here, the flag elsewhere.
@@ -317,12 +317,12 @@ TEST_P(TransformInEverySystem, Inverse)
     inverse->Update();
     EXPECT_NE(vtkHomeomorphismTransform::SafeDownCast(inverse)->GetInverseFlag(),
       transform->GetInverseFlag());
-    const std::vector<Place> places = InnerPlaces(pair.Source, 3000, 67, 1e-3);
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 67, 1e-3);
     Worst points;
     Worst derivatives;
-    for (const Place& place : places)
+    for (const ToSurfacePoint& surfacePoint : places)
     {
-      const Point p = PositionOf(pair.Source, place);
+      const Point p = PositionOf(pair.Source, surfacePoint);
       double forward[3][3];
       Point image;
       transform->Update();
@@ -572,9 +572,9 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
 {
   const MeshPair pair = MakePlanarPair(12, 580);
   std::vector<Point> positions;
-  for (const Place& place : RandomPlaces(pair.Source, 60000, 70))
+  for (const ToSurfacePoint& surfacePoint : RandomPlaces(pair.Source, 60000, 70))
   {
-    positions.push_back(PositionOf(pair.Source, place));
+    positions.push_back(PositionOf(pair.Source, surfacePoint));
   }
   const auto cloud = MakeCloud(positions);
   cloud->GetPointData()->SetVectors(RandomArray("Vectors", 3, cloud->GetNumberOfPoints(), 71));
@@ -611,7 +611,7 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
         }
         EXPECT_EQ(CountDifferentValues(points->GetData(), first->GetData()), 0) << backend;
         EXPECT_EQ(CountDifferentPoints(mapped, firstMapped), 0) << backend << threads;
-        for (const char* name : { "Vectors", "Jacobian", "TriangleId", "ValidPointMask" })
+        for (const char* name : { "Vectors", "Jacobian", "TriangleId", "vtkValidPointMask" })
         {
           EXPECT_EQ(
             CountDifferentValues(PointArray(mapped, name), PointArray(firstMapped, name)), 0)
@@ -716,7 +716,7 @@ void TestResampling(const System& system, double size)
     const auto filter = MakeFilter(system, pair, output);
     filter->InverseOn();
     vtkPointSet* preimages = Output(filter);
-    vtkDataArray* mask = PointArray(preimages, "ValidPointMask");
+    vtkDataArray* mask = PointArray(preimages, "vtkValidPointMask");
     EXPECT_GT(filter->GetNumberOfOutsidePoints(), 1000);
     EXPECT_LT(filter->GetNumberOfOutsidePoints(), 5000);
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Whether the instrument sees kinks where mathematics puts them, and none elsewhere.
+// Whether the instrument sees creases where mathematics puts them, and none elsewhere.
 
 #include "MeasuredMaps.h"
 #include "TestMeshes.h"
@@ -35,7 +35,7 @@ vtkSmartPointer<vtkJacobianContinuity> Measure(
   filter->SetSourceData(source);
   filter->SetTargetData(target);
   filter->SetCoordinateSystem(coordinateSystem);
-  filter->SetDiscordantTriangles(vtkJacobianContinuity::CARRY_BY_LINEAR);
+  filter->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
   filter->Update();
   return filter;
 }
@@ -110,23 +110,23 @@ void ExpectVerdictsOfAllSystems(const MeshPair& pair)
     for (vtkIdType i = 0; i < edges; ++i)
     {
       const int expected = exact->GetTuple1(i) > filter->GetResolution()
-        ? vtkJacobianContinuity::KINK
+        ? vtkJacobianContinuity::CREASE
         : vtkJacobianContinuity::DIFFERENTIABLE;
       const auto found = static_cast<int>(verdict->GetTuple1(i));
       wrong += found != expected && found != vtkJacobianContinuity::UNDECIDED;
-      if (found == vtkJacobianContinuity::KINK)
+      if (found == vtkJacobianContinuity::CREASE)
       {
         EXPECT_NEAR(order->GetTuple1(i), 0.0, 0.3);
       }
     }
     EXPECT_EQ(wrong, 0);
     EXPECT_LE(filter->GetNumberOfUndecidedEdges(), edges / 100);
-    EXPECT_EQ(filter->GetNumberOfDifferentiableEdges() + filter->GetNumberOfKinks() +
+    EXPECT_EQ(filter->GetNumberOfDifferentiableEdges() + filter->GetNumberOfCreases() +
         filter->GetNumberOfUndecidedEdges(),
       edges);
     if (system == vtkJacobianContinuity::SMOOTH)
     {
-      EXPECT_EQ(filter->GetNumberOfKinks(), 0);
+      EXPECT_EQ(filter->GetNumberOfCreases(), 0);
     }
     else
     {
@@ -173,16 +173,16 @@ TEST(JacobianContinuity, OurTransformIsAnyTransform)
   for (int system = 0; system < 3; ++system)
   {
     transform->SetCoordinateSystem(system);
-    transform->SetDiscordantTriangles(vtkHomeomorphismTransform::CARRY_BY_LINEAR);
+    transform->SetDiscordantTriangles(vtkHomeomorphismTransform::USE_LINEAR);
     const auto byTransform = Measure(pair.Source, transform);
     const auto byTarget = Measure(pair.Source, pair.Target, system);
-    EXPECT_EQ(byTransform->GetNumberOfKinks(), byTarget->GetNumberOfKinks());
+    EXPECT_EQ(byTransform->GetNumberOfCreases(), byTarget->GetNumberOfCreases());
     ExpectAgreementWithClosedForm(byTransform);
     // Measured on a copy of the mesh, nothing is known of the map but its values.
     vtkNew<vtkPolyData> copy;
     copy->DeepCopy(pair.Source);
     const auto fromOutside = Measure(copy, transform);
-    EXPECT_EQ(fromOutside->GetNumberOfKinks(), byTarget->GetNumberOfKinks());
+    EXPECT_EQ(fromOutside->GetNumberOfCreases(), byTarget->GetNumberOfCreases());
     EXPECT_TRUE(std::isnan(EdgeArray(fromOutside, "JacobianJumpExact")->GetTuple1(0)));
   }
 }
@@ -192,7 +192,7 @@ TEST(JacobianContinuity, ThinPlateSplinesAreDifferentiable)
   const MeshPair pair = MakePlanarPair(15, 9);
   const auto spline = MakeThinPlateSpline(pair, 11);
   const auto filter = Measure(pair.Source, spline);
-  EXPECT_EQ(filter->GetNumberOfKinks(), 0);
+  EXPECT_EQ(filter->GetNumberOfCreases(), 0);
   EXPECT_LE(filter->GetNumberOfUndecidedEdges(), filter->GetOutput()->GetNumberOfCells() / 100);
 }
 
@@ -208,7 +208,7 @@ void ExpectKinksOnTheLineOnly(vtkJacobianContinuity* filter, const char* verdict
     const bool isOnLine = bounds[0] == 7.0 && bounds[1] == 7.0;
     onLine += isOnLine;
     EXPECT_EQ(static_cast<int>(verdict->GetTuple1(i)),
-      isOnLine ? vtkJacobianContinuity::KINK : vtkJacobianContinuity::DIFFERENTIABLE);
+      isOnLine ? vtkJacobianContinuity::CREASE : vtkJacobianContinuity::DIFFERENTIABLE);
   }
   EXPECT_EQ(onLine, n);
 }
@@ -227,7 +227,7 @@ TEST(JacobianContinuity, OnceDifferentiableIsNotTwice)
   map->Amount = 0.1;
   map->Exponent = 2;
   const auto once = Measure(RegularGrid(14), map, true);
-  EXPECT_EQ(once->GetNumberOfKinks(), 0);
+  EXPECT_EQ(once->GetNumberOfCreases(), 0);
   EXPECT_EQ(once->GetNumberOfUndecidedEdges(), 0);
   ExpectKinksOnTheLineOnly(once, "SecondDerivativeVerdict", 14);
 
@@ -256,11 +256,11 @@ TEST(JacobianContinuity, TheJumpIsTheOneOfAKnownMap)
   const auto filter = Measure(source, target, vtkJacobianContinuity::LINEAR);
   EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 3);
   EXPECT_EQ(filter->GetNumberOfBoundaryEdges(), 6);
-  EXPECT_EQ(filter->GetNumberOfKinks(), 1);
+  EXPECT_EQ(filter->GetNumberOfCreases(), 1);
   const double norm = std::hypot(1.0, 0.5 * (1.0 + std::hypot(1.0 + a, b)));
   for (vtkIdType i = 0; i < 3; ++i)
   {
-    if (EdgeArray(filter, "Verdict")->GetTuple1(i) != vtkJacobianContinuity::KINK)
+    if (EdgeArray(filter, "Verdict")->GetTuple1(i) != vtkJacobianContinuity::CREASE)
     {
       continue;
     }
@@ -333,10 +333,10 @@ TEST(JacobianContinuity, ValuesOfFewDigitsAreNotTakenForKinks)
     map->Alter = alter;
     map->Amount = 0.0;
     map->Modified();
-    EXPECT_EQ(Measure(RegularGrid(14), map)->GetNumberOfKinks(), 0);
+    EXPECT_EQ(Measure(RegularGrid(14), map)->GetNumberOfCreases(), 0);
     map->Amount = 0.5;
     map->Modified();
-    EXPECT_EQ(Measure(RegularGrid(14), map)->GetNumberOfKinks(), 14);
+    EXPECT_EQ(Measure(RegularGrid(14), map)->GetNumberOfCreases(), 14);
   }
 }
 
@@ -349,7 +349,7 @@ TEST(JacobianContinuity, WhatIsNotANumberIsUndecided)
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
   {
     const double jump = EdgeArray(filter, "JacobianJump")->GetTuple1(i);
-    EXPECT_NE(EdgeArray(filter, "Verdict")->GetTuple1(i), vtkJacobianContinuity::KINK);
+    EXPECT_NE(EdgeArray(filter, "Verdict")->GetTuple1(i), vtkJacobianContinuity::CREASE);
     EXPECT_TRUE(std::isnan(jump) || jump < 1e-6) << jump;
     unknown += std::isnan(jump);
   }
@@ -381,12 +381,12 @@ TEST(JacobianContinuity, NationalGridsAreMeasured)
     const vtkIdType edges = filter->GetOutput()->GetNumberOfCells();
     if (system == vtkJacobianContinuity::SMOOTH)
     {
-      EXPECT_EQ(filter->GetNumberOfKinks(), 0);
+      EXPECT_EQ(filter->GetNumberOfCreases(), 0);
     }
     else
     {
       EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 0);
-      EXPECT_GT(filter->GetNumberOfKinks(), edges * 9 / 10);
+      EXPECT_GT(filter->GetNumberOfCreases(), edges * 9 / 10);
     }
   }
 }
@@ -417,7 +417,7 @@ TEST(JacobianContinuity, ScaleDoesNotMatter)
         "scale " + std::to_string(std::log10(scale)) + ", system " + std::to_string(system));
       const auto expected = Measure(pair.Source, pair.Target, system);
       const auto found = Measure(scaled.Source, scaled.Target, system);
-      EXPECT_EQ(found->GetNumberOfKinks(), expected->GetNumberOfKinks());
+      EXPECT_EQ(found->GetNumberOfCreases(), expected->GetNumberOfCreases());
       EXPECT_EQ(
         found->GetNumberOfDifferentiableEdges(), expected->GetNumberOfDifferentiableEdges());
     }

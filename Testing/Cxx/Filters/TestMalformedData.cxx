@@ -147,7 +147,7 @@ protected:
   std::vector<double> ValidOf(vtkPointSet* output)
   {
     std::vector<double> valid;
-    vtkDataArray* mask = output->GetPointData()->GetArray("ValidPointMask");
+    vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
       valid.push_back(mask->GetTuple1(i));
@@ -265,8 +265,8 @@ TEST_F(Doubling, ArraysOfAnotherLengthPassUntouched)
     const auto normals = MakeNumbers("Normals", 3, tuples);
     const auto tensors = MakeNumbers("Tensors", 9, tuples);
     const auto gradients = MakeNumbers("Gradients", 3, tuples);
-    this->Filter->SetArrayTransport(
-      "Gradients", vtkDifferentiableHomeomorphism::GRADIENT_TRANSPORT);
+    this->Filter->SetAttributeTransformation(
+      "Gradients", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
     // 2 tuples are right for the cells, and wrong for the points.
     for (vtkDataSetAttributes* attributes :
       std::initializer_list<vtkDataSetAttributes*>{ data->GetPointData(), data->GetCellData() })
@@ -299,7 +299,7 @@ TEST_F(Doubling, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
   const auto tooLong = MakeNumbers("TooLong", 3, 7);
   data->GetPointData()->SetVectors(MakeNumbers("Vectors", 3, 6));
   data->GetPointData()->AddArray(tooLong);
-  this->Filter->CarryAllVectorsOn();
+  this->Filter->TransformAllInputVectorsOn();
   vtkPointSet* output = this->Run(data);
   EXPECT_EQ(output->GetPointData()->GetArray("TooLong"), tooLong);
   vtkDataArray* carried = output->GetPointData()->GetVectors();
@@ -484,7 +484,7 @@ TEST_F(Doubling, UnnamedArraysWithoutARoleAreReplacedToo)
   const auto data = MakeDataPartlyOutside();
   const auto vectors = MakeNumbers(nullptr, 3, 6);
   data->GetPointData()->AddArray(vectors);
-  this->Filter->CarryAllVectorsOn();
+  this->Filter->TransformAllInputVectorsOn();
   vtkPointData* result = this->Run(data)->GetPointData();
   std::vector<vtkDataArray*> unnamed;
   for (int i = 0; i < result->GetNumberOfArrays(); ++i)
@@ -501,7 +501,7 @@ TEST_F(Doubling, UnnamedArraysWithoutARoleAreReplacedToo)
 
 TEST_F(Doubling, AnArrayKeepsAllItsRoles)
 {
-  // Velocities are often the active vectors, and the active scalars as well, to be coloured by.
+  // Velocities are often the active vectors, and the active scalars as well, to be colored by.
   const auto data = MakeDataPartlyOutside();
   const auto velocities = MakeNumbers("Velocities", 3, 6);
   data->GetPointData()->SetScalars(velocities);

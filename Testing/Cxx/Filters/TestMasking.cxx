@@ -86,7 +86,7 @@ void ExpectMasked(
       MapOptions options;
       options.Inverse = inverse;
       options.CoordinateSystem = system;
-      options.DiscordantTriangles = vtkDifferentiableHomeomorphism::CARRY_BY_LINEAR;
+      options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
       const MappedPoints expected = MapPoints(pierced, points, options);
       ASSERT_EQ("", expected.Error + expected.Warning);
       options.Mask = true;
@@ -176,7 +176,7 @@ TEST(Masking, DifferentDefectsInBothMeshes)
         "2 triangles of the target (cells 30, 31) have coordinates that are not finite" } });
 }
 
-TEST(Masking, NoArea)
+TEST(Masking, DegenerateTriangle)
 {
   for (const bool inSource : { true, false })
   {
@@ -201,8 +201,8 @@ TEST(Masking, NoAreaOnASurface)
     middle[axis] = 0.6 * points[18][axis] + 0.4 * points[23][axis];
   }
   MovePoint(pair.Target, 24, middle);
-  // The collapsed triangle lies on its neighbours' edge, where the inverse map would find it: those
-  // points are in the neighbours. Only the forward map is compared.
+  // The collapsed triangle lies on its neighbors' edge, where the inverse map would find it: those
+  // points are in the neighbors. Only the forward map is compared.
   const std::vector<Point> samples = SamplePoints(pair.Source, GridTriangles(4), 4, 5);
   MapOptions options;
   options.Mask = true;
@@ -249,7 +249,7 @@ TEST(Masking, FlippedAlone)
 
 TEST(Masking, FlippedAndThereforeOverlapping)
 {
-  // Cell 31 turned over in the target; its neighbour across the edge to the moved point, cell 30,
+  // Cell 31 turned over in the target; its neighbor across the edge to the moved point, cell 30,
   // then lies on cell 28.
   const MeshPair pair = MakePlanarPair(4, 9, 0.0);
   MovePoint(pair.Target, 24, { 2.9, 3.5, 0.0 });

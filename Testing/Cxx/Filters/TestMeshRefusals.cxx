@@ -174,7 +174,7 @@ void ExpectSameMap(const MeshPair& first, const MeshPair& second,
   {
     MapOptions options;
     options.CoordinateSystem = system;
-    options.DiscordantTriangles = vtkDifferentiableHomeomorphism::CARRY_BY_LINEAR;
+    options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
     const MappedPoints a = MapPoints(first, points, options);
     const MappedPoints b = MapPoints(second, points, options);
     ASSERT_EQ("", a.Error + b.Error);
@@ -698,7 +698,7 @@ vtkSmartPointer<vtkPolyData> MakeTwistedRing(int n, int halfTurns, double width)
 TEST(MeshRefusals, OneSidedSurface)
 {
   const MeshPair pair{ MakeTwistedRing(12, 1, 0.3), MakeTwistedRing(12, 1, 0.2) };
-  const Texts texts{ "cannot be wound consistently with their neighbours (the surface has one side "
+  const Texts texts{ "cannot be wound consistently with their neighbors (the surface has one side "
                      "only)",
     "Cut the surface open along a line of edges in both meshes." };
   ExpectPairRefused(pair, { texts[0], texts[1], "2 triangles of the source (cells " });
@@ -807,7 +807,7 @@ TEST(MeshRefusals, ReversedInTheSourceAloneIsFine)
 
 TEST(MeshRefusals, FoldInBothMeshes)
 {
-  // The corner's triangle folded over its neighbour in both meshes: nothing flips between them.
+  // The corner's triangle folded over its neighbor in both meshes: nothing flips between them.
   const MeshPair pair = MakePlanarPair(4, 38, 0.0);
   for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
   {
@@ -910,7 +910,7 @@ TEST(MeshRefusals, SurfacesMayPassThroughThemselves)
 //------------------------------------------------------------------------------------------------
 // The Contour system.
 
-/// Draws the target's corner so close to its neighbour on the diagonal that the triangles between
+/// Draws the target's corner so close to its neighbor on the diagonal that the triangles between
 /// them, cells 0 and 1, have a wide angle beside a short edge.
 void MakeCornerDiscordant(const MeshPair& pair)
 {
@@ -937,14 +937,14 @@ TEST(MeshRefusals, DiscordantTriangles)
 
   // Carried by the Linear system, if the user asks for it: so without a warning.
   const std::vector<Point> points = SamplePoints(pair.Source, GridTriangles(4), 5, 39);
-  options.DiscordantTriangles = vtkDifferentiableHomeomorphism::CARRY_BY_LINEAR;
+  options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
   const MappedPoints carried = MapPoints(pair, points, options);
   EXPECT_EQ("", carried.Error + carried.Warning);
   vtkNew<vtkDifferentiableHomeomorphism> filter;
   filter->SetSourceData(pair.Source);
   filter->SetTargetData(pair.Target);
   filter->SetCoordinateSystemToContour();
-  filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::CARRY_BY_LINEAR);
+  filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::USE_LINEAR);
   const auto cloud = MakeCloud(points);
   filter->SetDataObject(cloud);
   filter->Update();

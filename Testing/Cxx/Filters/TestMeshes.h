@@ -158,7 +158,7 @@ inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> offset(-0.2, 0.2);
   const double spacing = std::pow(0.5, divisions);
-  const auto place = [&](const Point& axes) {
+  const auto surfacePoint = [&](const Point& axes) {
     std::vector<Point> placed = points;
     for (Point& p : placed)
     {
@@ -174,8 +174,8 @@ inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
     }
     return MakeMesh(placed, triangles);
   };
-  const auto source = place({ 1.0, 1.0, 1.0 });
-  const auto target = place({ 2.0, 1.2, 0.7 });
+  const auto source = surfacePoint({ 1.0, 1.0, 1.0 });
+  const auto target = surfacePoint({ 2.0, 1.2, 0.7 });
   return { source, target };
 }
 

@@ -6,7 +6,7 @@
 
 #include "TestMeshes.h"
 
-#include "Mesh/Embedding.h"
+#include "Mesh/MeshGeometry.h"
 #include "Mesh/MeshValidation.h"
 #include "Mesh/PointLocation.h"
 #include "Mesh/Triangulation.h"
@@ -83,7 +83,7 @@ Line Through(const IntegerPoint& p, const IntegerPoint& q)
   return { a, b, a * p.X + b * p.Y };
 }
 
-int Side(const Line& line, const RationalPoint& p)
+int Domain(const Line& line, const RationalPoint& p)
 {
   return Sign(line.A * p.X + line.B * p.Y - line.C * p.W) * Sign(p.W);
 }
@@ -107,7 +107,7 @@ public:
     for (int k = 0; k < 3; ++k)
     {
       this->Lines[k] = Through(this->Points[(k + 1) % 3], this->Points[(k + 2) % 3]);
-      this->Inside[k] = Side(this->Lines[k], this->Corner(k));
+      this->Inside[k] = Domain(this->Lines[k], this->Corner(k));
     }
   }
 
@@ -119,7 +119,7 @@ public:
   {
     for (int k = 0; k < 3; ++k)
     {
-      if (Side(this->Lines[k], p) * this->Inside[k] < 0)
+      if (Domain(this->Lines[k], p) * this->Inside[k] < 0)
       {
         return false;
       }
@@ -227,9 +227,9 @@ TriangleList FindOverlappingQuickly(const Complex& complex, const std::array<int
     }
   }
   triangulation.FindAdjacency(points->GetNumberOfPoints());
-  const Embedding embedding(points, triangulation);
-  const PointLocation location(triangulation, embedding);
-  return FindOverlapping(triangulation, embedding, location);
+  const MeshGeometry geometry(points, triangulation);
+  const PointLocation location(triangulation, geometry);
+  return FindOverlapping(triangulation, geometry, location);
 }
 
 class RandomComplexes
@@ -611,9 +611,9 @@ TEST(Overlap, OneUlpOfOverlapCounts)
     Triangulation triangulation;
     triangulation.SetTriangles({ { 0, 1, 2 }, { 3, 4, 5 } }, 0);
     triangulation.FindAdjacency(6);
-    const Embedding embedding(mesh->GetPoints(), triangulation);
-    const PointLocation location(triangulation, embedding);
-    EXPECT_EQ(x < 1.0 ? 2u : 0u, FindOverlapping(triangulation, embedding, location).size());
+    const MeshGeometry geometry(mesh->GetPoints(), triangulation);
+    const PointLocation location(triangulation, geometry);
+    EXPECT_EQ(x < 1.0 ? 2u : 0u, FindOverlapping(triangulation, geometry, location).size());
   }
 }
 
@@ -631,9 +631,9 @@ TEST(Overlap, ALargeSoundMeshTakesLittleTime)
   Triangulation triangulation;
   triangulation.SetTriangles(triangles, 0);
   triangulation.FindAdjacency(mesh->GetNumberOfPoints());
-  const Embedding embedding(mesh->GetPoints(), triangulation);
-  const PointLocation location(triangulation, embedding);
-  EXPECT_TRUE(FindOverlapping(triangulation, embedding, location).empty());
+  const MeshGeometry geometry(mesh->GetPoints(), triangulation);
+  const PointLocation location(triangulation, geometry);
+  EXPECT_TRUE(FindOverlapping(triangulation, geometry, location).empty());
 }
 
 } // namespace

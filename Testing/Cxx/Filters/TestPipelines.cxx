@@ -411,7 +411,7 @@ TEST(Pipelines, WhatIsMeasuredIsPartOfTheFirstPiece)
     EXPECT_EQ(continuity->GetOutput(0)->GetNumberOfCells(), share * edges);
     EXPECT_EQ(
       continuity->GetOutput(1)->GetNumberOfCells(), share * pair.Source->GetNumberOfCells());
-    EXPECT_EQ(continuity->GetNumberOfKinks(), share * edges);
+    EXPECT_EQ(continuity->GetNumberOfCreases(), share * edges);
     EXPECT_EQ(continuity->GetLargestJump() > 0.0, piece == 0);
 
     map->UpdateInformation();
@@ -423,7 +423,7 @@ TEST(Pipelines, WhatIsMeasuredIsPartOfTheFirstPiece)
     EXPECT_EQ(measured->GetNumberOfCells(), share * edges);
   }
   // It was measured once for all pieces.
-  EXPECT_EQ(inner->GetNumberOfKinks(), edges);
+  EXPECT_EQ(inner->GetNumberOfCreases(), edges);
 }
 
 TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
@@ -467,7 +467,7 @@ TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
   EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 2);
   EXPECT_EQ(resample->GetNumberOfOutsidePoints(), 2);
   // All of them are marked and hidden.
-  vtkDataArray* mask = PointArray(DataOf(map), "ValidPointMask");
+  vtkDataArray* mask = PointArray(DataOf(map), "vtkValidPointMask");
   for (vtkIdType i = 0; i < 5; ++i)
   {
     EXPECT_EQ(mask->GetTuple1(i), i == 0 || i == 4 ? 1.0 : 0.0);
@@ -791,7 +791,7 @@ TEST(Pipelines, AnAbortedMapIsMarkedAsIncomplete)
   ASSERT_TRUE(ghosts);
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
-    const bool isDone = PointArray(output, "ValidPointMask")->GetComponent(i, 0) != 0.0;
+    const bool isDone = PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
     mapped += isDone;
     wrong += PointOf(output, i) != (isDone ? PointOf(whole, i) : PointOf(image, i));
     wrong += std::isnan(PointArray(output, "Vectors")->GetComponent(i, 0)) == isDone;
@@ -832,7 +832,7 @@ TEST(Pipelines, AbortedCoordinatesAreMarkedAsIncomplete)
   vtkIdType missing = 0;
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
-    const bool isDone = PointArray(output, "ValidPointMask")->GetComponent(i, 0) != 0.0;
+    const bool isDone = PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
     missing += !isDone;
     wrong += (PointArray(output, "TriangleId")->GetComponent(i, 0) >= 0) != isDone;
     wrong += std::isnan(PointArray(output, "ContourParameter")->GetComponent(i, 0)) == isDone;

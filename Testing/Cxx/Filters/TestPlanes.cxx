@@ -203,7 +203,7 @@ Mapped MapData(const MeshPair& pair, vtkDataObject* data, const Options& options
     return result;
   }
   result.Points = PointsOf(output);
-  auto* mask = output->GetPointData()->GetArray("ValidPointMask");
+  auto* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   auto* determinants = output->GetPointData()->GetArray("JacobianDeterminant");
   auto* jacobians = output->GetPointData()->GetArray("Jacobian");
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -541,17 +541,17 @@ TEST(TiltedPlanes, TheTransformKeepsSidesToo)
     {
       for (const double height : { 0.5, -2.0 })
       {
-        const Point place = Combine(foot, height, source.Normal);
+        const Point surfacePoint = Combine(foot, height, source.Normal);
         Point image;
         double derivative[3][3];
         transform->Update();
-        transform->InternalTransformDerivative(place.data(), image.data(), derivative);
+        transform->InternalTransformDerivative(surfacePoint.data(), image.data(), derivative);
         ASSERT_NEAR(
           Dot(Combine(image, -1.0, target.Origin), target.Normal), height, 200.0 * Epsilon);
         ASSERT_GT(vtkMath::Determinant3x3(derivative), 0.0);
         Point back;
         transform->GetInverse()->TransformPoint(image.data(), back.data());
-        ASSERT_LT(Distance(place, back), 1e-12);
+        ASSERT_LT(Distance(surfacePoint, back), 1e-12);
       }
     }
   }

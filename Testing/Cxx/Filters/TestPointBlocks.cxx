@@ -29,7 +29,7 @@ using namespace test_meshes;
 std::shared_ptr<const Homeomorphism> Make(
   const MeshPair& pair, homeomorphism::CoordinateSystem system)
 {
-  MeshProblems problems;
+  MeshDiagnostics problems;
   HomeomorphismOptions options;
   options.System = system;
   options.DiscordantByLinear = true;
@@ -91,10 +91,11 @@ std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
   return queries;
 }
 
-void ExpectBlocksLikePoints(
-  const Homeomorphism& map, Side side, const std::vector<Point>& points, const std::string& what)
+void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
+  const std::vector<Point>& points, const std::string& what)
 {
-  const double reach = map.GetReach(side, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
+  const double tolerance =
+    map.GetAbsoluteTolerance(domain, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
   PointBlock block;
   LocationHint hint;
   for (std::size_t first = 0; first < points.size(); first += block.Count)
@@ -103,30 +104,30 @@ void ExpectBlocksLikePoints(
     block.Count = static_cast<int>(
       std::min<std::size_t>(1 + (first * 7919) % PointBlock::Capacity, points.size() - first));
     std::copy_n(points[first].data(), 3 * block.Count, &block.Points[0][0]);
-    const int outside = map.LocateBlock(side, block, reach, hint);
+    const int outside = map.LocateBlock(domain, block, tolerance, hint);
     int expectedOutside = 0;
     for (int i = 0; i < block.Count; ++i)
     {
-      const Location expected = map.Locate(side, points[first + i].data(), reach, -1);
-      const Location place = block.GetPlace(i);
-      ASSERT_EQ(expected.Triangle, place.Triangle) << what << ", point " << first + i;
-      ASSERT_EQ(expected.Corner, place.Corner) << what << ", point " << first + i;
+      const SurfacePoint expected = map.Locate(domain, points[first + i].data(), tolerance, -1);
+      const SurfacePoint surfacePoint = block.GetSurfacePoint(i);
+      ASSERT_EQ(expected.Triangle, surfacePoint.Triangle) << what << ", point " << first + i;
+      ASSERT_EQ(expected.Corner, surfacePoint.Corner) << what << ", point " << first + i;
       expectedOutside += expected.Triangle < 0;
       if (expected.Triangle >= 0)
       {
-        ASSERT_TRUE(IsSame(&expected.Point.InPlane.x, &place.Point.InPlane.x, 2)) << what;
-        ASSERT_TRUE(IsSame(&expected.Point.Offset, &place.Point.Offset, 1)) << what;
+        ASSERT_TRUE(IsSame(&expected.Point.InPlane.x, &surfacePoint.Point.InPlane.x, 2)) << what;
+        ASSERT_TRUE(IsSame(&expected.Point.Offset, &surfacePoint.Point.Offset, 1)) << what;
       }
     }
     ASSERT_EQ(expectedOutside, outside) << what;
-    map.MapBlock(side, block);
+    map.MapBlock(domain, block);
     for (int i = 0; i < block.Count; ++i)
     {
       Point image = points[first + i];
-      const Location place = map.Locate(side, image.data(), reach, -1);
-      if (place.Triangle >= 0)
+      const SurfacePoint surfacePoint = map.Locate(domain, image.data(), tolerance, -1);
+      if (surfacePoint.Triangle >= 0)
       {
-        map.MapPoint(side, place, image.data());
+        map.MapPoint(domain, surfacePoint, image.data());
       }
       ASSERT_TRUE(IsSame(image.data(), block.Points[i], 3))
         << what << ", point " << first + i << ": " << image[0] << " " << block.Points[i][0];
@@ -141,12 +142,12 @@ void ExpectBlocksLikePoints(const MeshPair& pair, const std::string& what)
   {
     const auto map = Make(pair, system);
     ASSERT_TRUE(map) << what;
-    for (const Side side : { Side::Source, Side::Target })
+    for (const Domain domain : { Domain::Source, Domain::Target })
     {
-      std::vector<Point> points = Queries(side == Side::Source ? pair.Source : pair.Target, 5);
-      ExpectBlocksLikePoints(*map, side, points, what);
+      std::vector<Point> points = Queries(domain == Domain::Source ? pair.Source : pair.Target, 5);
+      ExpectBlocksLikePoints(*map, domain, points, what);
       std::shuffle(points.begin(), points.end(), std::mt19937_64(6));
-      ExpectBlocksLikePoints(*map, side, points, what + ", shuffled");
+      ExpectBlocksLikePoints(*map, domain, points, what + ", shuffled");
     }
   }
 }

@@ -25,11 +25,11 @@ constexpr double Epsilon = std::numeric_limits<double>::epsilon();
 
 std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target)
 {
-  MeshProblems problems;
+  MeshDiagnostics problems;
   HomeomorphismOptions options;
   options.System = homeomorphism::CoordinateSystem::Linear;
   auto map = Homeomorphism::Make(source, target, options, problems);
-  for (const MeshProblem& problem : problems)
+  for (const MeshDiagnostic& problem : problems)
   {
     ADD_FAILURE() << problem.Message();
   }
@@ -38,25 +38,25 @@ std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* targ
 
 double ReachOf(const Homeomorphism& map, double tolerance = 0.0)
 {
-  return map.GetReach(Side::Source, tolerance, 0.5 * Epsilon);
+  return map.GetAbsoluteTolerance(Domain::Source, tolerance, 0.5 * Epsilon);
 }
 
-Location Locate(
+SurfacePoint Locate(
   const Homeomorphism& map, const Point& point, TriangleIndex hint = -1, double tolerance = 0.0)
 {
-  return map.Locate(Side::Source, point.data(), ReachOf(map, tolerance), hint);
+  return map.Locate(Domain::Source, point.data(), ReachOf(map, tolerance), hint);
 }
 
 /// The place found, back in the coordinates of the input.
-Point PlaceOf(const Homeomorphism& map, const Location& location)
+Point PlaceOf(const Homeomorphism& map, const SurfacePoint& location)
 {
-  const Embedding& embedding = map.GetPair().GetEmbedding(Side::Source);
+  const MeshGeometry& geometry = map.GetPair().GetGeometry(Domain::Source);
   Point point;
-  embedding.FromWorking(embedding.FromFrame(location.Triangle, location.Point), point.data());
+  geometry.FromNormalized(geometry.FromFrame(location.Triangle, location.Point), point.data());
   return point;
 }
 
-void ExpectSameLocation(const Location& a, const Location& b)
+void ExpectSameLocation(const SurfacePoint& a, const SurfacePoint& b)
 {
   ASSERT_EQ(a.Triangle, b.Triangle);
   ASSERT_EQ(a.Corner, b.Corner);
@@ -118,13 +118,14 @@ struct GridMesh
   {
     for (std::size_t t = 0; t < this->Triangles.size(); ++t)
     {
-      int sides[3];
+      int domains[3];
       for (int k = 0; k < 3; ++k)
       {
-        sides[k] = Turn(
+        domains[k] = Turn(
           this->Points[this->Triangles[t][k]], this->Points[this->Triangles[t][(k + 1) % 3]], p);
       }
-      if (*std::min_element(sides, sides + 3) >= 0 || *std::max_element(sides, sides + 3) <= 0)
+      if (*std::min_element(domains, domains + 3) >= 0 ||
+        *std::max_element(domains, domains + 3) <= 0)
       {
         return static_cast<TriangleIndex>(t);
       }
@@ -151,12 +152,12 @@ struct GridMesh
     std::vector<Point> points;
     for (const GridPoint& p : this->Points)
     {
-      points.push_back(Place(p, unit, normalAxis));
+      points.push_back(ToSurfacePoint(p, unit, normalAxis));
     }
     return MakeMesh(points, this->Triangles);
   }
 
-  static Point Place(const GridPoint& p, double unit, int normalAxis)
+  static Point ToSurfacePoint(const GridPoint& p, double unit, int normalAxis)
   {
     Point point;
     point[(normalAxis + 1) % 3] = static_cast<double>(p.X) * unit;
@@ -222,8 +223,8 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
     for (const GridPoint& query : grid.Queries(200, n))
     {
       const TriangleIndex expected = grid.Find(query);
-      const Point point = GridMesh::Place(query, unit, n % 3);
-      const Location location = Locate(*map, point);
+      const Point point = GridMesh::ToSurfacePoint(query, unit, n % 3);
+      const SurfacePoint location = Locate(*map, point);
       ASSERT_EQ(expected, location.Triangle) << n << ": " << query.X << " " << query.Y;
       ASSERT_EQ(grid.CornerAt(expected, query), location.Corner);
       ++(expected >= 0 ? found : outside);
@@ -248,7 +249,7 @@ TEST(PointLocation, AgreesWithExactArithmeticInALargerMesh)
   TriangleIndex hint = -1;
   for (const GridPoint& query : grid.Queries(3000, 2))
   {
-    const Location location = Locate(*map, GridMesh::Place(query, 0.25, 2), hint);
+    const SurfacePoint location = Locate(*map, GridMesh::ToSurfacePoint(query, 0.25, 2), hint);
     ASSERT_EQ(grid.Find(query), location.Triangle);
     hint = location.Triangle;
   }
@@ -269,7 +270,7 @@ TEST(PointLocation, AllOfASquareIsFound)
     {
       p[n / 10 % 2] = n / 20 % 2 ? 0.0 : 30.0;
     }
-    const Location location = Locate(*map, p, hint);
+    const SurfacePoint location = Locate(*map, p, hint);
     ASSERT_GE(location.Triangle, 0) << p[0] << " " << p[1];
     hint = location.Triangle;
   }
@@ -305,19 +306,19 @@ TEST(PointLocation, CornersAreFoundExactly)
   {
     const MeshPair pair = planar ? MakePlanarPair(12, 5) : MakeClosedPair(4, 5);
     const auto map = Make(pair.Source, pair.Target);
-    for (const Side side : { Side::Source, Side::Target })
+    for (const Domain domain : { Domain::Source, Domain::Target })
     {
-      const bool forward = side == Side::Source;
+      const bool forward = domain == Domain::Source;
       const std::vector<Point> points = PointsOf(forward ? pair.Source : pair.Target);
       const std::vector<Point> others = PointsOf(forward ? pair.Target : pair.Source);
       for (std::size_t i = 0; i < points.size(); ++i)
       {
-        const Location location =
-          map->Locate(side, points[i].data(), map->GetReach(side, 0.0, 0.5 * Epsilon), -1);
+        const SurfacePoint location = map->Locate(
+          domain, points[i].data(), map->GetAbsoluteTolerance(domain, 0.0, 0.5 * Epsilon), -1);
         ASSERT_GE(location.Triangle, 0);
         ASSERT_GE(location.Corner, 0);
         Point image;
-        map->MapPoint(side, location, image.data());
+        map->MapPoint(domain, location, image.data());
         ASSERT_EQ(others[i], image);
       }
     }
@@ -347,11 +348,11 @@ TEST(PointLocation, OnlyRoundingIsForgivenOutside)
         };
         for (const double near : { 0.0, 1e-300, ulp, 2.0 * ulp, 3.0 * ulp })
         {
-          const Location location = Locate(*map, at(near));
+          const SurfacePoint location = Locate(*map, at(near));
           ASSERT_GE(location.Triangle, 0) << near;
           // Taken to the boundary: to no point outside of it.
           Point image;
-          map->MapPoint(Side::Source, location, image.data());
+          map->MapPoint(Domain::Source, location, image.data());
           EXPECT_NEAR(high ? 8.0 : 0.0, image[axis], ulp);
           EXPECT_NEAR(along, image[1 - axis], ulp);
         }
@@ -555,11 +556,11 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
   std::uint64_t seed, int leastFound, int leastOutside)
 {
   const auto map = Make(mesh, nullptr);
-  const Embedding& embedding = map->GetPair().GetEmbedding(Side::Source);
-  const bool planar = embedding.IsPlanar();
+  const MeshGeometry& geometry = map->GetPair().GetGeometry(Domain::Source);
+  const bool planar = geometry.IsPlanar();
   const std::vector<Point> points = PointsOf(mesh);
   const std::vector<Triangle> triangles = TrianglesOf(mesh);
-  const double allowed = tolerance * embedding.GetDiagonal() / embedding.GetScale();
+  const double allowed = tolerance * geometry.GetDiagonal() / geometry.GetScale();
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> offset(0.0, spread);
   std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
@@ -584,7 +585,7 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
     {
       continue;
     }
-    const Location location = Locate(*map, query, hint, tolerance);
+    const SurfacePoint location = Locate(*map, query, hint, tolerance);
     ExpectSameLocation(location, Locate(*map, query, -1, tolerance));
     ASSERT_EQ(least <= allowed, location.Triangle >= 0) << static_cast<double>(least);
     hint = location.Triangle;
@@ -596,19 +597,19 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
     ++found;
     worst = std::max(worst, static_cast<double>(distances[location.Triangle] - least));
     // The place without its distance from the surface is on the triangle, that far away.
-    Location foot = location;
+    SurfacePoint foot = location;
     foot.Point.Offset = 0.0;
-    const Point place = PlaceOf(*map, foot);
+    const Point surfacePoint = PlaceOf(*map, foot);
     const Triangle& t = triangles[location.Triangle];
-    const double off =
-      static_cast<double>(DistanceToTriangle(place, { points[t[0]], points[t[1]], points[t[2]] }));
-    worst =
-      std::max({ worst, off, std::abs(DistanceOf(place, query) - static_cast<double>(least)) });
+    const double off = static_cast<double>(
+      DistanceToTriangle(surfacePoint, { points[t[0]], points[t[1]], points[t[2]] }));
+    worst = std::max(
+      { worst, off, std::abs(DistanceOf(surfacePoint, query) - static_cast<double>(least)) });
   }
   std::cout << found << " found, " << outside << " outside, worst error " << worst << "\n";
   EXPECT_GE(found, leastFound);
   EXPECT_GE(outside, leastOutside);
-  EXPECT_LT(worst, 1e-14 * embedding.GetLargestCoordinate() / embedding.GetScale());
+  EXPECT_LT(worst, 1e-14 * geometry.GetLargestCoordinate() / geometry.GetScale());
 }
 
 TEST(PointLocation, ToleranceInThePlane)
@@ -657,8 +658,8 @@ void ExpectOnSurface(const MeshPair& pair)
   const auto map = Make(pair.Source, pair.Target);
   const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
   const std::vector<Point> points = PointsOf(pair.Source);
-  const double largest = map->GetPair().GetEmbedding(Side::Source).GetLargestCoordinate() /
-    map->GetPair().GetEmbedding(Side::Source).GetScale();
+  const double largest = map->GetPair().GetGeometry(Domain::Source).GetLargestCoordinate() /
+    map->GetPair().GetGeometry(Domain::Source).GetScale();
   double worst = 0.0;
   for (std::size_t t = 0; t < triangles.size(); ++t)
   {
@@ -673,14 +674,14 @@ void ExpectOnSurface(const MeshPair& pair)
           p[axis] += w[k] * points[triangles[t][k]][axis];
         }
       }
-      const Location location = Locate(*map, p);
+      const SurfacePoint location = Locate(*map, p);
       ASSERT_EQ(static_cast<TriangleIndex>(t), location.Triangle);
       for (const TriangleIndex hint : { TriangleIndex(0), static_cast<TriangleIndex>(t) })
       {
         ExpectSameLocation(location, Locate(*map, p, hint));
       }
       const TriangleShape& shape =
-        map->GetPair().GetEmbedding(Side::Source).GetShape(location.Triangle);
+        map->GetPair().GetGeometry(Domain::Source).GetShape(location.Triangle);
       const Barycentric found = shape.ToBarycentric(location.Point.InPlane);
       for (int k = 0; k < 3; ++k)
       {
@@ -693,12 +694,12 @@ void ExpectOnSurface(const MeshPair& pair)
       const Real length = std::sqrt(Dot(normal, normal));
       for (const double distance : { 4e-15, 1e-12, 1e-6 })
       {
-        for (const int side : { -1, 1 })
+        for (const int domain : { -1, 1 })
         {
           Point off = p;
           for (int axis = 0; axis < 3; ++axis)
           {
-            off[axis] += static_cast<double>(side * distance * largest * normal[axis] / length);
+            off[axis] += static_cast<double>(domain * distance * largest * normal[axis] / length);
           }
           ASSERT_EQ(-1, Locate(*map, off).Triangle) << distance;
           if (distance < 1e-10)
@@ -744,7 +745,7 @@ TEST(PointLocation, PointsOnEdgesOfSurfaces)
       }
       const TriangleIndex found = Locate(*map, p).Triangle;
       const auto here = static_cast<TriangleIndex>(t);
-      EXPECT_TRUE(found == here || found == topology.GetAcross(here, k).Triangle);
+      EXPECT_TRUE(found == here || found == topology.GetTwin(here, k).Triangle);
     }
   }
 }
@@ -953,21 +954,21 @@ TEST(PointLocation, TheSmallestNumbersThereAre)
   ASSERT_TRUE(map);
   for (const GridPoint& query : grid.Queries(500, 33))
   {
-    const Location location = Locate(*map, GridMesh::Place(query, unit, 2));
+    const SurfacePoint location = Locate(*map, GridMesh::ToSurfacePoint(query, unit, 2));
     ASSERT_EQ(grid.Find(query), location.Triangle);
     ASSERT_EQ(grid.CornerAt(location.Triangle, query), location.Corner);
     if (location.Triangle >= 0)
     {
       Point image;
-      map->MapPoint(Side::Source, location, image.data());
-      ASSERT_EQ(GridMesh::Place(query, unit, 2), image);
+      map->MapPoint(Domain::Source, location, image.data());
+      ASSERT_EQ(GridMesh::ToSurfacePoint(query, unit, 2), image);
     }
   }
 }
 
 TEST(PointLocation, NationalGrid)
 {
-  // Metres from the corner of a country, cells of ten metres, points to the millimetre.
+  // Metres from the corner of a country, cells of ten meters, points to the millimeter.
   const Point corner{ 4.5e6, 5.8e6, 0.0 };
   const MeshPair origin = MakePlanarPair(10, 34);
   MeshPair pair = Scaled(origin, 10.0, 10.0);
@@ -977,7 +978,7 @@ TEST(PointLocation, NationalGrid)
     const std::vector<Point> points = PointsOf(mesh);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
-      // Rounded to the millimetre as surveyors do, so that both versions are the same shape.
+      // Rounded to the millimeter as surveyors do, so that both versions are the same shape.
       Point p{ std::round(1e3 * points[i][0]) / 1e3, std::round(1e3 * points[i][1]) / 1e3, 0.0 };
       MovePoint(
         mesh == pair.Source.Get() ? local.Source : local.Target, static_cast<vtkIdType>(i), p);
@@ -1005,7 +1006,7 @@ TEST(PointLocation, NationalGrid)
   std::cout << "worst difference " << worst << " m\n";
   // A unit in the last place is a nanometre.
   EXPECT_LT(worst, 1e-8);
-  // A millimetre, and a micrometre, outside are outside.
+  // A millimeter, and a micrometre, outside are outside.
   for (const double off : { 1e-3, 1e-6 })
   {
     const MappedPoints outside = MapPoints(pair,
@@ -1026,7 +1027,7 @@ struct Frame
   std::array<Point, 3> Axes;
   Point Origin;
 
-  Point Place(const Point& p) const
+  Point ToSurfacePoint(const Point& p) const
   {
     Point q = this->Origin;
     for (int k = 0; k < 3; ++k)
@@ -1045,7 +1046,7 @@ vtkSmartPointer<vtkPolyData> PlacedIn(const Frame& frame, vtkPolyData* mesh)
   std::vector<Point> points = PointsOf(mesh);
   for (Point& p : points)
   {
-    p = frame.Place(p);
+    p = frame.ToSurfacePoint(p);
   }
   return MakeMesh(points, TrianglesOf(mesh));
 }
@@ -1078,7 +1079,7 @@ void ExpectSameInFrames(const Frame& from, Frame to, double tolerance)
   std::vector<Point> inFrame;
   for (const Point& p : points)
   {
-    inFrame.push_back(from.Place(p));
+    inFrame.push_back(from.ToSurfacePoint(p));
   }
   const MappedPoints expected = MapPoints(pair, points);
   const MappedPoints mapped = MapPoints(placed, inFrame);
@@ -1098,7 +1099,7 @@ void ExpectSameInFrames(const Frame& from, Frame to, double tolerance)
     {
       ASSERT_EQ(expected.Triangles[i], mapped.Triangles[i]);
     }
-    worst = std::max({ worst, DistanceOf(to.Place(expected.Images[i]), mapped.Images[i]),
+    worst = std::max({ worst, DistanceOf(to.ToSurfacePoint(expected.Images[i]), mapped.Images[i]),
       DistanceOf(inFrame[i], back.Images[i]) });
   }
   EXPECT_LE(worst, tolerance);
@@ -1185,8 +1186,9 @@ TEST(PointLocation, NormalsOfAPlaneAndASurfaceFollowTheWinding)
       for (const Triangle& t : triangles)
       {
         const Point point = CentroidOf(MakeMesh(flat, {}), t);
-        const Jacobian jacobian = map->GetJacobian(Side::Source, Locate(*map, point));
-        // The image of the flat mesh's upper normal; the grid runs anticlockwise seen from above.
+        const Jacobian jacobian = map->GetJacobian(Domain::Source, Locate(*map, point));
+        // The image of the flat mesh's upper normal; the grid runs counterclockwise seen from
+        // above.
         Point image;
         for (int row = 0; row < 3; ++row)
         {

@@ -96,7 +96,7 @@ void ExpectPulledBack(vtkDataSet* output, const MeshPair& pair)
   vtkDataArray* field = output->GetPointData()->GetArray("Field");
   vtkDataArray* wind = output->GetPointData()->GetArray("Wind");
   vtkDataArray* row = output->GetPointData()->GetArray("Row");
-  vtkDataArray* mask = output->GetPointData()->GetArray("ValidPointMask");
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   ASSERT_TRUE(field && mask);
   vtkIdType inside = 0;
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -160,7 +160,7 @@ TEST(Resample, AnImageIsPulledBack)
   vtkIdType valid = 0;
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
-    valid += image->GetPointData()->GetArray("ValidPointMask")->GetTuple1(i) != 0.0;
+    valid += image->GetPointData()->GetArray("vtkValidPointMask")->GetTuple1(i) != 0.0;
   }
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - valid);
 }
@@ -262,7 +262,7 @@ TEST(Resample, ImagesAreSampledLikeOtherData)
     EXPECT_GT(direct->GetNumberOfOutsidePoints(), 100);
     EXPECT_STREQ(outputs[0]->GetPointData()->GetScalars()->GetName(), "Field");
     vtkIdType valid = 0;
-    for (const char* name : { "ValidPointMask", "vtkGhostType", "Cell", "Color", "Field" })
+    for (const char* name : { "vtkValidPointMask", "vtkGhostType", "Cell", "Color", "Field" })
     {
       vtkDataArray* values = outputs[0]->GetPointData()->GetArray(name);
       vtkDataArray* expected = outputs[1]->GetPointData()->GetArray(name);

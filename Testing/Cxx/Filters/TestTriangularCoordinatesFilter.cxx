@@ -57,7 +57,7 @@ struct Coordinates
     , Edge(PointArray(data, "EdgeLabel"))
     , EdgeParameter(PointArray(data, "EdgeParameter"))
     , ContourParameter(PointArray(data, "ContourParameter"))
-    , Mask(PointArray(data, "ValidPointMask"))
+    , Mask(PointArray(data, "vtkValidPointMask"))
   {
   }
   vtkIdType T(vtkIdType i) const
@@ -86,7 +86,7 @@ std::vector<std::pair<const char*, vtkSmartPointer<vtkPolyData>>> AllMeshes(std:
   return meshes;
 }
 
-/// The centre of a triangle in a system: where its contours start.
+/// The center of a triangle in a system: where its contours start.
 Point CenterOf(const System& system, vtkPolyData* mesh, vtkIdType triangle)
 {
   const std::array<Point, 3> c = CornersOf(mesh, triangle);
@@ -138,7 +138,7 @@ TEST(TriangularCoordinates, LinearOnesFollowTheirDefinition)
 {
   for (const auto& mesh : AllMeshes(710))
   {
-    const std::vector<Place> places = InnerPlaces(mesh.second, 5000, 61, 1e-4);
+    const std::vector<ToSurfacePoint> places = InnerPlaces(mesh.second, 5000, 61, 1e-4);
     const auto filter = MakeCoordinates(Linear, mesh.second, MakeCloud(mesh.second, places));
     const Coordinates found(Output(filter));
     vtkIdType wrong = 0;
@@ -173,16 +173,16 @@ TEST_P(CoordinatesInEverySystem, EdgesAreNumberedAsTheHeaderSays)
   for (const auto& mesh : AllMeshes(720))
   {
     Random random(62);
-    std::vector<Place> places;
+    std::vector<ToSurfacePoint> places;
     for (vtkIdType t = 0; t < mesh.second->GetNumberOfCells(); ++t)
     {
       for (std::size_t k = 0; k < 3; ++k)
       {
-        Place place{ t, {} };
+        ToSurfacePoint surfacePoint{ t, {} };
         const double p = random.Uniform(0.01, 0.99);
-        place.Weights[(k + 1) % 3] = 1.0 - p;
-        place.Weights[(k + 2) % 3] = p;
-        places.push_back(place);
+        surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
+        surfacePoint.Weights[(k + 2) % 3] = p;
+        places.push_back(surfacePoint);
       }
     }
     const auto filter = MakeCoordinates(GetParam(), mesh.second, MakeCloud(mesh.second, places));
@@ -195,7 +195,7 @@ TEST_P(CoordinatesInEverySystem, EdgesAreNumberedAsTheHeaderSays)
     {
       const auto id = static_cast<vtkIdType>(i);
       worst.Take(1.0 - found.C(id), 1e-12);
-      // The triangle may be the neighbour; the point of the edge at p must be the point.
+      // The triangle may be the neighbor; the point of the edge at p must be the point.
       mesh.second->GetCellPoints(found.T(id), ids);
       const int k = found.E(id) - 1;
       const Point start = PointOf(mesh.second, ids->GetId((k + 1) % 3));
@@ -259,7 +259,7 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
   for (const Pairing& pairing : pairings)
   {
     const MeshPair& pair = pairing.Meshes;
-    const std::vector<Place> places = InnerPlaces(pair.Source, 5000, 63, 1e-3);
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 5000, 63, 1e-3);
     const auto cloud = MakeCloud(pair.Source, places);
     const auto onSource = MakeCoordinates(GetParam(), pair.Source, cloud);
     const auto map = MakeFilter(GetParam(), pair, cloud);
@@ -281,7 +281,7 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
         wrong += toEnd * before.C(i) > 1e-12;
         continue;
       }
-      // p is the better known the farther from the centre, and the worse the sharper the contours
+      // p is the better known the farther from the center, and the worse the sharper the contours
       // bend towards a vertex.
       worst.Take(std::abs(before.P(i) - after.P(i)) * before.C(i), 1e-11);
     }
@@ -377,7 +377,7 @@ TEST(TriangularCoordinates, EveryKindOfDataKeepsItsType)
     const auto reference = MakeCoordinates(Smooth, mesh, MakeCloud(positions));
     vtkDataSet* expected = Output(reference);
     for (const char* name :
-      { "TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter", "ValidPointMask" })
+      { "TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter", "vtkValidPointMask" })
     {
       EXPECT_EQ(CountDifferentValues(PointArray(output, name), PointArray(expected, name)), 0)
         << data->GetClassName() << " " << name;
@@ -741,7 +741,7 @@ TEST(TriangularCoordinates, ContoursAreThePublishedConstruction)
 
 TEST(TriangularCoordinates, ContoursOfTheSmoothSystemContinueAcrossEdges)
 {
-  // What the Smooth system is for: the contours of two neighbours that end at the same point of
+  // What the Smooth system is for: the contours of two neighbors that end at the same point of
   // their edge are one smooth line (seen in the plane).
   const auto mesh = MakePlanarPair(4, 795).Source;
   const auto worstTurn = [&mesh](const System& system, int resolution) {
@@ -956,7 +956,7 @@ TEST(TriangularCoordinates, DiscordantTrianglesAreRefusedOrCarried)
   filter->Update();
   EXPECT_NE(messages.Error().find("discordant"), std::string::npos);
   messages.Clear();
-  filter->SetDiscordantTriangles(vtkTriangularCoordinates::CARRY_BY_LINEAR);
+  filter->SetDiscordantTriangles(vtkTriangularCoordinates::USE_LINEAR);
   filter->Update();
   // Who asks for it is told by an array and a number, not by a warning.
   EXPECT_FALSE(messages.HasError());
@@ -964,7 +964,7 @@ TEST(TriangularCoordinates, DiscordantTrianglesAreRefusedOrCarried)
   EXPECT_GT(filter->GetNumberOfDiscordantTriangles(), 0);
 
   // Triangles carried by Linear have its coordinates.
-  const std::vector<Place> places = InnerPlaces(mesh, 2000, 71, 1e-3);
+  const std::vector<ToSurfacePoint> places = InnerPlaces(mesh, 2000, 71, 1e-3);
   const auto cloud = MakeCloud(mesh, places);
   filter->SetDataObject(cloud);
   filter->Update();

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What lies across edges, whether a surface has two sides, how neighbours unfold into a triangle's
+// What lies across edges, whether a surface has two sides, how neighbors unfold into a triangle's
 // plane, which meshes are planar; and when the homeomorphism is made anew.
 
 #include "MappedPoints.h"
 
 #include "Mesh/ChartedTriangulation.h"
-#include "Mesh/Embedding.h"
-#include "Mesh/HomeomorphismCache.h"
+#include "Mesh/MeshGeometry.h"
 #include "Mesh/Triangulation.h"
+#include "Pipeline/HomeomorphismCache.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
@@ -85,7 +85,7 @@ void ExpectAdjacency(Triangulation& triangulation, vtkIdType numberOfPoints)
   {
     for (int k = 0; k < 3; ++k)
     {
-      const AcrossEdge across = triangulation.GetAcross(t, k);
+      const Twin across = triangulation.GetTwin(t, k);
       const auto edge = EdgeOf(triangulation.GetCorners(t), k);
       const Edges& sharing = edges[std::minmax(edge.first, edge.second)];
       if (triangulation.IsMasked(t) || sharing.size() != 2)
@@ -158,13 +158,13 @@ TEST(Triangulation, AdjacencyOfMeshes)
     triangulation.SetTriangles(triangles, 5);
     ExpectAdjacency(triangulation, mesh->GetNumberOfPoints());
     EXPECT_EQ(5 + 17, triangulation.GetCellId(17));
-    EXPECT_TRUE(triangulation.FindNotOrientable().empty());
+    EXPECT_TRUE(triangulation.FindNonOrientable().empty());
     int boundary = 0;
     for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
     {
       for (int k = 0; k < 3; ++k)
       {
-        boundary += triangulation.GetAcross(t, k).Triangle < 0;
+        boundary += triangulation.GetTwin(t, k).Triangle < 0;
       }
     }
     EXPECT_EQ(closed ? 0 : 160, boundary);
@@ -175,7 +175,7 @@ TEST(Triangulation, AdjacencyOfMeshes)
 // Orientability.
 
 /// Whether windings can be chosen for all triangles: none of two that are tied together through a
-/// chain of neighbours may be its own opposite. Disjoint sets of (triangle, side).
+/// chain of neighbors may be its own opposite. Disjoint sets of (triangle, side).
 bool IsOrientable(const Triangulation& triangulation)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
@@ -188,7 +188,7 @@ bool IsOrientable(const Triangulation& triangulation)
   {
     for (int k = 0; k < 3; ++k)
     {
-      const AcrossEdge across = triangulation.GetAcross(t, k);
+      const Twin across = triangulation.GetTwin(t, k);
       for (int side = 0; side < 2 && across.Triangle >= 0; ++side)
       {
         const int otherSide = across.SameDirection ? 1 - side : side;
@@ -245,7 +245,7 @@ TEST(Triangulation, OrientabilityOfRandomTriangles)
     triangulation.SetTriangles(triangles, 0);
     triangulation.FindAdjacency(points);
     const bool orientable = IsOrientable(triangulation);
-    ASSERT_EQ(orientable, triangulation.FindNotOrientable().empty()) << n;
+    ASSERT_EQ(orientable, triangulation.FindNonOrientable().empty()) << n;
     oneSided += !orientable;
   }
   EXPECT_GT(oneSided, 200);
@@ -259,7 +259,7 @@ TEST(Triangulation, ClosedStrips)
     Triangulation triangulation;
     triangulation.SetTriangles(ClosedStrip(points), 0);
     ASSERT_TRUE(triangulation.FindAdjacency(points).empty());
-    const std::vector<TriangleIndex> found = triangulation.FindNotOrientable();
+    const std::vector<TriangleIndex> found = triangulation.FindNonOrientable();
     if (points % 2 == 0)
     {
       EXPECT_TRUE(found.empty());
@@ -270,7 +270,7 @@ TEST(Triangulation, ClosedStrips)
     EXPECT_LT(found[0], found[1]);
     triangulation.Mask(found[0]);
     triangulation.FindAdjacency(points);
-    EXPECT_TRUE(triangulation.FindNotOrientable().empty());
+    EXPECT_TRUE(triangulation.FindNonOrientable().empty());
   }
 }
 
@@ -301,24 +301,24 @@ TEST(Triangulation, UnfoldedNeighboursKeepTheirLengths)
     Triangulation triangulation;
     triangulation.SetTriangles(triangles, 0);
     triangulation.FindAdjacency(mesh->GetNumberOfPoints());
-    Embedding embedding(mesh->GetPoints(), triangulation);
-    embedding.ComputeFrames(triangulation);
-    EXPECT_EQ(name == "plane", embedding.IsPlanar());
+    MeshGeometry geometry(mesh->GetPoints(), triangulation);
+    geometry.ComputeFrames(triangulation);
+    EXPECT_EQ(name == "plane", geometry.IsPlanar());
     const std::vector<Point> points = PointsOf(mesh);
-    const double scale = embedding.GetScale();
+    const double scale = geometry.GetScale();
     for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
     {
-      const std::array<Neighbor, 3> neighbors = UnfoldNeighbors(triangulation, embedding, t);
+      const std::array<Neighbor, 3> neighbors = UnfoldNeighbors(triangulation, geometry, t);
       for (int k = 0; k < 3; ++k)
       {
-        const AcrossEdge across = triangulation.GetAcross(t, k);
+        const Twin across = triangulation.GetTwin(t, k);
         ASSERT_EQ(across.Triangle >= 0, neighbors[k].Exists);
         if (across.Triangle < 0)
         {
           continue;
         }
         ++neighborsSeen;
-        // Along the edge of this triangle, from its start: the neighbour's apex is on the far side.
+        // Along the edge of this triangle, from its start: the neighbor's apex is on the far side.
         const auto edge = EdgeOf(triangulation.GetCorners(t), k);
         const std::int32_t apex = triangulation.GetCorners(across.Triangle)[across.Edge];
         const EdgeView& view = neighbors[k].View;
@@ -333,7 +333,7 @@ TEST(Triangulation, UnfoldedNeighboursKeepTheirLengths)
       }
     }
   }
-  std::cout << neighborsSeen << " neighbours, worst relative error of a length " << worst << "\n";
+  std::cout << neighborsSeen << " neighbors, worst relative error of a length " << worst << "\n";
   EXPECT_GT(neighborsSeen, 2000);
   EXPECT_LT(worst, 2e-15);
 }
@@ -381,7 +381,7 @@ bool IsPlanar(
   Triangulation triangulation;
   triangulation.SetTriangles(Narrow(triangles), 0);
   triangulation.FindAdjacency(stored->GetNumberOfPoints());
-  return Embedding(stored, triangulation).IsPlanar();
+  return MeshGeometry(stored, triangulation).IsPlanar();
 }
 
 TEST(Planes, RotatedAndShiftedPlanesArePlanes)
@@ -484,22 +484,22 @@ TEST(Planes, WorkingCoordinatesAndBack)
     const auto mesh = MakeMesh(points, {});
     Triangulation triangulation;
     triangulation.SetTriangles(Narrow(GridTriangles(3)), 0);
-    const Embedding embedding(mesh->GetPoints(), triangulation);
-    ASSERT_TRUE(embedding.IsPlanar());
+    const MeshGeometry geometry(mesh->GetPoints(), triangulation);
+    ASSERT_TRUE(geometry.IsPlanar());
     for (std::int32_t i = 0; i < 16; ++i)
     {
-      const Vector3 working = embedding.ToWorking(points[i].data());
-      EXPECT_NEAR(0.0, working[2], 1e-14);
-      EXPECT_EQ(working[0], embedding.GetPoint(i)[0]);
-      EXPECT_EQ(working[1], embedding.GetPoint(i)[1]);
+      const Vector3 normalized = geometry.ToNormalized(points[i].data());
+      EXPECT_NEAR(0.0, normalized[2], 1e-14);
+      EXPECT_EQ(normalized[0], geometry.GetPoint(i)[0]);
+      EXPECT_EQ(normalized[1], geometry.GetPoint(i)[1]);
       Point back;
-      embedding.FromWorking(working, back.data());
+      geometry.FromNormalized(normalized, back.data());
       if (n % 2 == 0)
       {
         // No rounding in a plane parallel to two axes.
         EXPECT_EQ(points[i], back);
       }
-      worst = std::max(worst, DistanceOf(points[i], back) * embedding.GetScale());
+      worst = std::max(worst, DistanceOf(points[i], back) * geometry.GetScale());
     }
   }
   std::cout << "worst error of working coordinates and back " << worst << "\n";

@@ -41,7 +41,7 @@ struct AdjacentTriangles
   double Length() const { return Norm(this->End - this->Start); }
   Vector2 At(double w) const { return (1.0 - w) * this->Start + w * this->End; }
 
-  /// The charts of the two triangles in the Smooth system, which have no other neighbours.
+  /// The charts of the two triangles in the Smooth system, which have no other neighbors.
   std::array<SmoothChart, 2> SmoothCharts() const
   {
     const EdgeViews first = this->First.Views();
@@ -64,12 +64,12 @@ inline AdjacentTriangles ModerateAdjacentTriangles(RandomNumbers& random)
   const double angle = random.Uniform(0.0, 6.283185307179586);
   const double scale = random.PowerOfTen(-0.5, 0.5);
   const Vector2 u{ scale * std::cos(angle), scale * std::sin(angle) };
-  const auto place = [&u](double x, double y) -> Vector2 {
+  const auto surfacePoint = [&u](double x, double y) -> Vector2 {
     return { x * u.x - y * u.y, x * u.y + y * u.x };
   };
-  return { place(0.0, 0.0), place(1.0, 0.0),
-    place(random.Uniform(-0.2, 1.2), random.Uniform(0.4, 1.5)),
-    place(random.Uniform(-0.2, 1.2), -random.Uniform(0.4, 1.5)) };
+  return { surfacePoint(0.0, 0.0), surfacePoint(1.0, 0.0),
+    surfacePoint(random.Uniform(-0.2, 1.2), random.Uniform(0.4, 1.5)),
+    surfacePoint(random.Uniform(-0.2, 1.2), -random.Uniform(0.4, 1.5)) };
 }
 
 /// Two triangles of which one is up to a million times larger than the other, with apexes up to
@@ -78,7 +78,7 @@ inline AdjacentTriangles AnyAdjacentTriangles(RandomNumbers& random)
 {
   const double angle = random.Uniform(0.0, 6.283185307179586);
   const Vector2 u{ std::cos(angle), std::sin(angle) };
-  const auto place = [&u](double x, double y) -> Vector2 {
+  const auto surfacePoint = [&u](double x, double y) -> Vector2 {
     return { x * u.x - y * u.y, x * u.y + y * u.x };
   };
   const double ratio = random.PowerOfTen(-6.0, 6.0);
@@ -88,7 +88,8 @@ inline AdjacentTriangles AnyAdjacentTriangles(RandomNumbers& random)
   };
   const double left = foot();
   const double right = foot();
-  return { place(0.0, 0.0), place(1.0, 0.0), place(left, height), place(right, -height * ratio) };
+  return { surfacePoint(0.0, 0.0), surfacePoint(1.0, 0.0), surfacePoint(left, height),
+    surfacePoint(right, -height * ratio) };
 }
 
 inline Vector2 Times(const Matrix2& matrix, const Vector2& v)

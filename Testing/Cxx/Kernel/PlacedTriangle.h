@@ -67,7 +67,7 @@ struct PlacedTriangle
       v.x * this->Tangent.y + v.y * this->Tangent.x };
   }
 
-  /// The neighbour with this apex across the edge opposite corner @a edge.
+  /// The neighbor with this apex across the edge opposite corner @a edge.
   Neighbor NeighborWithApex(int edge, const Vector2& apex) const
   {
     if (std::isnan(apex.x))

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RandomTriangles.h
-/// Random triangles, neighbours and points for the property tests. Everything follows from a seed,
+/// Random triangles, neighbors and points for the property tests. Everything follows from a seed,
 /// on every platform: the distributions of the standard library would not.
 
 #ifndef RandomTriangles_h
@@ -84,10 +84,11 @@ inline Corners Placed(RandomNumbers& random, const Vector2& apex, double scale)
   const bool turned = random.Chance(0.75);
   const Vector2 u =
     turned ? Vector2{ scale * std::cos(angle), scale * std::sin(angle) } : Vector2{ scale, 0.0 };
-  const auto place = [&u](const Vector2& p) -> Vector2 {
+  const auto surfacePoint = [&u](const Vector2& p) -> Vector2 {
     return { p.x * u.x - p.y * u.y, p.x * u.y + p.y * u.x };
   };
-  const Corners corners{ place({ 0.0, 0.0 }), place({ 1.0, 0.0 }), place(apex) };
+  const Corners corners{ surfacePoint({ 0.0, 0.0 }), surfacePoint({ 1.0, 0.0 }),
+    surfacePoint(apex) };
   const int first = random.Below(3);
   return { corners[first], corners[NextCorner(first)], corners[PreviousCorner(first)] };
 }
@@ -172,7 +173,7 @@ inline Corners ConcordantTriangle(RandomNumbers& random)
   }
 }
 
-/// A neighbour across an edge that sees the triangle as @a own: up to a million times lower or
+/// A neighbor across an edge that sees the triangle as @a own: up to a million times lower or
 /// higher, its apex up to twenty edge lengths aside. One in eight is missing.
 inline Neighbor AnyNeighbor(RandomNumbers& random, const EdgeView& own)
 {
@@ -195,7 +196,7 @@ inline std::array<Neighbor, 3> AnyNeighbors(RandomNumbers& random, const EdgeVie
     AnyNeighbor(random, views[2]) };
 }
 
-/// Neighbours about as large as the triangle.
+/// Neighbors about as large as the triangle.
 inline std::array<Neighbor, 3> ModerateNeighbors(RandomNumbers& random, const EdgeViews& views)
 {
   std::array<Neighbor, 3> neighbors;
@@ -226,11 +227,11 @@ inline Barycentric OnStripBorder(int k, double tau, double proportion)
 {
   // l_k = tau q and l_i + l_j = 1 - l_k with l_j / (l_i + l_j) = proportion.
   const double q = tau * proportion * (1.0 - proportion);
-  const double sides = 1.0 / (1.0 + q);
+  const double domains = 1.0 / (1.0 + q);
   Barycentric l;
-  l[k] = q * sides;
-  l[NextCorner(k)] = sides * (1.0 - proportion);
-  l[PreviousCorner(k)] = sides * proportion;
+  l[k] = q * domains;
+  l[NextCorner(k)] = domains * (1.0 - proportion);
+  l[PreviousCorner(k)] = domains * proportion;
   return l;
 }
 
@@ -295,7 +296,7 @@ struct SystemName
 };
 
 /// The largest |D ToPoint| / longest edge at a reference point, at least 1: by it the Smooth chart
-/// magnifies the rounding of (e, p, c) beside a neighbour that is far sheared or far larger.
+/// magnifies the rounding of (e, p, c) beside a neighbor that is far sheared or far larger.
 template <typename Chart>
 double Magnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
 {
@@ -311,17 +312,17 @@ inline double Magnification(
     Barycentric direction{};
     direction[NextCorner(k)] = -1.0;
     direction[PreviousCorner(k)] = 1.0;
-    largest = std::max(largest, Norm(chart.Push(l, direction)));
+    largest = std::max(largest, Norm(chart.Pushforward(l, direction)));
     // Between the two corners' directions: across the edge.
     direction = { -0.5, -0.5, -0.5 };
     direction[k] = 1.0;
-    largest = std::max(largest, Norm(chart.Push(l, direction)));
+    largest = std::max(largest, Norm(chart.Pushforward(l, direction)));
   }
   return std::max(1.0, largest / shape.Base);
 }
 
 /// The largest |D ToReference| longest edge: by it the Smooth chart magnifies the rounding of a
-/// point beside a far smaller neighbour.
+/// point beside a far smaller neighbor.
 template <typename Chart>
 double InverseMagnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
 {
@@ -337,7 +338,7 @@ inline double InverseMagnification(
   {
     Barycentric direction{ -0.5, -0.5, -0.5 };
     direction[k] = 1.0;
-    for (const double component : chart.Pull(l, shape.FromBarycentric(direction)))
+    for (const double component : chart.Pullback(l, shape.FromBarycentric(direction)))
     {
       largest = std::max(largest, std::abs(component));
     }

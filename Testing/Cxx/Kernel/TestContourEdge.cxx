@@ -159,7 +159,7 @@ TEST(ContourEdge, NoJumpBetweenSimilarPairs)
 
 TEST(ContourEdge, NoJumpBetweenMirrorImages)
 {
-  // If each triangle is the mirror image of its neighbour the contours that meet are as long as
+  // If each triangle is the mirror image of its neighbor the contours that meet are as long as
   // each other, in P and in Q.
   RandomNumbers random(64);
   double worst = 0.0;

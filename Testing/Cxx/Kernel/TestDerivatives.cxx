@@ -20,12 +20,12 @@ namespace
 using namespace homeomorphism_test;
 
 template <typename System>
-struct Side
+struct Domain
 {
   PlacedTriangle Triangle;
   typename System::Chart Chart;
 
-  Side(RandomNumbers& random, bool fat)
+  Domain(RandomNumbers& random, bool fat)
     : Triangle(fat ? System::Fat(random) : System::Any(random))
     , Chart(System::Make(random, this->Triangle, fat))
   {
@@ -88,10 +88,10 @@ struct Quotient
 
 /// Column @a axis of the map's derivative by central differences with the steps h, h / 2 and h / 4,
 /// extrapolated twice: the error is of order h^6. False if the points used are not in one region,
-/// of either triangle, or too near the centre and the vertices, where derivatives grow.
+/// of either triangle, or too near the center and the vertices, where derivatives grow.
 template <typename System>
-bool Differences(const Side<System>& from, const Side<System>& to, const Vector2& point, int axis,
-  Quotient& result)
+bool Differences(const Domain<System>& from, const Domain<System>& to, const Vector2& point,
+  int axis, Quotient& result)
 {
   const TriangleShape& shape = from.Triangle.Shape;
   const double h = 2e-4 * shape.Base;
@@ -155,8 +155,8 @@ TYPED_TEST(Derivatives, MatchDifferences)
   int sharp = 0;
   for (int n = 0; n < 4000; ++n)
   {
-    const Side<TypeParam> p(random, true);
-    const Side<TypeParam> q(random, true);
+    const Domain<TypeParam> p(random, true);
+    const Domain<TypeParam> q(random, true);
     for (int i = 0; i < 5; ++i)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
@@ -196,7 +196,7 @@ TYPED_TEST(Derivatives, PullIsTheInverseOfPush)
   std::string where;
   for (int n = 0; n < 20000; ++n)
   {
-    const Side<TypeParam> p(random, false);
+    const Domain<TypeParam> p(random, false);
     for (int i = 0; i < 5; ++i)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
@@ -226,11 +226,11 @@ TYPED_TEST(Derivatives, DeterminantIsPositive)
   std::string where;
   for (int n = 0; n < 40000; ++n)
   {
-    const Side<TypeParam> p(random, false);
-    const Side<TypeParam> q(random, false);
+    const Domain<TypeParam> p(random, false);
+    const Domain<TypeParam> q(random, false);
     for (int i = 0; i < 5; ++i)
     {
-      // Inside, on the edges, near the corners and along contours near the centre.
+      // Inside, on the edges, near the corners and along contours near the center.
       const double c = random.Chance(0.3) ? 1.0 : random.Uniform();
       const TriangularCoordinates coordinates{ random.Integer(1, 3),
         random.Uniform(1e-9, 1.0 - 1e-9), random.Chance(0.2) ? 1e-9 * c : c };
@@ -261,7 +261,7 @@ TYPED_TEST(ContourDerivatives, ContourParameterIsArcLength)
   RandomNumbers random(44);
   for (int n = 0; n < 300; ++n)
   {
-    const Side<TypeParam> p(random, true);
+    const Domain<TypeParam> p(random, true);
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.001, 0.999);
     constexpr int pieces = 1000;
@@ -295,7 +295,7 @@ TYPED_TEST(ContourDerivatives, DirectionIsThatOfCoordinates)
   int compared = 0;
   for (int n = 0; n < 10000; ++n)
   {
-    const Side<TypeParam> p(random, true);
+    const Domain<TypeParam> p(random, true);
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.1, 0.9);
     const double c = random.Uniform(0.1, 0.9);
@@ -314,7 +314,7 @@ TYPED_TEST(ContourDerivatives, DirectionIsThatOfCoordinates)
       if (Norm(fine - coarse) < 1e-8 * size)
       {
         ++compared;
-        const Vector2 found = p.Chart.Push({ e, t, c }, { direction.x, c * direction.y });
+        const Vector2 found = p.Chart.Pushforward({ e, t, c }, { direction.x, c * direction.y });
         const Vector2 expected = fine + (1.0 / 3.0) * (fine - coarse);
         worst = std::max(worst, Norm(found - expected) / size);
       }
@@ -330,14 +330,14 @@ TYPED_TEST(ContourDerivatives, ContourIsStraightThenAnArcAtARightAngle)
   RandomNumbers random(45);
   for (int n = 0; n < 5000; ++n)
   {
-    const Side<TypeParam> p(random, true);
+    const Domain<TypeParam> p(random, true);
     const TriangleShape& shape = p.Triangle.Shape;
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.01, 0.99);
     const double length = p.Chart.ContourLength(e, t);
     const Vector2 edge = shape.Corner(PreviousCorner(e - 1)) - shape.Corner(NextCorner(e - 1));
     const Vector2 tangent = (1.0 / Norm(edge)) * edge;
-    const auto speed = [&](double c) { return p.Chart.Push({ e, t, c }, { 1.0, 0.0 }); };
+    const auto speed = [&](double c) { return p.Chart.Pushforward({ e, t, c }, { 1.0, 0.0 }); };
     // The arc length is the parameter, and at the edge the contour points straight out.
     for (const double c : { 0.0, random.Uniform(), 1.0 })
     {
@@ -345,7 +345,7 @@ TYPED_TEST(ContourDerivatives, ContourIsStraightThenAnArcAtARightAngle)
     }
     EXPECT_NEAR(Dot(speed(1.0), tangent), 0.0, 1e-13 * length);
     EXPECT_LT(Cross(tangent, speed(1.0)), 0.0);
-    // It starts at the centre, along the straight line to the wing segment.
+    // It starts at the center, along the straight line to the wing segment.
     const Vector2 start = p.Chart.ToPoint({ e, t, 0.0 });
     EXPECT_LT(Norm(start - p.Chart.Center()), 1e-14 * shape.Base);
 
@@ -382,8 +382,8 @@ TYPED_TEST(ContourDerivatives, OnAnEdge)
   double worst = 0.0;
   for (int n = 0; n < 20000; ++n)
   {
-    const Side<TypeParam> p(random, true);
-    const Side<TypeParam> q(random, true);
+    const Domain<TypeParam> p(random, true);
+    const Domain<TypeParam> q(random, true);
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.001, 0.999);
     const auto tangentOf = [e](const PlacedTriangle& triangle) {
@@ -416,7 +416,7 @@ TYPED_TEST(ContourDerivatives, ContourLengthDerivativeMatchesDifferences)
   double worst = 0.0;
   for (int n = 0; n < 20000; ++n)
   {
-    const Side<TypeParam> p(random, true);
+    const Domain<TypeParam> p(random, true);
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.01, 0.99);
     const double h = 1e-4;

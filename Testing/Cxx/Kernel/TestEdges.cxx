@@ -21,12 +21,12 @@ namespace
 using namespace homeomorphism_test;
 
 template <typename System>
-struct Side
+struct Domain
 {
   PlacedTriangle Triangle;
   typename System::Chart Chart;
 
-  Side(RandomNumbers& random, const Corners& corners)
+  Domain(RandomNumbers& random, const Corners& corners)
     : Triangle(corners)
     , Chart(System::Make(random, this->Triangle, false))
   {
@@ -36,7 +36,7 @@ struct Side
 };
 
 template <typename System>
-double DerivativeNorm(const Side<System>& from, const Side<System>& to,
+double DerivativeNorm(const Domain<System>& from, const Domain<System>& to,
   const typename System::Chart::Reference& reference)
 {
   return Norm(MapDerivative(from.Chart, to.Chart, reference));
@@ -73,8 +73,8 @@ TYPED_TEST(Edges, VerticesGoToVertices)
   Worst worst;
   for (int n = 0; n < 20000; ++n)
   {
-    const Side<TypeParam> p(random, TypeParam::Any(random));
-    const Side<TypeParam> q(random, TypeParam::Any(random));
+    const Domain<TypeParam> p(random, TypeParam::Any(random));
+    const Domain<TypeParam> q(random, TypeParam::Any(random));
     for (int k = 0; k < 3; ++k)
     {
       const Vector2 corner = p.Triangle.Shape.Corner(k);
@@ -102,7 +102,7 @@ TYPED_TEST(Edges, PointOnAnEdgeHasItsCoordinates)
   const bool isExact = std::string(TypeParam::Name) != SmoothSystem::Name;
   for (int n = 0; n < 20000; ++n)
   {
-    const Side<TypeParam> p(random, TypeParam::Any(random));
+    const Domain<TypeParam> p(random, TypeParam::Any(random));
     const TriangleShape& shape = p.Triangle.Shape;
     for (int k = 0; k < 3; ++k)
     {
@@ -156,8 +156,8 @@ TYPED_TEST(Edges, AreMappedLinearly)
   Worst worst;
   for (int n = 0; n < 30000; ++n)
   {
-    const Side<TypeParam> p(random, TypeParam::Any(random));
-    const Side<TypeParam> q(random, TypeParam::Any(random));
+    const Domain<TypeParam> p(random, TypeParam::Any(random));
+    const Domain<TypeParam> q(random, TypeParam::Any(random));
     for (int k = 0; k < 3; ++k)
     {
       const double t = random.Uniform(0.0001, 0.9999);
@@ -183,10 +183,10 @@ TYPED_TEST(Edges, SameTriangleGivesTheIdentity)
   for (int n = 0; n < 20000; ++n)
   {
     const Corners corners = TypeParam::Any(random);
-    // The neighbours have to be the same ones too.
+    // The neighbors have to be the same ones too.
     RandomNumbers same = random;
-    const Side<TypeParam> p(random, corners);
-    const Side<TypeParam> q(same, corners);
+    const Domain<TypeParam> p(random, corners);
+    const Domain<TypeParam> q(same, corners);
     for (int i = 0; i < 5; ++i)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
@@ -212,8 +212,8 @@ TYPED_TEST(Edges, InverseIsTheMapBack)
   Worst worst;
   for (int n = 0; n < 30000; ++n)
   {
-    const Side<TypeParam> p(random, TypeParam::Any(random));
-    const Side<TypeParam> q(random, TypeParam::Any(random));
+    const Domain<TypeParam> p(random, TypeParam::Any(random));
+    const Domain<TypeParam> q(random, TypeParam::Any(random));
     for (int i = 0; i < 5; ++i)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
@@ -234,9 +234,9 @@ TYPED_TEST(Edges, MapsCompose)
   Worst worst;
   for (int n = 0; n < 30000; ++n)
   {
-    const Side<TypeParam> p(random, TypeParam::Any(random));
-    const Side<TypeParam> q(random, TypeParam::Any(random));
-    const Side<TypeParam> r(random, TypeParam::Any(random));
+    const Domain<TypeParam> p(random, TypeParam::Any(random));
+    const Domain<TypeParam> q(random, TypeParam::Any(random));
+    const Domain<TypeParam> r(random, TypeParam::Any(random));
     for (int i = 0; i < 5; ++i)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));

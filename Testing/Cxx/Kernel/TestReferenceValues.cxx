@@ -147,7 +147,7 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
     worst.Point = std::max(worst.Point, Norm(image - expectedImage) / carried);
 
     const Matrix2 derivative = InPlane(p, q, MapDerivative(chartP, chartQ, reference));
-    // Near the centre of a Contour triangle and near the vertices the derivative depends on the
+    // Near the center of a Contour triangle and near the vertices the derivative depends on the
     // direction from there, and so on the last bit of the point: what moving the point by that much
     // does to the derivative is the error to be expected.
     double unavoidable = 0.0;

@@ -277,14 +277,14 @@ TYPED_TEST(RoundTrip, CoordinatesToPointToCoordinates)
     const auto chart = TypeParam::Make(random, triangle, true);
     for (int i = 0; i < 50; ++i)
     {
-      // Not so near the centre that p loses its meaning, nor at a spoke, where e may change.
+      // Not so near the center that p loses its meaning, nor at a spoke, where e may change.
       const TriangularCoordinates coordinates{ random.Integer(1, 3), random.Uniform(0.001, 0.999),
         random.Uniform(0.01, 0.999) };
       const Vector2 point = chart.ToPoint(chart.FromCoordinates(coordinates));
       EXPECT_EQ(DistanceOutside(triangle.Shape, point), 0.0) << Description(triangle, point);
       const TriangularCoordinates found = chart.ToCoordinates(chart.ToReference(point));
       ASSERT_EQ(found.Edge, coordinates.Edge) << Description(triangle, point);
-      // p is the better known the farther from the centre.
+      // p is the better known the farther from the center.
       const double error = std::max(
         std::abs(found.EdgeParameter - coordinates.EdgeParameter) * coordinates.ContourParameter,
         std::abs(found.ContourParameter - coordinates.ContourParameter));
@@ -334,8 +334,8 @@ TEST(ContourRoundTrip, NeedlesFromTheIncenterHaveImagesAndDerivatives)
             ASSERT_LT(DistanceOutside(shape, image), 1e-15) << power << ", " << apexX;
             for (const Vector2& axis : { Vector2{ 1.0, 0.0 }, Vector2{ 0.0, 1.0 } })
             {
-              const Vector2 pulled = chart.Pull(reference, axis);
-              const Vector2 pushed = chart.Push(reference, axis);
+              const Vector2 pulled = chart.Pullback(reference, axis);
+              const Vector2 pushed = chart.Pushforward(reference, axis);
               ASSERT_FALSE(std::isnan(pulled.x + pulled.y)) << power << ", " << apexX;
               ASSERT_TRUE(std::isfinite(pushed.x + pushed.y)) << power << ", " << apexX;
             }

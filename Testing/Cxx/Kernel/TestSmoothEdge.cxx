@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What the Smooth system is for: first and second derivatives that agree from both sides of an
-// edge; and what it stands on: a positive determinant, disjoint strips, and that only neighbours
+// edge; and what it stands on: a positive determinant, disjoint strips, and that only neighbors
 // matter.
 
 #include "AdjacentTriangles.h"
@@ -160,14 +160,14 @@ TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
                        (otherArea * left[0] - area * right[0]) / (area + otherArea)),
       static_cast<double>((otherArea * left[1] - area * right[1]) / (area + otherArea)) };
     const Barycentric across{ -0.5, -0.5, 1.0 };
-    const Vector2 fromFirst = p.First.VectorFromFrame(charts[0].Push(l[0], across));
-    const Vector2 fromSecond = p.Second.VectorFromFrame(charts[1].Push(l[1], across));
+    const Vector2 fromFirst = p.First.VectorFromFrame(charts[0].Pushforward(l[0], across));
+    const Vector2 fromSecond = p.Second.VectorFromFrame(charts[1].Pushforward(l[1], across));
     // The chart adds up components along the corners, which are as large as the shear, so that up
     // to twenty times this is rounded.
     const double size = p.First.Shape.Base + p.Second.Shape.Base;
     worst = std::max({ worst, Norm(fromFirst - v) / size, Norm(fromSecond + v) / size });
     // And along the edge, the edge.
-    const Vector2 along = p.First.VectorFromFrame(charts[0].Push(l[0], { -1.0, 1.0, 0.0 }));
+    const Vector2 along = p.First.VectorFromFrame(charts[0].Pushforward(l[0], { -1.0, 1.0, 0.0 }));
     worst = std::max(worst, Norm(along - (p.End - p.Start)) / size);
   }
   std::cout << "derivative across the edge off by " << worst << " of the triangles' size\n";
@@ -213,7 +213,7 @@ TEST(SmoothEdge, AffineImagesGiveTheAffineMap)
       const double condition = std::max(Aspect(triangle), Aspect(image)) *
         Magnification(chartsP[side], triangle.Shape, l) *
         InverseMagnification(chartsP[side], triangle.Shape, l);
-      // The corners of the image are rounded, and so are the neighbours' places in both.
+      // The corners of the image are rounded, and so are the neighbors' places in both.
       const double error = Norm(found - linear(triangle.FromFrame(inFrame))) / size;
       const Matrix2 derivative = Jacobian(triangle, chartsP[side], image, chartsQ[side], l);
       const double errorOfDerivative = Norm(derivative - expected) / (condition * Norm(expected));
@@ -245,7 +245,7 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
   long points = 0;
   long below = 0;
   // The least determinant over pairs whose shares 2 a / (a + a*) are no small numbers, and the
-  // least over its bound where the bound is the neighbour's share.
+  // least over its bound where the bound is the neighbor's share.
   double lowest = 1e300;
   double nearestShare = 1e300;
   std::string where;
@@ -287,11 +287,11 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
     }
   }
   std::cout << points << " points: determinant at least " << lowest << ", or " << nearestShare
-            << " times the neighbour's share\n";
+            << " times the neighbor's share\n";
   EXPECT_GE(points, 10000000);
   EXPECT_EQ(below, 0) << where;
   // 1 + K' - 6 u^3 (1 - u)^2 is least at u = 3/5, where K' and u^3 (1 - u)^2 both are extreme:
-  // there it is 4385 / 15625 = 0.28064. It is approached beside far larger neighbours, near a
+  // there it is 4385 / 15625 = 0.28064. It is approached beside far larger neighbors, near a
   // corner.
   EXPECT_GE(lowest, 0.28064 - 1e-12);
   EXPECT_LT(lowest, 0.2808);
@@ -311,8 +311,8 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivative)
     const Barycentric l = random.Chance(0.5)
       ? AnyBarycentric(random)
       : InStrip(k, chart.StripWidth(k), random.Uniform(), random.Uniform(0.001, 0.999));
-    const Vector2 a = chart.Push(l, { -1.0, 1.0, 0.0 });
-    const Vector2 b = chart.Push(l, { -1.0, 0.0, 1.0 });
+    const Vector2 a = chart.Pushforward(l, { -1.0, 1.0, 0.0 });
+    const Vector2 b = chart.Pushforward(l, { -1.0, 0.0, 1.0 });
     const double affine = t.Shape.Base * t.Shape.Height;
     const double condition = Norm(a) * Norm(b) / affine;
     worst = std::max(
@@ -339,7 +339,7 @@ TEST(SmoothEdge, DeterminantOnAnEdgeIsTheNeighborsShare)
       const double other = neighbors[k].View.Height;
       const double share = neighbors[k].Exists ? 2.0 * other / (own + other) : 1.0;
       least = neighbors[k].Exists ? std::min(least, share) : least;
-      // Relative to itself, however small the neighbour.
+      // Relative to itself, however small the neighbor.
       const double ratio = chart.DeterminantRatio(InStrip(k, 0.0, 0.0, random.Uniform(0.01, 0.99)));
       worst = std::max(worst, std::abs(ratio - share) / share);
     }
@@ -368,16 +368,16 @@ TEST(SmoothEdge, OnlyTheStripChanges)
     {
       const Barycentric l =
         i < 10 ? AnyBarycentric(random) : InStrip(k, 1.0, random.Uniform(), random.Uniform());
-      const double sides = l[NextCorner(k)] * l[PreviousCorner(k)];
+      const double domains = l[NextCorner(k)] * l[PreviousCorner(k)];
       const double least = l[k] * (l[NextCorner(k)] + l[PreviousCorner(k)]);
       const Vector2 x = before.ToPoint(l);
       const Vector2 y = after.ToPoint(l);
       const bool isSame = x.x == y.x && x.y == y.y;
-      if (least < tau * sides)
+      if (least < tau * domains)
       {
         // Deep enough inside for the change to be seen.
-        if (least < 0.5 * std::min(before.StripWidth(k), after.StripWidth(k)) * sides &&
-          least > 0.01 * tau * sides)
+        if (least < 0.5 * std::min(before.StripWidth(k), after.StripWidth(k)) * domains &&
+          least > 0.01 * tau * domains)
         {
           ++inside;
           changed += !isSame;
@@ -420,7 +420,7 @@ TEST(SmoothEdge, StripsAreDisjointAndTheChartIsAffineOutside)
     outside += strips == 0;
   }
   EXPECT_GT(outside, 1000);
-  // With no neighbours the chart is the Linear system's.
+  // With no neighbors the chart is the Linear system's.
   for (int n = 0; n < 20000; ++n)
   {
     const PlacedTriangle t(AnyTriangle(random));

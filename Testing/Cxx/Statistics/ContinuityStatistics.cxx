@@ -117,7 +117,7 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
     }
     std::printf("%-22s %-16s %8lld %8lld %8lld %8lld (%.3f %%) %6lld %8lld %10s\n", name,
       placeNames[type], static_cast<long long>(tally.Count),
-      static_cast<long long>(tally.Verdicts[Continuity::KINK]),
+      static_cast<long long>(tally.Verdicts[Continuity::CREASE]),
       static_cast<long long>(tally.Verdicts[Continuity::DIFFERENTIABLE]),
       static_cast<long long>(tally.Verdicts[Continuity::UNDECIDED]),
       100.0 * static_cast<double>(tally.Verdicts[Continuity::UNDECIDED]) /
@@ -134,18 +134,18 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
   return good;
 }
 
-/// Which places have a kink in a random pair, by the theorems of Documentation/Answer.md. The
-/// triangles at two corners of the grid, which have all their points on its boundary, are the same
-/// in both meshes and mapped by the identity.
+/// Which places have a crease in a random pair, by the theorems of
+/// Documentation/differentiability.md. The triangles at two corners of the grid, which have all
+/// their points on its boundary, are the same in both meshes and mapped by the identity.
 int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int placeType, vtkPolyData* source)
 {
-  bool kink = false;
+  bool crease = false;
   switch (placeType)
   {
     case Continuity::EDGE:
     case Continuity::SPOKE:
     case Continuity::TRIANGLE_CENTER:
-      kink = Value(filter->GetOutput()->GetCellData(), "JacobianJumpExact", cell) >
+      crease = Value(filter->GetOutput()->GetCellData(), "JacobianJumpExact", cell) >
         filter->GetResolution();
       break;
     case Continuity::VERTEX:
@@ -154,13 +154,13 @@ int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int placeType, vtkPolyD
       vtkNew<vtkIdList> cells;
       filter->GetOutput()->GetPoint(filter->GetOutput()->GetCell(cell)->GetPointId(0), point);
       source->GetPointCells(source->FindPoint(point), cells);
-      kink = cells->GetNumberOfIds() > 1;
+      crease = cells->GetNumberOfIds() > 1;
       break;
     }
     default:
       break;
   }
-  return kink ? Continuity::KINK : Continuity::DIFFERENTIABLE;
+  return crease ? Continuity::CREASE : Continuity::DIFFERENTIABLE;
 }
 
 bool EvaluateSystems(const MeshPair& pair, bool everyPlace)
@@ -207,7 +207,7 @@ int KinkOnUprightLines(Continuity* filter, vtkIdType cell, int)
 {
   double bounds[6];
   filter->GetOutput()->GetCellBounds(cell, bounds);
-  return bounds[0] == bounds[1] ? Continuity::KINK : Continuity::DIFFERENTIABLE;
+  return bounds[0] == bounds[1] ? Continuity::CREASE : Continuity::DIFFERENTIABLE;
 }
 
 /// Prints the share of the work that is done, as a program with a user would.
@@ -260,7 +260,7 @@ int main(int argc, char* argv[])
     std::fprintf(stderr, "Usage: ContinuityStatistics [TRIANGLES]\n");
     return EXIT_FAILURE;
   }
-  std::printf("%-22s %-16s %8s %8s %8s %18s %6s %8s %10s\n", "map", "places", "count", "kink",
+  std::printf("%-22s %-16s %8s %8s %8s %18s %6s %8s %10s\n", "map", "places", "count", "crease",
     "smooth", "undecided", "wrong", "(1)", "(2)");
   // Every triangle of a grid whose points moved this little is concordant.
   const MeshPair large = MakePlanarPair(60, 3, 0.15);
@@ -288,7 +288,7 @@ int main(int argc, char* argv[])
   pieces->Exponent = 1;
   pieces->Amount = 1e-6;
   pieces->Modified();
-  good = EvaluateTransform("kink of 1e-6", RegularGrid(60), pieces, KinkOnUprightLines) && good;
+  good = EvaluateTransform("crease of 1e-6", RegularGrid(60), pieces, KinkOnUprightLines) && good;
 
   good = EvaluateSystems(MakePlanarPair(20, 7, 0.15), true) && good;
   std::printf("\n(1) estimates farther from the closed form than their own error bound\n"

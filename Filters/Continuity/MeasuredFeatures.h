@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file MeasuredFeatures.h
+/// All places of a triangulation at which vtkJacobianContinuity is asked to measure a map.
+
+#ifndef homeomorphism_MeasuredFeatures_h
+#define homeomorphism_MeasuredFeatures_h
+
+#include "EdgeCrossings.h"
+#include "InnerLines.h"
+#include "RayFans.h"
+
+#include "vtkType.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// The kinds of places, as vtkJacobianContinuity numbers them.
+enum class FeatureKind
+{
+  Edge = 0,
+  BoundaryEdge = 1,
+  Spoke = 2,
+  WingSegment = 3,
+  CenterSegment = 4,
+  StripBorder = 5,
+  Centroid = 6,
+  Vertex = 7
+};
+
+constexpr int NumberOfFeatureKinds = 8;
+
+/// Which kinds are asked for.
+using FeatureSelection = std::array<bool, NumberOfFeatureKinds>;
+
+struct MeasuredFeature
+{
+  FeatureKind Kind;
+  /// The number of the edge, the triangle or the point.
+  std::int32_t Item;
+  /// Of a line within a triangle.
+  int Line = 0;
+};
+
+/// The places of a map's source: first points (centroids, vertices), then lines (edges, boundary
+/// edges, spokes, wing segments, center segments, strip borders), which is the order of a
+/// vtkPolyData's cells.
+class MeasuredFeatures
+{
+public:
+  /// Refers to the map. @a planar says whether vertices have a tangent plane, in source and image.
+  MeasuredFeatures(const Homeomorphism& map, CenterPoint center, const FeatureSelection& selection,
+    bool planar, int samples);
+
+  vtkIdType GetNumberOfFeatures() const { return static_cast<vtkIdType>(this->Places.size()); }
+  const MeasuredFeature& GetSurfacePoint(vtkIdType place) const { return this->Places[place]; }
+  const EdgeCrossings& GetEdges() const { return this->Edges; }
+
+  static bool IsPoint(FeatureKind kind)
+  {
+    return kind == FeatureKind::Centroid || kind == FeatureKind::Vertex;
+  }
+
+  /// Whether there is something on either side that could differ.
+  bool IsMeasurable(FeatureKind kind) const
+  {
+    return kind != FeatureKind::BoundaryEdge && (kind != FeatureKind::Vertex || this->Planar);
+  }
+
+  /// The number of points at which a place is measured.
+  int GetNumberOfSamples(FeatureKind kind) const
+  {
+    return !this->IsMeasurable(kind) ? 0 : IsPoint(kind) ? 1 : this->Samples;
+  }
+
+  /// The number of points that show a place: its samples and a line's two ends.
+  int GetNumberOfPoints(FeatureKind kind) const
+  {
+    return IsPoint(kind) ? 1 : this->GetNumberOfSamples(kind) + 2;
+  }
+
+  /// Cell ids of the triangles on its two sides, in it, or at it; -1 where there is none.
+  std::array<vtkIdType, 2> GetCells(const MeasuredFeature& place) const;
+
+  /// The position of a point that shows the place.
+  Vector3 GetPosition(const MeasuredFeature& place, int point) const;
+
+  /// At a sample, counted from 0: the measured jump, that of the second derivative if it is asked
+  /// for and the place is a line, and the closed form, if there is one (else NaN).
+  struct Sample
+  {
+    JacobianJump First;
+    JacobianJump Second;
+    double Exact = JacobianJump::None;
+  };
+  Sample Measure(const MeasuredFeature& place, int sample, const MapUnderTest& map,
+    double resolution, bool secondDerivatives) const;
+
+private:
+  double GetProportion(int point) const { return point / (this->Samples + 1.0); }
+  void AddInnerLines(FeatureKind kind);
+
+  const Homeomorphism& Map;
+  bool Planar;
+  int Samples;
+  EdgeCrossings Edges;
+  InnerLines Lines;
+  /// Not needed for lines.
+  std::optional<RayFans> Points;
+  std::vector<MeasuredFeature> Places;
+};
+
+} // namespace homeomorphism
+
+#endif

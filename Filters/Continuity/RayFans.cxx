@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "RayFans.h"
+
+#include "InnerLines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace homeomorphism
+{
+namespace
+{
+
+/// Fills in the rays' components along two axes of the plane of a triangle.
+void FindComponents(RayFan& star, const std::array<Vector3, 3>& axes)
+{
+  for (RayFan::Ray& ray : star.Rays)
+  {
+    ray.InPlane = { Dot3(ray.Direction, axes[0]), Dot3(ray.Direction, axes[1]) };
+  }
+}
+
+} // namespace
+
+RayFans::RayFans(const Homeomorphism& map, CenterPoint center, int raysBetween)
+  : Map(map)
+  , Center(center)
+  , RaysBetween(raysBetween)
+{
+  const Triangulation& topology = map.GetPair().GetTriangulation();
+  std::int32_t points = 0;
+  const auto visitCorners = [&topology](auto&& visit) {
+    for (TriangleIndex t = 0; t < topology.GetNumberOfTriangles(); ++t)
+    {
+      for (int k = 0; k < 3 && !topology.IsMasked(t); ++k)
+      {
+        visit(topology.GetCorners(t)[k], t);
+      }
+    }
+  };
+  visitCorners([&](std::int32_t point, TriangleIndex) { points = std::max(points, point + 1); });
+  this->Offsets.assign(points + 1, 0);
+  visitCorners([&](std::int32_t point, TriangleIndex) { ++this->Offsets[point]; });
+  std::int32_t end = 0;
+  for (std::int32_t& offset : this->Offsets)
+  {
+    end += offset;
+    offset = end;
+  }
+  this->Triangles.resize(end);
+  visitCorners(
+    [&](std::int32_t point, TriangleIndex t) { this->Triangles[--this->Offsets[point]] = t; });
+}
+
+TriangleIndex RayFans::GetTriangleAt(std::int32_t point) const
+{
+  return this->Offsets[point] < this->Offsets[point + 1] ? this->Triangles[this->Offsets[point]]
+                                                         : -1;
+}
+
+template <typename ReachOf>
+void RayFans::AddRays(RayFan& star, TriangleIndex triangle, const Vector2& from, const Vector2& to,
+  ReachOf&& reachOf) const
+{
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  const double start = std::atan2(from.y, from.x);
+  const double angle = std::atan2(Cross(from, to), Dot(from, to));
+  for (int i = 0; i <= this->RaysBetween + 1; ++i)
+  {
+    const double turned = start + angle * i / (this->RaysBetween + 1);
+    const Vector2 direction{ std::cos(turned), std::sin(turned) };
+    RayFan::Ray ray;
+    ray.Direction = ToSpace(source, triangle, direction);
+    ray.Reach = 0.5 * reachOf(direction) / source.GetScale();
+    star.Rays.push_back(ray);
+  }
+}
+
+RayFan RayFans::GetAroundCenter(TriangleIndex triangle) const
+{
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  const TriangleShape& shape = source.GetShape(triangle);
+  const Triangulation& topology = this->Map.GetPair().GetTriangulation();
+  const Vector2 center =
+    ContourChart(shape, source.GetViews(topology.GetCorners(triangle)), this->Center).Center();
+  RayFan star;
+  source.FromNormalized(source.FromFrame(triangle, { center, 0.0 }), star.Point.data());
+  for (int k = 0; k < 3; ++k)
+  {
+    this->AddRays(star, triangle, shape.Corner(NextCorner(k)) - center,
+      shape.Corner(PreviousCorner(k)) - center,
+      [&](const Vector2& direction) { return DistanceToExit(shape, center, direction); });
+  }
+  FindComponents(star, source.GetAxes(triangle));
+  return star;
+}
+
+RayFan RayFans::GetAroundVertex(std::int32_t point) const
+{
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  const Triangulation& topology = this->Map.GetPair().GetTriangulation();
+  RayFan star;
+  source.FromMeshPoint(point, 0.0, star.Point.data());
+  for (std::int32_t i = this->Offsets[point]; i < this->Offsets[point + 1]; ++i)
+  {
+    const TriangleIndex triangle = this->Triangles[i];
+    const TriangleShape& shape = source.GetShape(triangle);
+    const Triangulation::Corners& corners = topology.GetCorners(triangle);
+    const int corner =
+      static_cast<int>(std::find(corners.begin(), corners.end(), point) - corners.begin());
+    this->AddRays(star, triangle, shape.Corner(NextCorner(corner)) - shape.Corner(corner),
+      shape.Corner(PreviousCorner(corner)) - shape.Corner(corner), [&](const Vector2& direction) {
+        // Through the opposite edge: rounding must not let a ray along an edge leave through it.
+        return -1.0 / shape.VectorToBarycentric(direction)[corner];
+      });
+  }
+  FindComponents(star, source.GetAxes(this->GetTriangleAt(point)));
+  return star;
+}
+
+JacobianJump RayFans::GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& star) const
+{
+  const ChartedTriangulation& charts = this->Map.GetCharts(Domain::Source);
+  if (charts.GetSystemOf(triangle) != CoordinateSystem::Contour)
+  {
+    JacobianJump none;
+    none.Jump = 0.0;
+    return none;
+  }
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  std::vector<Vector3> derivatives;
+  for (const RayFan::Ray& ray : star.Rays)
+  {
+    // The contour that starts along the ray: contours are straight near the center.
+    const Vector3 beside = Sum(star.Point, 0.25 * ray.Reach, ray.Direction);
+    TriangularCoordinates contour = charts.ToCoordinates(
+      triangle, source.ToFrame(triangle, source.ToNormalized(beside.data())).InPlane);
+    contour.ContourParameter = 0.0;
+    derivatives.push_back(this->Map.GetJacobian(Domain::Source, triangle, contour) * ray.Direction);
+  }
+  return CompareDerivatives(star, derivatives);
+}
+
+} // namespace homeomorphism

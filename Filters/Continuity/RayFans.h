@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file RayFans.h
+/// Centroids and vertices of a triangulation, as points at which a map may not be differentiable.
+
+#ifndef homeomorphism_RayFans_h
+#define homeomorphism_RayFans_h
+
+#include "Continuity/JacobianJump.h"
+#include "Mesh/Homeomorphism.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// The stars of a map's source: rays towards the corners around a centroid, along the edges around
+/// a vertex, and a number of rays between each two of those.
+class RayFans
+{
+public:
+  /// Refers to the map. Its target need not exist. @a center is the center of the Contour system.
+  RayFans(const Homeomorphism& map, CenterPoint center, int raysBetween);
+
+  RayFan GetAroundCenter(TriangleIndex triangle) const;
+
+  /// In a plane.
+  RayFan GetAroundVertex(std::int32_t point) const;
+
+  /// Points from this number on have no triangles.
+  std::int32_t GetNumberOfPoints() const
+  {
+    return static_cast<std::int32_t>(this->Offsets.size()) - 1;
+  }
+
+  /// A triangle at a point, -1 if there is none.
+  TriangleIndex GetTriangleAt(std::int32_t point) const;
+
+  /// By the map's closed form.
+  JacobianJump GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& star) const;
+
+private:
+  /// Adds rays in a triangle, from one direction of its frame to another, both included.
+  template <typename ReachOf>
+  void AddRays(RayFan& star, TriangleIndex triangle, const Vector2& from, const Vector2& to,
+    ReachOf&& reachOf) const;
+
+  const Homeomorphism& Map;
+  CenterPoint Center;
+  int RaysBetween;
+  /// The triangles at point i are those numbered from Offsets[i] to Offsets[i + 1].
+  std::vector<std::int32_t> Offsets;
+  std::vector<TriangleIndex> Triangles;
+};
+
+} // namespace homeomorphism
+
+#endif

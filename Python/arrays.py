@@ -1,0 +1,327 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The homeomorphism between two triangulations, for numpy arrays."""
+
+from __future__ import annotations
+
+from typing import Optional, Tuple
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+
+from .vtkFiltersHomeomorphism import (
+    vtkDifferentiableHomeomorphism,
+    vtkJacobianContinuity,
+    vtkResampleThroughHomeomorphism,
+    vtkTriangularCoordinates,
+)
+
+_SYSTEMS = {
+    "linear": vtkDifferentiableHomeomorphism.LINEAR,
+    "contour": vtkDifferentiableHomeomorphism.CONTOUR,
+    "smooth": vtkDifferentiableHomeomorphism.SMOOTH,
+}
+_CENTERS = {
+    "centroid": vtkDifferentiableHomeomorphism.CENTROID,
+    "incenter": vtkDifferentiableHomeomorphism.INCENTER,
+}
+
+
+def _choose(names: dict, value: str, what: str) -> int:
+    try:
+        return names[value.lower()]
+    except (KeyError, AttributeError):
+        raise ValueError(f"{what} must be one of {', '.join(names)}, not {value!r}") from None
+
+
+def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
+    """VTK's points, and how many coordinates they had. Shares the memory of contiguous (n, 3) arrays
+    of float32 and float64."""
+    array = numpy.asarray(points)
+    if array.dtype not in (numpy.float32, numpy.float64):
+        if array.dtype.kind not in "biuf":
+            raise TypeError(f"{what} must be an array of numbers, not of {array.dtype}")
+        array = array.astype(numpy.float64)
+    if array.ndim != 2 or array.shape[1] not in (2, 3):
+        raise ValueError(f"{what} must have the shape (n, 2) or (n, 3), not {array.shape}")
+    dimension = array.shape[1]
+    if dimension == 2:
+        array = numpy.column_stack((array, numpy.zeros(len(array), array.dtype)))
+    result = vtkPoints()
+    result.SetDataType(10 if array.dtype == numpy.float32 else 11)
+    # numpy_to_vtk keeps a reference to what it shares.
+    result.SetData(numpy_to_vtk(numpy.ascontiguousarray(array)))
+    return result, dimension
+
+
+def _as_triangles(triangles, points: int) -> vtkCellArray:
+    array = numpy.asarray(triangles)
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
+        raise ValueError(
+            "triangles must be an array of integers with the shape (m, 3), "
+            f"not {array.dtype} with {array.shape}"
+        )
+    if array.size and (array.min() < 0 or array.max() >= points):
+        raise ValueError(
+            f"triangles must have point numbers from 0 to {points - 1}; "
+            f"they go from {array.min()} to {array.max()}"
+        )
+    count = len(array)
+    connectivity = numpy.ascontiguousarray(array, numpy.int64).reshape(-1)
+    offsets = numpy.arange(0, 3 * count + 1, 3, dtype=numpy.int64)
+    cells = vtkCellArray()
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(offsets, deep=1), numpy_to_vtkIdTypeArray(connectivity, deep=1)
+    )
+    return cells
+
+
+class _Messages:
+    """Collects the errors of an algorithm instead of printing them."""
+
+    def __init__(self, algorithm):
+        self.errors = []
+
+        def collect(caller, event, text=""):
+            self.errors.append(text)
+
+        collect.CallDataType = "string0"
+        algorithm.AddObserver("ErrorEvent", collect)
+        # The executive adds that the algorithm failed, which is known.
+        algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+
+    def raise_if_any(self):
+        if self.errors:
+            text = "\n".join(self.errors).strip()
+            self.errors.clear()
+            # VTK's own prefix tells the place in the C++ source.
+            raise ValueError(text.split("): ", 1)[-1].strip())
+
+
+class Homeomorphism:
+    """The map from one triangulated domain onto another, and back.
+
+    Parameters
+    ----------
+    source, target : array of shape (n, 2) or (n, 3)
+        The points of the two triangulations. In the plane (z counts as distance from it), or on surfaces
+        in 3-space.
+    triangles : array of int of shape (m, 3)
+        Point numbers, the same in both.
+    system : {"smooth", "linear", "contour"}
+        The coordinate system. See vtkDifferentiableHomeomorphism.
+    center : {"centroid", "incenter"}
+        Where the contours of the Contour system start.
+    discordant_by_linear : bool
+        Whether the Linear system carries triangles in which Contour does not exist; else they are an
+        error.
+    tolerance : float
+        How far outside a point may be, as a proportion of the domain's diagonal. 0 allows for rounding
+        only.
+
+    Points outside the domain become NaN. Meshes that do not define a map raise ValueError with a
+    message that names the triangles. One object must not be used by several threads at a time; each
+    call uses all processors by itself.
+    """
+
+    def __init__(
+        self,
+        source,
+        target,
+        triangles,
+        system: str = "smooth",
+        *,
+        center: str = "centroid",
+        discordant_by_linear: bool = False,
+        tolerance: float = 0.0,
+    ):
+        self._meshes = []
+        dimensions = []
+        for points, what in ((source, "source"), (target, "target")):
+            # A copy: what has been validated must not change behind our back.
+            vtk_points, dimension = _as_points(numpy.array(points), what)
+            mesh = vtkPolyData()
+            mesh.SetPoints(vtk_points)
+            dimensions.append(dimension)
+            self._meshes.append(mesh)
+        if self._meshes[0].GetNumberOfPoints() != self._meshes[1].GetNumberOfPoints():
+            raise ValueError(
+                f"source has {self._meshes[0].GetNumberOfPoints()} points, "
+                f"target {self._meshes[1].GetNumberOfPoints()}: they must correspond one to one"
+            )
+        cells = _as_triangles(triangles, self._meshes[0].GetNumberOfPoints())
+        for mesh in self._meshes:
+            mesh.SetPolys(cells)
+        self._dimensions = dimensions
+        self._settings = (
+            _choose(_SYSTEMS, system, "system"),
+            _choose(_CENTERS, center, "center"),
+            discordant_by_linear,
+        )
+        self._filter = vtkDifferentiableHomeomorphism()
+        self._set_up(self._filter)
+        self._filter.SetTolerance(tolerance)
+        self._filter.TransformActiveAttributesOff()
+        self._filter.BlankOutsideOff()
+        self._filter.SetOutputPointsPrecision(self._filter.DOUBLE_PRECISION)
+        self._messages = _Messages(self._filter)
+        # Tells at once what is wrong with the meshes.
+        self._run(numpy.empty((0, 3)), False)
+
+    def _set_up(self, algorithm):
+        algorithm.SetSourceData(self._meshes[0])
+        algorithm.SetTargetData(self._meshes[1])
+        algorithm.SetCoordinateSystem(self._settings[0])
+        algorithm.SetCenterPoint(self._settings[1])
+        algorithm.SetDiscordantTriangles(
+            algorithm.USE_LINEAR if self._settings[2] else algorithm.REFUSE
+        )
+
+    def _run(self, points, inverse: bool):
+        vtk_points, dimension = _as_points(points, "points")
+        data = vtkPolyData()
+        data.SetPoints(vtk_points)
+        self._filter.SetDataObject(data)
+        self._filter.SetInverse(inverse)
+        self._filter.Update()
+        self._messages.raise_if_any()
+        return self._filter.GetOutputDataObject(0), dimension
+
+    def _map(self, points, inverse: bool) -> numpy.ndarray:
+        output, dimension = self._run(points, inverse)
+        if dimension == 2:
+            dimension = self._dimensions[0 if inverse else 1]
+        result = numpy.array(vtk_to_numpy(output.GetPoints().GetData())[:, :dimension])
+        mask = vtk_to_numpy(output.GetPointData().GetArray("vtkValidPointMask"))
+        result[mask == 0] = numpy.nan
+        return result
+
+    def __call__(self, points) -> numpy.ndarray:
+        """Images of points of the source's domain: float64, of shape (n, 2) or (n, 3); NaN outside."""
+        return self._map(points, False)
+
+    def inverse(self, points) -> numpy.ndarray:
+        """Points of the source's domain whose images are given; NaN outside the target's domain."""
+        return self._map(points, True)
+
+    def jacobian(self, points, inverse: bool = False) -> numpy.ndarray:
+        """The derivative at points of the source's domain (of the inverse: the target's): float64, of
+        shape (n, d, d) for points of d coordinates; element [i, j, k] is the change of coordinate j of the
+        image of point i with coordinate k of the point. NaN outside."""
+        self._filter.ComputeJacobianOn()
+        try:
+            output, dimension = self._run(points, inverse)
+        finally:
+            self._filter.ComputeJacobianOff()
+        jacobian = vtk_to_numpy(output.GetPointData().GetArray("Jacobian"))
+        return numpy.array(jacobian.reshape(-1, 3, 3)[:, :dimension, :dimension])
+
+    def coordinates(self, points):
+        """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0
+        outside), p and c (NaN outside), four arrays of shape (n,)."""
+        algorithm = vtkTriangularCoordinates()
+        messages = _Messages(algorithm)
+        algorithm.SetInputData(0, self._meshes[0])
+        algorithm.SetCoordinateSystem(self._settings[0])
+        algorithm.SetCenterPoint(self._settings[1])
+        algorithm.SetDiscordantTriangles(
+            algorithm.USE_LINEAR if self._settings[2] else algorithm.REFUSE
+        )
+        algorithm.GenerateLinesOff()
+        data = vtkPolyData()
+        data.SetPoints(_as_points(points, "points")[0])
+        algorithm.SetDataObject(data)
+        algorithm.Update()
+        messages.raise_if_any()
+        arrays = algorithm.GetOutputDataObject(0).GetPointData()
+        return tuple(
+            numpy.array(vtk_to_numpy(arrays.GetArray(name)))
+            for name in ("TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter")
+        )
+
+    def continuity(self, samples: int = 5):
+        """Whether the map is differentiable across the interior edges, measured from its values: a dict of
+        arrays with one element for each edge (`JacobianJump`, `JacobianJumpError`, `Verdict`,
+        `EdgeTriangles`, ...; see vtkJacobianContinuity)."""
+        algorithm = vtkJacobianContinuity()
+        messages = _Messages(algorithm)
+        self._set_up(algorithm)
+        algorithm.SetSamplesPerEdge(samples)
+        algorithm.Update()
+        messages.raise_if_any()
+        arrays = algorithm.GetOutput().GetCellData()
+        return {
+            arrays.GetArrayName(i): numpy.array(vtk_to_numpy(arrays.GetArray(i)))
+            for i in range(arrays.GetNumberOfArrays())
+        }
+
+    def warp_image(
+        self,
+        image,
+        shape: Optional[Tuple[int, int]] = None,
+        *,
+        spacing: float = 1.0,
+        background: float = 0.0,
+        inverse: bool = False,
+    ) -> numpy.ndarray:
+        """An image over the source's domain, seen over the target's: pulled back along the exact inverse,
+        interpolated linearly.
+
+        Parameters
+        ----------
+        image : array of shape (rows, columns) or (rows, columns, channels)
+            Pixel [row, column] lies at the point (column, row) times `spacing` of the source's plane.
+        shape : (rows, columns)
+            Of the result; the image's by default. Pixels lie at points of the target's plane in the same
+            way.
+        background : float
+            The value of pixels outside.
+        inverse : bool
+            The image lies over the target's domain instead, and the result over the source's.
+
+        Returns an array of the image's type.
+        """
+        array = numpy.asarray(image)
+        if array.ndim not in (2, 3):
+            raise ValueError(
+                f"image must have the shape (rows, columns) or (rows, columns, channels), "
+                f"not {array.shape}"
+            )
+        rows, columns = array.shape[:2]
+        channels = array.shape[2] if array.ndim == 3 else 1
+        out_rows, out_columns = shape if shape else (rows, columns)
+        vtk_image = vtkImageData()
+        vtk_image.SetDimensions(columns, rows, 1)
+        vtk_image.SetSpacing(spacing, spacing, 1.0)
+        # Interpolated as float64, so that small integers are rounded once, and well.
+        values = numpy_to_vtk(
+            numpy.ascontiguousarray(array, numpy.float64).reshape(-1, channels), deep=1
+        )
+        values.SetName("Values")
+        vtk_image.GetPointData().SetScalars(values)
+        algorithm = vtkResampleThroughHomeomorphism()
+        messages = _Messages(algorithm)
+        self._set_up(algorithm)
+        algorithm.SetDataObject(vtk_image)
+        algorithm.SetInverse(inverse)
+        algorithm.BlankOutsideOff()
+        algorithm.TransformActiveAttributesOff()
+        algorithm.SetTolerance(self._filter.GetTolerance())
+        algorithm.SetSamplingDimensions(out_columns, out_rows)
+        algorithm.SetSamplingBounds(
+            0.0, spacing * (out_columns - 1), 0.0, spacing * (out_rows - 1)
+        )
+        algorithm.Update()
+        messages.raise_if_any()
+        output = algorithm.GetOutputDataObject(0).GetPointData()
+        warped = numpy.array(vtk_to_numpy(output.GetArray("Values"))).reshape(
+            (out_rows, out_columns) + array.shape[2:]
+        )
+        mask = vtk_to_numpy(output.GetArray("vtkValidPointMask")).reshape(out_rows, out_columns)
+        warped[mask == 0] = background
+        if array.dtype.kind in "iu":
+            limits = numpy.iinfo(array.dtype)
+            warped = numpy.clip(numpy.rint(warped), limits.min, limits.max)
+        return warped.astype(array.dtype)

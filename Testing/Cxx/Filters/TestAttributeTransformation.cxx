@@ -1,0 +1,766 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What becomes of vectors, normals, tensors and gradients that vtkDifferentiableHomeomorphism
+// carries.
+
+#include "FilterRuns.h"
+
+#include "vtkCellData.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkShortArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <map>
+#include <utility>
+
+namespace
+{
+
+using namespace filter_runs;
+
+class Transport : public ::testing::TestWithParam<System>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Transport, ::testing::ValuesIn(AllSystems()), NameOfSystem);
+
+/// A random symmetric tensor in VTK's order XX, YY, ZZ, XY, YZ, XZ as a matrix.
+Matrix SymmetricOf(vtkDataArray* array, vtkIdType i)
+{
+  double t[6];
+  array->GetTuple(i, t);
+  return { { { t[0], t[3], t[5] }, { t[3], t[1], t[4] }, { t[5], t[4], t[2] } } };
+}
+
+/// A cloud inside the triangles of a mesh with an array of each kind.
+vtkSmartPointer<vtkPolyData> MakeCarriedCloud(vtkPolyData* mesh, std::uint64_t seed)
+{
+  constexpr vtkIdType count = 3000;
+  const auto cloud = MakeCloud(mesh, InnerPlaces(mesh, count, seed, 1e-3));
+  vtkPointData* pointData = cloud->GetPointData();
+  pointData->SetScalars(RandomArray("Scalars", 3, count, seed + 1));
+  pointData->SetVectors(RandomArray("Vectors", 3, count, seed + 2));
+  const auto normals = RandomArray("Normals", 3, count, seed + 3);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    normals->SetTuple(i, Unit(VectorOf(normals, i)).data());
+  }
+  pointData->SetNormals(normals);
+  pointData->SetTensors(RandomArray("Tensors", 9, count, seed + 4));
+  pointData->SetTCoords(RandomArray("TextureCoordinates", 3, count, seed + 5));
+  pointData->AddArray(RandomArray("Displacement", 3, count, seed + 6));
+  pointData->AddArray(RandomArray("Stress", 6, count, seed + 7));
+  pointData->AddArray(RandomArray<vtkFloatArray>("FloatVelocity", 3, count, seed + 8));
+  pointData->AddArray(RandomArray<vtkIntArray>("Counts", 3, count, seed + 9));
+  pointData->AddArray(RandomArray("Pair", 2, count, seed + 10));
+  pointData->AddArray(RandomArray("Single", 1, count, seed + 11));
+  return cloud;
+}
+
+// --- Forward and back ----------------------------------------------------------------------------
+
+TEST_P(Transport, ForwardThenBackIsTheIdentity)
+{
+  for (const Pairing& pairing : AllPairings(8, 2, 400))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const auto cloud = MakeCarriedCloud(pair.Source, 50);
+    cloud->GetPointData()->AddArray(RandomArray("Gradient", 3, cloud->GetNumberOfPoints(), 70));
+    cloud->GetPointData()->AddArray(RandomArray("Metric", 9, cloud->GetNumberOfPoints(), 71));
+    const auto forward = MakeFilter(GetParam(), pair, cloud);
+    const auto backward = MakeFilter(GetParam(), pair);
+    backward->SetDataConnection(forward->GetOutputPort());
+    backward->InverseOn();
+    for (const auto& filter : { forward, backward })
+    {
+      filter->TransformAllInputVectorsOn();
+      filter->SetAttributeTransformation(
+        "Gradient", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
+      filter->SetAttributeTransformation(
+        "Metric", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
+    }
+    forward->ComputeJacobianOn();
+    vtkPointSet* back = Output(backward);
+    vtkPointSet* image = vtkPointSet::SafeDownCast(forward->GetOutputDataObject(0));
+    for (const char* name :
+      { "Vectors", "Normals", "Tensors", "Displacement", "Stress", "Gradient", "Metric" })
+    {
+      vtkDataArray* before = PointArray(cloud, name);
+      vtkDataArray* between = PointArray(image, name);
+      vtkDataArray* after = PointArray(back, name);
+      ASSERT_TRUE(after) << name;
+      EXPECT_GT(CountDifferentValues(before, between), before->GetNumberOfTuples()) << name;
+      // The two Jacobians are computed at points that differ by rounding.
+      Worst worst;
+      for (vtkIdType i = 0; i < before->GetNumberOfTuples(); ++i)
+      {
+        const Matrix j = MatrixOf(PointArray(image, "Jacobian"), i);
+        const double condition = Norm(j) * Norm(Inverted(j));
+        double difference = 0.0;
+        double size = 0.0;
+        for (int k = 0; k < before->GetNumberOfComponents(); ++k)
+        {
+          difference =
+            std::hypot(difference, after->GetComponent(i, k) - before->GetComponent(i, k));
+          size = std::hypot(size, before->GetComponent(i, k));
+        }
+        worst.Take(difference / size, 1e-11 * condition * condition);
+      }
+      EXPECT_LE(worst.OverBound, 1.0) << pairing.Name << " " << name;
+    }
+  }
+}
+
+TEST_P(Transport, FollowsTheJacobian)
+{
+  for (const Pairing& pairing : AllPairings(6, 1, 410))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const auto cloud = MakeCarriedCloud(pair.Source, 80);
+    const vtkIdType count = cloud->GetNumberOfPoints();
+    for (const char* name : { "Gradient", "Normal" })
+    {
+      cloud->GetPointData()->AddArray(RandomArray(name, 3, count, 81));
+    }
+    cloud->GetPointData()->AddArray(RandomArray("Metric9", 9, count, 82));
+    cloud->GetPointData()->AddArray(RandomArray("Metric6", 6, count, 83));
+    const auto filter = MakeFilter(GetParam(), pair, cloud);
+    filter->ComputeJacobianOn();
+    filter->TransformAllInputVectorsOn();
+    for (const char* name : { "Gradient", "Metric9", "Metric6" })
+    {
+      filter->SetAttributeTransformation(
+        name, vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
+    }
+    filter->SetAttributeTransformation(
+      "Normal", vtkDifferentiableHomeomorphism::NORMAL_TRANSFORMATION);
+    vtkPointSet* output = Output(filter);
+    Worst worst;
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const Matrix j = MatrixOf(PointArray(output, "Jacobian"), i);
+      const Matrix inverseTransposed = Transposed(Inverted(j));
+      const double bound = 1e-11 * Norm(j) * Norm(inverseTransposed);
+      const auto vector = [i](vtkDataSet* data, const char* name) {
+        return VectorOf(PointArray(data, name), i);
+      };
+      const auto takeVector = [&](const char* name, const Point& expected) {
+        worst.Take(Distance(vector(output, name), expected), bound * (1.0 + Norm(expected)));
+      };
+      const auto takeTensor = [&](const Matrix& actual, const Matrix& before, const Matrix& a) {
+        worst.Take(
+          Distance(actual, a * before * Transposed(a)), bound * Norm(before) * Norm(a) * Norm(a));
+      };
+      takeVector("Vectors", j * vector(cloud, "Vectors"));
+      takeVector("Displacement", j * vector(cloud, "Displacement"));
+      takeVector("Normals", Unit(inverseTransposed * vector(cloud, "Normals")));
+      takeVector("Normal", Unit(inverseTransposed * vector(cloud, "Normal")));
+      takeVector("Gradient", inverseTransposed * vector(cloud, "Gradient"));
+      takeTensor(
+        MatrixOf(PointArray(output, "Tensors"), i), MatrixOf(PointArray(cloud, "Tensors"), i), j);
+      takeTensor(SymmetricOf(PointArray(output, "Stress"), i),
+        SymmetricOf(PointArray(cloud, "Stress"), i), j);
+      takeTensor(MatrixOf(PointArray(output, "Metric9"), i),
+        MatrixOf(PointArray(cloud, "Metric9"), i), inverseTransposed);
+      takeTensor(SymmetricOf(PointArray(output, "Metric6"), i),
+        SymmetricOf(PointArray(cloud, "Metric6"), i), inverseTransposed);
+      // The rate of change of a scalar along a path does not depend on where both are drawn.
+      worst.Take(std::abs(Dot(vector(output, "Gradient"), vector(output, "Vectors")) -
+                   Dot(vector(cloud, "Gradient"), vector(cloud, "Vectors"))),
+        bound * Norm(vector(output, "Gradient")) * Norm(vector(output, "Vectors")));
+    }
+    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
+  }
+}
+
+// --- Geometry ------------------------------------------------------------------------------------
+
+TEST_P(Transport, VectorsFollowTheirPoints)
+{
+  // A vector as the difference of two nearby points of the triangle, carried, is the difference of
+  // their images.
+  for (const Pairing& pairing : AllPairings(8, 2, 420))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 90, 0.02);
+    constexpr double h = 1e-6;
+    Random random(91);
+    std::vector<ToSurfacePoint> ahead = places;
+    std::vector<ToSurfacePoint> behind = places;
+    const auto cloud = MakeCloud(pair.Source, places);
+    const auto vectors = RandomArray("Vectors", 3, cloud->GetNumberOfPoints(), 92);
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      const double a = random.Uniform(-1.0, 1.0);
+      const double b = random.Uniform(-1.0, 1.0);
+      const Point change{ -a - b, a, b };
+      ahead[i].Weights = places[i].Weights + h * change;
+      behind[i].Weights = places[i].Weights - h * change;
+      const std::array<Point, 3> corners = CornersOf(pair.Source, places[i].Triangle);
+      vectors->SetTuple(static_cast<vtkIdType>(i),
+        (change[0] * corners[0] + change[1] * corners[1] + change[2] * corners[2]).data());
+    }
+    cloud->GetPointData()->SetVectors(vectors);
+    const auto filter = MakeFilter(GetParam(), pair, cloud);
+    const auto filterAhead = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, ahead));
+    const auto filterBehind = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, behind));
+    vtkDataArray* carried = PointArray(Output(filter), "Vectors");
+    std::vector<double> errors;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      const Point difference =
+        (0.5 / h) * (PointOf(Output(filterAhead), i) - PointOf(Output(filterBehind), i));
+      errors.push_back(
+        Distance(difference, VectorOf(carried, i)) / (1e-3 + Norm(VectorOf(carried, i))));
+    }
+    // All but the few whose difference is taken across a spoke or a wing segment.
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() * 99 / 100], 1e-6) << pairing.Name;
+  }
+}
+
+TEST_P(Transport, NormalsStayNormal)
+{
+  // Of a curve in the plane, and of a surface.
+  const MeshPair planar = MakePlanarPair(8, 430);
+  const MeshPair closed = MakeClosedPair(2, 431);
+  Random random(95);
+  for (const bool isPlanar : { true, false })
+  {
+    const MeshPair& pair = isPlanar ? planar : closed;
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 96, 1e-3);
+    const auto cloud = MakeCloud(pair.Source, places);
+    const vtkIdType count = cloud->GetNumberOfPoints();
+    const auto tangents = RandomArray("Tangents", 3, count, 97);
+    const auto normals = RandomArray("Normals", 3, count, 98);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const std::array<Point, 3> c =
+        CornersOf(pair.Source, places[static_cast<std::size_t>(i)].Triangle);
+      const Point tangent =
+        random.Uniform(-1.0, 1.0) * (c[1] - c[0]) + random.Uniform(-1.0, 1.0) * (c[2] - c[0]);
+      const Point normal =
+        isPlanar ? Point{ -tangent[1], tangent[0], 0.0 } : Cross(c[1] - c[0], c[2] - c[0]);
+      tangents->SetTuple(i, tangent.data());
+      normals->SetTuple(i, Unit(normal).data());
+    }
+    cloud->GetPointData()->SetVectors(tangents);
+    cloud->GetPointData()->SetNormals(normals);
+    const auto filter = MakeFilter(GetParam(), pair, cloud);
+    vtkPointSet* output = Output(filter);
+    Worst worst;
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const Point tangent = VectorOf(PointArray(output, "Tangents"), i);
+      const Point normal = VectorOf(PointArray(output, "Normals"), i);
+      worst.Take(std::abs(Dot(Unit(tangent), normal)), 1e-10);
+      worst.Take(std::abs(Norm(normal) - 1.0), 4.0 * Ulp);
+      if (!isPlanar)
+      {
+        const std::array<Point, 3> c =
+          CornersOf(pair.Target, places[static_cast<std::size_t>(i)].Triangle);
+        worst.Take(Distance(normal, Unit(Cross(c[1] - c[0], c[2] - c[0]))), 1e-11);
+      }
+    }
+    EXPECT_LE(worst.OverBound, 1.0);
+  }
+}
+
+TEST_P(Transport, ZeroVectorsStayZero)
+{
+  const MeshPair pair = MakePlanarPair(4, 435);
+  const auto cloud = MakeCloud(pair.Source, InnerPlaces(pair.Source, 50, 99, 1e-3));
+  for (const bool normals : { false, true })
+  {
+    vtkNew<vtkDoubleArray> zero;
+    zero->SetName(normals ? "Normals" : "Vectors");
+    zero->SetNumberOfComponents(3);
+    zero->SetNumberOfTuples(50);
+    zero->FillValue(0.0);
+    normals ? cloud->GetPointData()->SetNormals(zero) : cloud->GetPointData()->SetVectors(zero);
+  }
+  const auto filter = MakeFilter(GetParam(), pair, cloud);
+  vtkPointSet* output = Output(filter);
+  for (const char* name : { "Vectors", "Normals" })
+  {
+    EXPECT_EQ(CountDifferentValues(PointArray(output, name), PointArray(cloud, name)), 0) << name;
+  }
+}
+
+TEST_P(Transport, AGradientStaysTheGradient)
+{
+  // A scalar s on P, and its gradient carried; on Q, s o f^-1 has that gradient.
+  const auto scalar = [](const Point& p) {
+    return std::sin(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[0] * p[1] + 0.5 * p[2];
+  };
+  const auto gradient = [](const Point& p) -> Point {
+    return { 0.7 * std::cos(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[1],
+      -0.4 * std::sin(0.7 * p[0]) * std::sin(0.4 * p[1]) + 0.3 * p[0], 0.5 };
+  };
+  for (const Pairing& pairing : AllPairings(8, 2, 440))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 100, 0.02);
+    const auto cloud = MakeCloud(pair.Source, places);
+    const vtkIdType count = cloud->GetNumberOfPoints();
+    const auto gradients = RandomArray("Gradient", 3, count, 101);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      gradients->SetTuple(i, gradient(PointOf(cloud, i)).data());
+    }
+    cloud->GetPointData()->AddArray(gradients);
+    const auto filter = MakeFilter(GetParam(), pair, cloud);
+    filter->SetAttributeTransformation(
+      "Gradient", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
+    vtkPointSet* output = Output(filter);
+
+    // Differences on Q, within the triangle's plane.
+    constexpr double h = 1e-6;
+    std::vector<Point> stencil;
+    std::vector<std::array<Point, 2>> directions;
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const std::array<Point, 3> c =
+        CornersOf(pair.Target, places[static_cast<std::size_t>(i)].Triangle);
+      directions.push_back({ Unit(c[1] - c[0]), Unit(c[2] - c[0]) });
+      for (const Point& direction : directions.back())
+      {
+        stencil.push_back(PointOf(output, i) + h * direction);
+        stencil.push_back(PointOf(output, i) - h * direction);
+      }
+    }
+    const auto inverse = MakeFilter(GetParam(), pair, MakeCloud(stencil));
+    inverse->InverseOn();
+    vtkPointSet* preimages = Output(inverse);
+    EXPECT_EQ(inverse->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+    std::vector<double> errors;
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const Point carried = VectorOf(PointArray(output, "Gradient"), i);
+      for (int k = 0; k < 2; ++k)
+      {
+        const double difference = (scalar(PointOf(preimages, 4 * i + 2 * k)) -
+                                    scalar(PointOf(preimages, 4 * i + 2 * k + 1))) /
+          (2.0 * h);
+        errors.push_back(
+          std::abs(difference - Dot(carried, directions[static_cast<std::size_t>(i)][k])) /
+          (0.1 + Norm(carried)));
+      }
+    }
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() * 99 / 100], 1e-6) << pairing.Name;
+  }
+}
+
+// --- Cells ---------------------------------------------------------------------------------------
+
+TEST_P(Transport, CellDataIsCarriedAtTheCellsMeans)
+{
+  for (const Pairing& pairing : AllPairings(6, 2, 450))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    // Lines and polygons inside triangles, and one cell without points between them.
+    Random random(102);
+    vtkNew<vtkUnstructuredGrid> data;
+    std::vector<Point> positions;
+    std::vector<Point> means;
+    const auto addCell = [&](int type, vtkIdType size) {
+      const vtkIdType triangle = random.Below(pair.Source->GetNumberOfCells());
+      std::vector<vtkIdType> ids;
+      Point mean{};
+      for (vtkIdType k = 0; k < size; ++k)
+      {
+        const Point position = PositionOf(pair.Source, { triangle, RandomWeights(random, 1e-3) });
+        ids.push_back(static_cast<vtkIdType>(positions.size()));
+        positions.push_back(position);
+        mean = mean + (1.0 / static_cast<double>(size)) * position;
+      }
+      data->InsertNextCell(type, size, ids.data());
+      means.push_back(mean);
+    };
+    for (int i = 0; i < 100; ++i)
+    {
+      addCell(VTK_POLY_LINE, 2 + random.Below(4));
+    }
+    addCell(VTK_EMPTY_CELL, 0);
+    for (int i = 0; i < 100; ++i)
+    {
+      addCell(VTK_POLYGON, 3 + random.Below(3));
+    }
+    data->SetPoints(MakeCloud(positions)->GetPoints());
+    const vtkIdType cells = data->GetNumberOfCells();
+    ASSERT_EQ(cells, 201);
+    data->GetCellData()->SetVectors(RandomArray("Flux", 3, cells, 103));
+    data->GetCellData()->SetTensors(RandomArray("Tensor", 9, cells, 104));
+    data->GetCellData()->AddArray(RandomArray("Other", 3, cells, 105));
+    data->GetCellData()->AddArray(RandomArray("Gradient", 3, cells, 106));
+    const auto filter = MakeFilter(GetParam(), pair, data);
+    filter->SetAttributeTransformation(
+      "Gradient", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
+    vtkPointSet* output = Output(filter);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+
+    const auto atMeans = MakeFilter(GetParam(), pair, MakeCloud(means));
+    atMeans->ComputeJacobianOn();
+    vtkDataArray* jacobian = PointArray(Output(atMeans), "Jacobian");
+    Worst worst;
+    for (vtkIdType i = 0; i < cells; ++i)
+    {
+      const Point flux = VectorOf(output->GetCellData()->GetArray("Flux"), i);
+      if (i == 100)
+      {
+        EXPECT_TRUE(std::isnan(flux[0]) && std::isnan(flux[1]) && std::isnan(flux[2]));
+        continue;
+      }
+      const Matrix j = MatrixOf(jacobian, i);
+      const double bound = 1e-9 * Norm(j) * Norm(Inverted(j));
+      const auto before = [&](const char* name) {
+        return VectorOf(data->GetCellData()->GetArray(name), i);
+      };
+      const Matrix tensor = MatrixOf(data->GetCellData()->GetArray("Tensor"), i);
+      worst.Take(Distance(flux, j * before("Flux")), bound * Norm(before("Flux")) * Norm(j));
+      worst.Take(Distance(VectorOf(output->GetCellData()->GetArray("Gradient"), i),
+                   Transposed(Inverted(j)) * before("Gradient")),
+        bound * Norm(before("Gradient")) * Norm(Inverted(j)));
+      worst.Take(Distance(MatrixOf(output->GetCellData()->GetArray("Tensor"), i),
+                   j * tensor * Transposed(j)),
+        bound * Norm(tensor) * Norm(j) * Norm(j));
+    }
+    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
+    EXPECT_EQ(CountDifferentValues(
+                output->GetCellData()->GetArray("Other"), data->GetCellData()->GetArray("Other")),
+      0);
+    EXPECT_STREQ(output->GetCellData()->GetVectors()->GetName(), "Flux");
+    EXPECT_STREQ(output->GetCellData()->GetTensors()->GetName(), "Tensor");
+    EXPECT_FALSE(output->GetCellData()->GetArray("Jacobian"));
+  }
+}
+
+TEST_P(Transport, CellsThatSpanTrianglesOfASurface)
+{
+  // Quadrilaterals of two triangles each: their means lie well off the surface.
+  const MeshPair pair = MakeClosedPair(2, 455);
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(pair.Source->GetPoints());
+  vtkNew<vtkCellArray> polygons;
+  std::map<std::pair<vtkIdType, vtkIdType>, vtkIdType> across;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
+  {
+    pair.Source->GetCellPoints(t, ids);
+    for (vtkIdType k = 0; k < 3; ++k)
+    {
+      const vtkIdType a = ids->GetId(k);
+      const vtkIdType b = ids->GetId((k + 1) % 3);
+      const vtkIdType apex = ids->GetId((k + 2) % 3);
+      const auto found = across.find({ b, a });
+      if (found != across.end())
+      {
+        polygons->InsertNextCell({ a, found->second, b, apex });
+      }
+      across[{ a, b }] = apex;
+    }
+  }
+  data->SetPolys(polygons);
+  const vtkIdType cells = data->GetNumberOfCells();
+  ASSERT_EQ(cells, 3 * pair.Source->GetNumberOfCells() / 2);
+  data->GetCellData()->SetVectors(RandomArray("Flux", 3, cells, 108));
+  const auto filter = MakeFilter(GetParam(), pair, data);
+  vtkDataArray* carried = Output(filter)->GetCellData()->GetVectors();
+  for (vtkIdType i = 0; i < cells; ++i)
+  {
+    const Point flux = VectorOf(carried, i);
+    ASSERT_TRUE(std::isfinite(Norm(flux)));
+    ASSERT_GT(Norm(flux), 0.0);
+  }
+}
+
+// --- Which arrays --------------------------------------------------------------------------------
+
+class WhichArrays : public ::testing::Test
+{
+protected:
+  /// Names of the arrays that differ between input and output.
+  std::string Changed()
+  {
+    this->Filter->Update();
+    auto* output = vtkPointSet::SafeDownCast(this->Filter->GetOutputDataObject(0));
+    std::string names;
+    for (int i = 0; i < this->Cloud->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* before = this->Cloud->GetPointData()->GetArray(i);
+      vtkDataArray* after = PointArray(output, before->GetName());
+      EXPECT_TRUE(after) << before->GetName();
+      if (CountDifferentValues(before, after) != 0)
+      {
+        names += std::string(names.empty() ? "" : " ") + before->GetName();
+      }
+    }
+    return names;
+  }
+
+  using Algorithm = vtkDifferentiableHomeomorphism;
+  const MeshPair Pair = MakePlanarPair(6, 460);
+  const vtkSmartPointer<vtkPolyData> Cloud = MakeCarriedCloud(this->Pair.Source, 110);
+  const vtkSmartPointer<vtkDifferentiableHomeomorphism> Filter =
+    MakeFilter(Smooth, this->Pair, this->Cloud);
+};
+
+TEST_F(WhichArrays, ActiveOnesByDefault)
+{
+  EXPECT_EQ(this->Changed(), "Vectors Normals Tensors");
+}
+
+TEST_F(WhichArrays, NoneWithoutTransformActiveAttributes)
+{
+  this->Filter->TransformActiveAttributesOff();
+  EXPECT_EQ(this->Changed(), "");
+  this->Filter->TransformAllInputVectorsOn();
+  EXPECT_EQ(this->Changed(), "");
+  this->Filter->SetAttributeTransformation("Displacement", Algorithm::TANGENT_TRANSFORMATION);
+  EXPECT_EQ(this->Changed(), "Displacement");
+}
+
+TEST_F(WhichArrays, AllVectors)
+{
+  // Not texture coordinates, the active scalars, integers, nor arrays of other sizes.
+  this->Filter->TransformAllInputVectorsOn();
+  EXPECT_EQ(this->Changed(), "Vectors Normals Tensors Displacement Stress FloatVelocity");
+}
+
+TEST_F(WhichArrays, NamedOnes)
+{
+  this->Filter->SetAttributeTransformation("Vectors", Algorithm::NO_TRANSFORMATION);
+  EXPECT_EQ(this->Changed(), "Normals Tensors");
+  this->Filter->SetAttributeTransformation("Scalars", Algorithm::TANGENT_TRANSFORMATION);
+  EXPECT_EQ(this->Changed(), "Scalars Normals Tensors");
+  this->Filter->SetAttributeTransformation(
+    "TextureCoordinates", Algorithm::GRADIENT_TRANSFORMATION);
+  this->Filter->SetAttributeTransformation("Counts", Algorithm::TANGENT_TRANSFORMATION);
+  EXPECT_EQ(this->Changed(), "Scalars Normals Tensors TextureCoordinates Counts");
+  // What has not the components of a vector or tensor passes, as do tensors taken for normals.
+  for (const char* name : { "Pair", "Single" })
+  {
+    this->Filter->SetAttributeTransformation(name, Algorithm::TANGENT_TRANSFORMATION);
+  }
+  this->Filter->SetAttributeTransformation("Stress", Algorithm::NORMAL_TRANSFORMATION);
+  this->Filter->SetAttributeTransformation("No such array", Algorithm::TANGENT_TRANSFORMATION);
+  EXPECT_EQ(this->Changed(), "Scalars Normals Tensors TextureCoordinates Counts");
+  EXPECT_EQ(this->Filter->GetAttributeTransformation("Vectors"), Algorithm::NO_TRANSFORMATION);
+  EXPECT_EQ(this->Filter->GetAttributeTransformation("Counts"), Algorithm::TANGENT_TRANSFORMATION);
+  EXPECT_EQ(this->Filter->GetAttributeTransformation("Displacement"), -1);
+  EXPECT_EQ(this->Filter->GetAttributeTransformation(nullptr), -1);
+  this->Filter->ClearAttributeTransformations();
+  EXPECT_EQ(this->Filter->GetAttributeTransformation("Counts"), -1);
+  EXPECT_EQ(this->Changed(), "Vectors Normals Tensors");
+}
+
+TEST_F(WhichArrays, NonsenseIsRefused)
+{
+  Messages messages(this->Filter);
+  for (const int transformation : { -1, 4 })
+  {
+    this->Filter->SetAttributeTransformation("Vectors", transformation);
+    EXPECT_TRUE(messages.HasError());
+    EXPECT_NE(messages.Error().find("Vectors"), std::string::npos);
+    messages.Clear();
+  }
+  this->Filter->SetAttributeTransformation(nullptr, Algorithm::TANGENT_TRANSFORMATION);
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_EQ(this->Filter->GetAttributeTransformation("Vectors"), -1);
+}
+
+TEST_F(WhichArrays, RolesAndNamesAreKept)
+{
+  vtkDataArray* vectors = PointArray(this->Cloud, "Vectors");
+  for (const int component : { 0, 1, 2 })
+  {
+    vectors->SetComponentName(
+      component, std::string(1, static_cast<char>('X' + component)).c_str());
+  }
+  this->Filter->TransformAllInputVectorsOn();
+  vtkPointData* pointData = Output(this->Filter)->GetPointData();
+  const std::vector<std::pair<int, const char*>> roles{
+    { vtkDataSetAttributes::SCALARS, "Scalars" }, { vtkDataSetAttributes::VECTORS, "Vectors" },
+    { vtkDataSetAttributes::NORMALS, "Normals" }, { vtkDataSetAttributes::TENSORS, "Tensors" },
+    { vtkDataSetAttributes::TCOORDS, "TextureCoordinates" }
+  };
+  for (const auto& role : roles)
+  {
+    ASSERT_TRUE(pointData->GetAbstractAttribute(role.first)) << role.second;
+    EXPECT_STREQ(pointData->GetAbstractAttribute(role.first)->GetName(), role.second);
+    EXPECT_EQ(
+      pointData->GetAbstractAttribute(role.first), pointData->GetAbstractArray(role.second));
+  }
+  EXPECT_STREQ(pointData->GetVectors()->GetComponentName(1), "Y");
+  // Nothing twice: the input's arrays and the mask.
+  EXPECT_EQ(pointData->GetNumberOfArrays(), this->Cloud->GetPointData()->GetNumberOfArrays() + 1);
+  // The input keeps its own.
+  EXPECT_NE(this->Cloud->GetPointData()->GetVectors(), pointData->GetVectors());
+}
+
+TEST_F(WhichArrays, ArraysWithoutAName)
+{
+  const auto nameless = RandomArray("", 3, this->Cloud->GetNumberOfPoints(), 120);
+  nameless->SetName(nullptr);
+  this->Cloud->GetPointData()->SetVectors(nameless);
+  this->Filter->ComputeJacobianOn();
+  vtkPointSet* output = Output(this->Filter);
+  vtkDataArray* carried = output->GetPointData()->GetVectors();
+  ASSERT_TRUE(carried);
+  EXPECT_FALSE(carried->GetName());
+  Worst worst;
+  for (vtkIdType i = 0; i < carried->GetNumberOfTuples(); ++i)
+  {
+    const Matrix j = MatrixOf(PointArray(output, "Jacobian"), i);
+    worst.Take(Distance(VectorOf(carried, i), j * VectorOf(nameless, i)), 1e-10 * Norm(j));
+  }
+  EXPECT_LE(worst.OverBound, 1.0);
+}
+
+TEST_F(WhichArrays, ArraysOfAnotherLengthPass)
+{
+  const auto tooShort = RandomArray("TooShort", 3, this->Cloud->GetNumberOfPoints() - 7, 122);
+  const auto tooLong = RandomArray("TooLong", 9, this->Cloud->GetNumberOfPoints() + 7, 123);
+  this->Cloud->GetPointData()->AddArray(tooShort);
+  this->Cloud->GetPointData()->AddArray(tooLong);
+  this->Filter->TransformAllInputVectorsOn();
+  vtkPointSet* output = Output(this->Filter);
+  EXPECT_EQ(CountDifferentValues(PointArray(output, "TooShort"), tooShort), 0);
+  EXPECT_EQ(CountDifferentValues(PointArray(output, "TooLong"), tooLong), 0);
+}
+
+TEST(AttributeTransformation, CellsOfPointsThatDoNotExist)
+{
+  const MeshPair pair = MakePlanarPair(4, 466);
+  const auto data = MakeCloud(pair.Source, InnerPlaces(pair.Source, 20, 124, 1e-3));
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell({ 0, 1 });
+  lines->InsertNextCell({ 2, 20 });
+  lines->InsertNextCell({ -1, 3 });
+  lines->InsertNextCell({ 4, 5, 6 });
+  data->SetLines(lines);
+  data->GetCellData()->SetVectors(RandomArray("Flux", 3, 4, 125));
+  // With a point outside there are ghosts, too.
+  data->GetPoints()->SetPoint(19, -50.0, 0.0, 0.0);
+  const auto filter = MakeFilter(Smooth, pair, data);
+  vtkPointSet* output = Output(filter);
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 1);
+  for (const vtkIdType cell : { 0, 1, 2, 3 })
+  {
+    const bool isCorrupt = cell == 1 || cell == 2;
+    EXPECT_EQ(std::isnan(output->GetCellData()->GetVectors()->GetComponent(cell, 0)), isCorrupt);
+    EXPECT_EQ(output->GetCellData()
+                ->GetArray(vtkDataSetAttributes::GhostArrayName())
+                ->GetComponent(cell, 0) != 0.0,
+      isCorrupt);
+  }
+}
+
+TEST_F(WhichArrays, TypesOfNumbers)
+{
+  this->Filter->TransformAllInputVectorsOn();
+  this->Filter->SetAttributeTransformation("Counts", Algorithm::TANGENT_TRANSFORMATION);
+  this->Filter->ComputeJacobianOn();
+  vtkPointSet* output = Output(this->Filter);
+  EXPECT_EQ(PointArray(output, "FloatVelocity")->GetDataType(), VTK_FLOAT);
+  EXPECT_EQ(PointArray(output, "Vectors")->GetDataType(), VTK_DOUBLE);
+  // A carried integer vector is no integer any more.
+  ASSERT_EQ(PointArray(output, "Counts")->GetDataType(), VTK_DOUBLE);
+  Worst worst;
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    const Matrix j = MatrixOf(PointArray(output, "Jacobian"), i);
+    const Point counts = j * VectorOf(PointArray(this->Cloud, "Counts"), i);
+    worst.Take(Distance(VectorOf(PointArray(output, "Counts"), i), counts), 1e-12 * Norm(counts));
+    const Point velocity = j * VectorOf(PointArray(this->Cloud, "FloatVelocity"), i);
+    worst.Take(
+      Distance(VectorOf(PointArray(output, "FloatVelocity"), i), velocity), 1e-6 * Norm(velocity));
+  }
+  EXPECT_LE(worst.OverBound, 1.0);
+
+  // Integer vectors are carried if they are the active ones, too.
+  this->Cloud->GetPointData()->SetVectors(
+    RandomArray<vtkShortArray>("ShortVectors", 3, this->Cloud->GetNumberOfPoints(), 121));
+  this->Filter->ClearAttributeTransformations();
+  output = Output(this->Filter);
+  EXPECT_EQ(PointArray(output, "ShortVectors")->GetDataType(), VTK_DOUBLE);
+  EXPECT_EQ(PointArray(output, "ShortVectors"), output->GetPointData()->GetVectors());
+  EXPECT_EQ(PointArray(output, "Counts")->GetDataType(), VTK_INT);
+}
+
+TEST_P(Transport, OutsideIsNotANumber)
+{
+  const MeshPair pair = MakePlanarPair(6, 465);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(12, 12, 1);
+  image->SetOrigin(-1.4, -0.4, 0.0);
+  image->SetSpacing(0.7, 0.7, 1.0);
+  const vtkIdType points = image->GetNumberOfPoints();
+  const vtkIdType cells = image->GetNumberOfCells();
+  image->GetPointData()->SetVectors(RandomArray("Vectors", 3, points, 130));
+  image->GetPointData()->SetNormals(RandomArray("Normals", 3, points, 131));
+  image->GetPointData()->SetTensors(RandomArray("Tensors", 9, points, 132));
+  image->GetPointData()->AddArray(RandomArray("Stress", 6, points, 133));
+  image->GetPointData()->AddArray(RandomArray<vtkIntArray>("Counts", 3, points, 134));
+  image->GetPointData()->AddArray(RandomArray("Untouched", 3, points, 135));
+  image->GetCellData()->SetVectors(RandomArray("Flux", 3, cells, 136));
+  const auto filter = MakeFilter(GetParam(), pair, image);
+  filter->SetAttributeTransformation(
+    "Stress", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
+  filter->SetAttributeTransformation(
+    "Counts", vtkDifferentiableHomeomorphism::TANGENT_TRANSFORMATION);
+  vtkPointSet* output = Output(filter);
+  vtkDataArray* mask = PointArray(output, "vtkValidPointMask");
+  EXPECT_GT(filter->GetNumberOfOutsidePoints(), 10);
+  for (const char* name : { "Vectors", "Normals", "Tensors", "Stress", "Counts", "Untouched" })
+  {
+    vtkDataArray* array = PointArray(output, name);
+    const bool untouched = name == std::string("Untouched");
+    for (vtkIdType i = 0; i < points; ++i)
+    {
+      for (int k = 0; k < array->GetNumberOfComponents(); ++k)
+      {
+        ASSERT_EQ(
+          std::isnan(array->GetComponent(i, k)), mask->GetComponent(i, 0) == 0.0 && !untouched)
+          << name;
+      }
+    }
+  }
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < cells; ++cell)
+  {
+    image->GetCellPoints(cell, ids);
+    Point mean{};
+    for (const vtkIdType i : *ids)
+    {
+      mean = mean + 0.25 * PointOf(image, i);
+    }
+    const bool isOutside = mean[0] < 0.0 || mean[0] > 6.0 || mean[1] < 0.0 || mean[1] > 6.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      ASSERT_EQ(std::isnan(output->GetCellData()->GetVectors()->GetComponent(cell, k)), isOutside);
+    }
+  }
+}
+
+TEST_P(Transport, HeightsInSpaceAreCarriedToo)
+{
+  // A map of the plane leaves what points along its normal alone.
+  const MeshPair pair = MakePlanarPair(6, 470);
+  const auto cloud = MakeCloud(pair.Source, InnerPlaces(pair.Source, 500, 137, 1e-3));
+  vtkNew<vtkDoubleArray> up;
+  up->SetName("Up");
+  up->SetNumberOfComponents(3);
+  for (int i = 0; i < 500; ++i)
+  {
+    up->InsertNextTuple3(0.0, 0.0, 1.0);
+  }
+  cloud->GetPointData()->SetVectors(up);
+  const auto filter = MakeFilter(GetParam(), pair, cloud);
+  EXPECT_EQ(CountDifferentValues(PointArray(Output(filter), "Up"), up), 0);
+}
+
+} // namespace

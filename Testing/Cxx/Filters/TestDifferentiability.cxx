@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The counterexample of Documentation/differentiability.md, with the numbers that stand there: from
+// the map's values, from the library's closed form, and by the formulas of the text, written out
+// here.
+
+#include "TestMeshes.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkHomeomorphismTransform.h"
+#include "vtkJacobianContinuity.h"
+#include "vtkMath.h"
+#include "vtkPointData.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+namespace
+{
+
+using namespace test_meshes;
+
+/// Two triangles on the edge from (-2, 0) to (2, 0); in the target the upper apex is pulled up.
+MeshPair MakeCounterexample()
+{
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };
+  return { MakeMesh({ { -2, 0, 0 }, { 2, 0, 0 }, { 0, 3, 0 }, { 0, -3, 0 } }, triangles),
+    MakeMesh({ { -2, 0, 0 }, { 2, 0, 0 }, { 0, 6, 0 }, { 0, -3, 0 } }, triangles) };
+}
+
+vtkSmartPointer<vtkHomeomorphismTransform> MakeMap(int coordinateSystem)
+{
+  const MeshPair pair = MakeCounterexample();
+  auto map = vtkSmartPointer<vtkHomeomorphismTransform>::New();
+  map->SetSource(pair.Source);
+  map->SetTarget(pair.Target);
+  map->SetCoordinateSystem(coordinateSystem);
+  return map;
+}
+
+std::array<double, 2> Image(vtkHomeomorphismTransform* map, double x, double y)
+{
+  const double point[3] = { x, y, 0.0 };
+  double image[3];
+  map->TransformPoint(point, image);
+  return { image[0], image[1] };
+}
+
+/// The contour of a half edge that ends at a distance from the foot, by the formulas of the text:
+/// its length. Bisection, so as to share nothing with the library.
+double ContourLength(double h, double b, double edgePoint)
+{
+  double lower = 0.0;
+  double upper = 1.0;
+  const auto radius = [=](double s) { return std::hypot(h * (1.0 + s), 2.0 * b * s); };
+  for (int i = 0; i < 200; ++i)
+  {
+    const double s = 0.5 * (lower + upper);
+    const double end = b * s * (1.0 + h * (1.0 - s) / (radius(s) + h * (1.0 + s)));
+    (end < edgePoint ? lower : upper) = s;
+  }
+  const double s = 0.5 * (lower + upper);
+  const double turn = std::atan2(2.0 * b * s, h * (1.0 + s));
+  const double arc = s > 1e-12 ? h * (1.0 - s) * radius(s) / (4.0 * b * s) * turn : 0.5 * h;
+  return 0.5 * radius(s) + arc;
+}
+
+struct PlaceOnEdge
+{
+  double Proportion;
+  double DerivativeFromAbove;
+  double Jump;
+};
+
+constexpr std::array<PlaceOnEdge, 3> places{ { { 1.0 / 2.0, 2.0, 0.55470 },
+  { 2.0 / 3.0, 1.73095, 0.43188 }, { 5.0 / 6.0, 1.42977, 0.27313 } } };
+
+TEST(Answer, TheMapOnTheMiddleLine)
+{
+  const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
+  for (int i = 0; i <= 16; ++i)
+  {
+    const double y = i / 16.0;
+    EXPECT_NEAR(Image(map, 0.0, y)[0], 0.0, 1e-15);
+    EXPECT_NEAR(Image(map, 0.0, y)[1], 2.0 * y, 4e-15);
+    EXPECT_NEAR(Image(map, 0.0, -y)[0], 0.0, 1e-15);
+    EXPECT_NEAR(Image(map, 0.0, -y)[1], -y, 4e-15);
+  }
+}
+
+TEST(Answer, TheDerivativeFromTheTwoSides)
+{
+  const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
+  for (const PlaceOnEdge& surfacePoint : places)
+  {
+    const double x = -2.0 + 4.0 * surfacePoint.Proportion;
+    EXPECT_NEAR(ContourLength(2.0, 2.0, x) / ContourLength(1.0, 2.0, x),
+      surfacePoint.DerivativeFromAbove, 5e-6);
+    constexpr double step = 1e-7;
+    EXPECT_NEAR(Image(map, x, step)[1] / step, surfacePoint.DerivativeFromAbove, 6e-6);
+    EXPECT_NEAR(Image(map, x, -step)[1] / -step, 1.0, 1e-6);
+  }
+  EXPECT_NEAR(
+    ContourLength(2.0, 2.0, 2.0 - 1e-9) / ContourLength(1.0, 2.0, 2.0 - 1e-9), 1.26491, 5e-6);
+}
+
+TEST(Answer, TheInstrumentAgrees)
+{
+  const MeshPair pair = MakeCounterexample();
+  vtkNew<vtkJacobianContinuity> filter;
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->SetCoordinateSystem(vtkJacobianContinuity::CONTOUR);
+  filter->Update();
+  ASSERT_EQ(filter->GetOutput()->GetNumberOfCells(), 1);
+  EXPECT_EQ(filter->GetNumberOfCreases(), 1);
+  vtkDataArray* jump = filter->GetOutput()->GetPointData()->GetArray("JacobianJump");
+  vtkDataArray* exact = filter->GetOutput()->GetPointData()->GetArray("JacobianJumpExact");
+  // The five samples are at sixths of the edge, in either direction: it is symmetric.
+  for (int i = 0; i < 3; ++i)
+  {
+    EXPECT_NEAR(jump->GetTuple1(3 + i), places[i].Jump, 5e-6);
+    EXPECT_NEAR(exact->GetTuple1(3 + i), places[i].Jump, 5e-6);
+    EXPECT_NEAR(jump->GetTuple1(3 - i), places[i].Jump, 5e-6);
+  }
+  EXPECT_NEAR(jump->GetTuple1(3), 2.0 / std::sqrt(13.0), 1e-8);
+}
+
+TEST(Answer, SmoothHasNoSuchJump)
+{
+  const MeshPair pair = MakeCounterexample();
+  vtkNew<vtkJacobianContinuity> filter;
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->SecondDerivativesOn();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 1);
+  EXPECT_EQ(filter->GetOutput()->GetCellData()->GetArray("SecondDerivativeVerdict")->GetTuple1(0),
+    vtkJacobianContinuity::DIFFERENTIABLE);
+}
+
+TEST(Answer, DirectionsTurnAtDifferentRatesBesideASpoke)
+{
+  // kappa of the text.
+  const auto kappa = [](double rho, double h, double edge) {
+    return rho * rho * (2.0 * rho + h) / (h * (rho + h) * edge);
+  };
+  const double rho = std::sqrt(5.0);
+  const double rhoOfImage = std::sqrt(8.0);
+  const double besideAB = kappa(rho, 1.0, 4.0) / kappa(rhoOfImage, 2.0, 4.0);
+  const double besideCA = kappa(rho, 4.0 / std::sqrt(13.0), std::sqrt(13.0)) /
+    kappa(rhoOfImage, 8.0 / std::sqrt(40.0), std::sqrt(40.0));
+  EXPECT_NEAR(besideAB, 1.33292, 5e-6);
+  EXPECT_NEAR(besideCA, 1.23330, 5e-6);
+
+  // The same from the map's values: a small turn to either side of the way from the centroid (0, 1)
+  // to A = (-2, 0).
+  const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
+  const double direction = std::atan2(-1.0, -2.0);
+  const auto directionOfImage = [&](double turn) {
+    constexpr double distance = 0.25;
+    const auto image = Image(
+      map, distance * std::cos(direction + turn), 1.0 + distance * std::sin(direction + turn));
+    return std::atan2(image[1] - 2.0, image[0]);
+  };
+  constexpr double turn = 1e-6;
+  const double straight = directionOfImage(0.0);
+  EXPECT_NEAR(straight, std::atan2(-2.0, -2.0), 1e-14);
+  // Turning counterclockwise leads to the side of AB, clockwise to that of CA.
+  EXPECT_NEAR((directionOfImage(turn) - straight) / turn, besideAB, 1e-5);
+  EXPECT_NEAR((straight - directionOfImage(-turn)) / turn, besideCA, 1e-5);
+}
+
+TEST(Answer, KinksOfContourAreWhereTheTextPutsThem)
+{
+  const MeshPair pair = MakeCounterexample();
+  for (const int center : { vtkJacobianContinuity::CENTROID, vtkJacobianContinuity::INCENTER })
+  {
+    vtkNew<vtkJacobianContinuity> filter;
+    filter->SetSourceData(pair.Source);
+    filter->SetTargetData(pair.Target);
+    filter->SetCoordinateSystem(vtkJacobianContinuity::CONTOUR);
+    filter->SetCenterPoint(center);
+    filter->SpokesOn();
+    filter->WingSegmentsOn();
+    filter->CenterSegmentsOn();
+    filter->CentroidsOn();
+    filter->Update();
+    EXPECT_EQ(
+      filter->GetNumberOfFeatures(vtkJacobianContinuity::EDGE, vtkJacobianContinuity::CREASE), 1);
+    // The upper triangle is stretched, the lower one is not. To either side of the spoke to the
+    // upper corner, directions turn alike, but distances grow to both sides.
+    EXPECT_EQ(
+      filter->GetNumberOfFeatures(vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::CREASE), 3);
+    EXPECT_EQ(filter->GetNumberOfFeatures(
+                vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::DIFFERENTIABLE),
+      3);
+    EXPECT_EQ(filter->GetNumberOfFeatures(
+                vtkJacobianContinuity::TRIANGLE_CENTER, vtkJacobianContinuity::CREASE),
+      1);
+    EXPECT_EQ(filter->GetNumberOfFeatures(
+                vtkJacobianContinuity::WING_SEGMENT, vtkJacobianContinuity::CREASE),
+      0);
+    EXPECT_EQ(filter->GetNumberOfFeatures(
+                vtkJacobianContinuity::CENTER_SEGMENT, vtkJacobianContinuity::CREASE),
+      0);
+  }
+}
+
+} // namespace

@@ -1,0 +1,968 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Maps as many points as asked for, in the meanest meshes and at the meanest places, and compares
+// what happens with the limits that Documentation/accuracy.md states. The result depends on the
+// seed and on the number of points alone, not on the number of threads.
+//
+//   StressTest [--points N] [--seconds S] [--seed N] [--system NAME] [--family NAME] [--threads N]
+//   StressTest --reproduce SYSTEM FAMILY CASE [--seed N]
+
+#include "StressMeshes.h"
+
+#include "Kernel/ExactSign.h"
+#include "Mesh/Homeomorphism.h"
+
+#include "vtkCellArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSMPTools.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace
+{
+
+using namespace homeomorphism_stress;
+using homeomorphism::ChartedTriangulation;
+using homeomorphism::Domain;
+using homeomorphism::Homeomorphism;
+using homeomorphism::HomeomorphismOptions;
+using homeomorphism::Jacobian;
+using homeomorphism::MeshDiagnostics;
+using homeomorphism::MeshGeometry;
+using homeomorphism::Opposite;
+using homeomorphism::SurfacePoint;
+using homeomorphism::TriangleIndex;
+using homeomorphism::Vector3;
+
+constexpr double HalfUlp = Ulp / 2.0;
+constexpr int PointsPerCase = 256;
+
+/// What is measured. Each is compared with 1: the limits are in Measure().
+enum Quantity
+{
+  LOCATION,
+  INSIDE,
+  ROUND_TRIP,
+  DETERMINANT,
+  ORIENTATION,
+  NUMBER_OF_QUANTITIES
+};
+
+constexpr std::array<const char*, NUMBER_OF_QUANTITIES> QuantityNames{ "location", "image inside",
+  "round trip", "det J", "orientation" };
+
+// The constants of the limits, see Documentation/accuracy.md.
+constexpr double LocationLimit = 16.0;
+constexpr double InsideLimit = 8.0;
+constexpr double RoundTripLimit = 128.0;
+
+struct Worst
+{
+  double Value = 0.0;
+  std::int64_t Case = -1;
+  int Point = -1;
+
+  void Take(double value, std::int64_t number, int point)
+  {
+    // NaN is the worst of all.
+    if (std::isnan(value))
+    {
+      value = std::numeric_limits<double>::infinity();
+    }
+    if (this->Case < 0 || value > this->Value || (value == this->Value && number < this->Case))
+    {
+      *this = { value, number, point };
+    }
+  }
+  void Take(const Worst& other)
+  {
+    if (other.Case >= 0)
+    {
+      this->Take(other.Value, other.Case, other.Point);
+    }
+  }
+};
+
+struct Report
+{
+  std::array<Worst, NUMBER_OF_QUANTITIES> Worsts;
+  std::int64_t Pairs = 0;
+  std::int64_t Refused = 0;
+  std::int64_t Points = 0;
+  std::int64_t Oriented = 0;
+  std::int64_t Lost = 0;
+  std::int64_t FirstLost = -1;
+  int LostPoint = -1;
+
+  void Take(const Report& other)
+  {
+    for (int q = 0; q < NUMBER_OF_QUANTITIES; ++q)
+    {
+      this->Worsts[q].Take(other.Worsts[q]);
+    }
+    this->Pairs += other.Pairs;
+    this->Refused += other.Refused;
+    this->Points += other.Points;
+    this->Oriented += other.Oriented;
+    this->Lost += other.Lost;
+    if (other.FirstLost >= 0 && (this->FirstLost < 0 || other.FirstLost < this->FirstLost))
+    {
+      this->FirstLost = other.FirstLost;
+      this->LostPoint = other.LostPoint;
+    }
+  }
+};
+
+vtkSmartPointer<vtkPolyData> MakeMesh(const std::vector<Vector2>& points, const Triangles& cells)
+{
+  vtkNew<vtkPoints> meshPoints;
+  meshPoints->SetDataTypeToDouble();
+  for (const Vector2& p : points)
+  {
+    meshPoints->InsertNextPoint(p.x, p.y, 0.0);
+  }
+  vtkNew<vtkCellArray> polygons;
+  for (const auto& cell : cells)
+  {
+    polygons->InsertNextCell({ cell[0], cell[1], cell[2] });
+  }
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->SetPoints(meshPoints);
+  mesh->SetPolys(polygons);
+  return mesh;
+}
+
+double StepsAside(double x, int count)
+{
+  for (int i = 0; i < std::abs(count); ++i)
+  {
+    x = std::nextafter(x, count > 0 ? 1e308 : -1e308);
+  }
+  return x;
+}
+
+/// One pair of meshes, its map, and the places in it.
+class Case
+{
+public:
+  Case(const TestedSystem& system, int family, std::uint64_t seed, std::int64_t number)
+    : System(system)
+    , Random(Mixed(seed, system, family, number))
+    , Number(number)
+  {
+    // Half of the pairs of some families overlap or lose a triangle to rounding.
+    for (int i = 0; i < 64 && !this->Map; ++i)
+    {
+      this->Pair = AnyPair(this->Random, family, system);
+      const auto source = MakeMesh(this->Pair.Points[0], this->Pair.Cells);
+      const auto target = MakeMesh(this->Pair.Points[1], this->Pair.Cells);
+      HomeomorphismOptions options;
+      options.System = system.System;
+      options.Center = system.Center;
+      MeshDiagnostics problems;
+      this->Map = Homeomorphism::Make(source, target, options, problems);
+      this->Result.Refused += !this->Map;
+    }
+  }
+
+  /// Measures all points; describes point number @a told, if any.
+  const Report& Run(int told = -1)
+  {
+    if (!this->Map)
+    {
+      return this->Result;
+    }
+    this->Result.Pairs = 1;
+    for (int i = 0; i < PointsPerCase; ++i)
+    {
+      const Domain from = this->Random.Chance(0.5) ? Domain::Source : Domain::Target;
+      const auto triangle =
+        static_cast<TriangleIndex>(this->Random.Below(static_cast<int>(this->Pair.Cells.size())));
+      const Vector3 point = this->AnyPoint(from, triangle);
+      this->Told = i == told;
+      this->Measure(i, from, triangle, point);
+    }
+    return this->Result;
+  }
+
+  void PrintMeshes() const
+  {
+    for (int domain = 0; domain < 2; ++domain)
+    {
+      std::cout << (domain ? "target" : "source") << " points:\n";
+      for (const Vector2& p : this->Pair.Points[domain])
+      {
+        std::cout << "  " << p.x << ", " << p.y << "\n";
+      }
+    }
+    std::cout << "triangles:";
+    for (const auto& cell : this->Pair.Cells)
+    {
+      std::cout << " (" << cell[0] << " " << cell[1] << " " << cell[2] << ")";
+    }
+    std::cout << "\n";
+  }
+
+private:
+  static std::uint64_t Mixed(
+    std::uint64_t seed, const TestedSystem& system, int family, std::int64_t number)
+  {
+    std::uint64_t x = seed;
+    for (const std::uint64_t part :
+      { static_cast<std::uint64_t>(system.System), static_cast<std::uint64_t>(system.Center),
+        static_cast<std::uint64_t>(family), static_cast<std::uint64_t>(number) })
+    {
+      // splitmix64
+      x += 0x9e3779b97f4a7c15u * (part + 1);
+      x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+      x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+      x ^= x >> 31;
+    }
+    return x;
+  }
+
+  const MeshGeometry& GeometryOf(Domain domain) const
+  {
+    return this->Map->GetPair().GetGeometry(domain);
+  }
+
+  /// A triangle's corners in normalized coordinates.
+  Corners CornersOf(Domain domain, TriangleIndex triangle) const
+  {
+    Corners corners;
+    for (int k = 0; k < 3; ++k)
+    {
+      corners[k] = this->GeometryOf(domain).GetPlanePoint(
+        this->Map->GetPair().GetTriangulation().GetCorners(triangle)[k]);
+    }
+    return corners;
+  }
+
+  static Vector2 Combined(const Corners& corners, const Barycentric& l)
+  {
+    return { l[0] * corners[0].x + l[1] * corners[1].x + l[2] * corners[2].x,
+      l[0] * corners[0].y + l[1] * corners[1].y + l[2] * corners[2].y };
+  }
+
+  /// A place in the input's coordinates: anywhere, on and within a few ulp of where formulas
+  /// change.
+  Vector3 AnyPoint(Domain domain, TriangleIndex triangle)
+  {
+    RandomNumbers& random = this->Random;
+    const MeshGeometry& geometry = this->GeometryOf(domain);
+    const Corners corners = this->CornersOf(domain, triangle);
+    Vector2 normalized;
+    const int kind = random.Below(10);
+    const int k = random.Below(3);
+    const double proportion = random.Proportion();
+    switch (kind)
+    {
+      case 0:
+      case 1:
+        normalized = Combined(corners, AnyBarycentric(random));
+        break;
+      case 2:
+        // Close to an edge or a vertex by any power of ten.
+        normalized = Combined(corners,
+          LinearChart(geometry.GetShape(triangle))
+            .FromCoordinates({ k + 1, proportion, 1.0 - random.PowerOfTen(-18.0, 0.0) }));
+        break;
+      case 3:
+        normalized = corners[k];
+        break;
+      case 4:
+      case 5:
+      {
+        Barycentric l{};
+        l[NextCorner(k)] = 1.0 - proportion;
+        l[PreviousCorner(k)] = proportion;
+        normalized = Combined(corners, l);
+        break;
+      }
+      case 6:
+        normalized = Combined(corners, { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 });
+        break;
+      case 7:
+      {
+        // Between the centroid and a vertex.
+        Barycentric l;
+        l.fill((1.0 - proportion) / 3.0);
+        l[k] += proportion;
+        normalized = Combined(corners, l);
+        break;
+      }
+      default:
+        normalized = this->OnLineOfTheSystem(domain, triangle, corners, k, proportion);
+    }
+    Vector3 point;
+    geometry.FromNormalized({ normalized.x, normalized.y, 0.0 }, point.data());
+    if (random.Chance(0.5))
+    {
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        point[axis] = StepsAside(point[axis], random.Integer(-4, 4));
+      }
+    }
+    return point;
+  }
+
+  Vector2 OnLineOfTheSystem(
+    Domain domain, TriangleIndex triangle, const Corners& corners, int k, double proportion) const
+  {
+    const ChartedTriangulation& charts = this->Map->GetCharts(domain);
+    switch (this->System.System)
+    {
+      case homeomorphism::CoordinateSystem::Smooth:
+        return Combined(
+          corners, OnStripBorder(k, charts.GetSmoothChart(triangle).StripWidth(k), proportion));
+      case homeomorphism::CoordinateSystem::Contour:
+      {
+        // A wing segment, in the triangle's frame.
+        const homeomorphism::ContourChart& chart = charts.GetContourChart(triangle);
+        const MeshGeometry& geometry = this->GeometryOf(domain);
+        const Vector2 middle = 0.5 * (chart.Center() + chart.Foot(k + 1));
+        const Vector2 end =
+          geometry.GetShape(triangle).Corner(proportion < 0.3 ? NextCorner(k) : PreviousCorner(k));
+        const Vector3 normalized =
+          geometry.FromFrame(triangle, { (1.0 - proportion) * middle + proportion * end, 0.0 });
+        return { normalized[0], normalized[1] };
+      }
+      default:
+        return Combined(corners, { 0.5, 0.25, 0.25 });
+    }
+  }
+
+  SurfacePoint Locate(Domain domain, const Vector3& point, TriangleIndex hint) const
+  {
+    return this->Map->Locate(
+      domain, point.data(), this->Map->GetAbsoluteTolerance(domain, 0.0, HalfUlp), hint);
+  }
+
+  /// The derivative in normalized coordinates, and its determinant.
+  struct Derivative
+  {
+    Matrix2 Matrix;
+    double Determinant;
+
+    double Norm() const { return homeomorphism_test::Norm(this->Matrix); }
+    double InverseNorm() const { return this->Norm() / std::abs(this->Determinant); }
+    Vector2 operator*(const Vector2& v) const
+    {
+      return v.x * this->Matrix.ImageOfX + v.y * this->Matrix.ImageOfY;
+    }
+  };
+
+  Derivative DerivativeAt(Domain from, const SurfacePoint& surfacePoint) const
+  {
+    const Jacobian jacobian = this->Map->GetJacobian(from, surfacePoint);
+    const double rescale =
+      this->GeometryOf(Opposite(from)).GetScale() / this->GeometryOf(from).GetScale();
+    const auto& m = jacobian.Matrix;
+    return { { { rescale * m[0], rescale * m[3] }, { rescale * m[1], rescale * m[4] } },
+      jacobian.Determinant * rescale * rescale };
+  }
+
+  /// The size of numbers in a triangle: the largest coordinate of its corners, and not less than
+  /// the least normal number of the input, below which numbers are coarser.
+  double SizeOf(Domain domain, TriangleIndex triangle) const
+  {
+    const Corners corners = this->CornersOf(domain, triangle);
+    double size = std::numeric_limits<double>::min() * this->GeometryOf(domain).GetScale();
+    for (const Vector2& p : corners)
+    {
+      size = std::max({ size, std::abs(p.x), std::abs(p.y) });
+    }
+    return size;
+  }
+
+  /// How much a triangle's chart stretches the reference, over its longest edge; at least 1.
+  double StretchAt(Domain domain, const SurfacePoint& surfacePoint, const Barycentric& l) const
+  {
+    return Magnification(this->Map->GetCharts(domain).GetSmoothChart(surfacePoint.Triangle),
+      this->GeometryOf(domain).GetShape(surfacePoint.Triangle), l);
+  }
+
+  static double DistanceOutside(const Corners& corners, const Vector2& point)
+  {
+    const int sign = Orientation(corners[0], corners[1], corners[2]);
+    double nearest = std::numeric_limits<double>::infinity();
+    bool inside = true;
+    for (int k = 0; k < 3; ++k)
+    {
+      Vector2 start = corners[NextCorner(k)];
+      Vector2 end = corners[PreviousCorner(k)];
+      inside = inside && sign * Orientation(start, end, point) >= 0;
+      // Measured from the nearer end, lest rounding of the edge's length counts.
+      if (Norm(point - end) < Norm(point - start))
+      {
+        std::swap(start, end);
+      }
+      const Vector2 edge = end - start;
+      const double length = Norm(edge);
+      const Vector2 d = point - start;
+      const double along = std::min(1.0, std::max(0.0, Dot(d, (1.0 / length) * edge) / length));
+      nearest = std::min(nearest, Norm(d - along * edge));
+    }
+    // Written so that NaN counts as outside.
+    return inside ? 0.0 : nearest;
+  }
+
+  double DistanceFromDomain(Domain domain, const Vector3& point) const
+  {
+    const Vector3 w = this->GeometryOf(domain).ToNormalized(point.data());
+    double nearest = std::numeric_limits<double>::infinity();
+    for (TriangleIndex t = 0; t < static_cast<TriangleIndex>(this->Pair.Cells.size()); ++t)
+    {
+      nearest = std::min(nearest, DistanceOutside(this->CornersOf(domain, t), { w[0], w[1] }));
+    }
+    return nearest;
+  }
+
+  Vector3 Image(Domain from, const SurfacePoint& surfacePoint) const
+  {
+    Vector3 image;
+    this->Map->MapPoint(from, surfacePoint, image.data());
+    return image;
+  }
+
+  Vector2 WorkingImage(Domain from, const SurfacePoint& surfacePoint) const
+  {
+    const Vector3 w =
+      this->GeometryOf(Opposite(from)).ToNormalized(this->Image(from, surfacePoint).data());
+    return { w[0], w[1] };
+  }
+
+  void Take(Quantity quantity, double value, int i)
+  {
+    this->Result.Worsts[quantity].Take(value, this->Number, i);
+    if (this->Told)
+    {
+      std::cout << QuantityNames[quantity] << ": " << value << " of its limit\n";
+    }
+  }
+
+  void Lose(int i)
+  {
+    ++this->Result.Lost;
+    this->Result.FirstLost = this->Number;
+    this->Result.LostPoint = i;
+  }
+
+  void Measure(int i, Domain from, TriangleIndex triangle, const Vector3& point)
+  {
+    const Domain to = Opposite(from);
+    const MeshGeometry& source = this->GeometryOf(from);
+    const MeshGeometry& target = this->GeometryOf(to);
+    ++this->Result.Points;
+    const SurfacePoint surfacePoint = this->Locate(from, point, triangle);
+    if (this->Told)
+    {
+      std::cout << "point " << i << " of the " << (from == Domain::Source ? "source" : "target")
+                << ": " << point[0] << ", " << point[1] << ", made in triangle " << triangle
+                << ", found in " << surfacePoint.Triangle << "\n";
+    }
+    if (surfacePoint.Triangle < 0)
+    {
+      // A few ulp aside is outside if it is farther than the reach, which is itself rounded.
+      if (!(this->DistanceFromDomain(from, point) >
+            0.25 * this->Map->GetAbsoluteTolerance(from, 0.0, HalfUlp)))
+      {
+        this->Lose(i);
+      }
+      return;
+    }
+
+    // Where it was put: points outside by rounding go to the nearest point of the domain.
+    const Vector3 w = source.ToNormalized(point.data());
+    const Vector3 p = source.FromFrame(surfacePoint.Triangle, surfacePoint.Point);
+    const Vector2 start{ p[0], p[1] };
+    this->Take(LOCATION,
+      Norm(start - Vector2{ w[0], w[1] }) /
+        (LocationLimit * HalfUlp * source.GetLargestCoordinate()),
+      i);
+
+    // The image lies in the triangle's counterpart.
+    const Vector3 image = this->Image(from, surfacePoint);
+    const Vector3 imageWorking = target.ToNormalized(image.data());
+    const Vector2 y{ imageWorking[0], imageWorking[1] };
+    const Corners imageCorners = this->CornersOf(to, surfacePoint.Triangle);
+    const double targetSize = this->SizeOf(to, surfacePoint.Triangle);
+    this->Take(INSIDE, DistanceOutside(imageCorners, y) / (InsideLimit * HalfUlp * targetSize), i);
+
+    // The determinant is positive, or negative if the pair is mirrored, as rounding to millimeters
+    // does to some.
+    const Derivative derivative = this->DerivativeAt(from, surfacePoint);
+    const Corners corners = this->CornersOf(from, surfacePoint.Triangle);
+    const int sense = Orientation(corners[0], corners[1], corners[2]) *
+      Orientation(imageCorners[0], imageCorners[1], imageCorners[2]);
+    this->Take(DETERMINANT,
+      sense * derivative.Determinant > 0.0 && std::isfinite(derivative.Determinant) &&
+          std::isfinite(derivative.Norm())
+        ? 0.0
+        : std::numeric_limits<double>::infinity(),
+      i);
+
+    this->MeasureRoundTrip(i, from, surfacePoint, start, image, derivative);
+    this->MeasureOrientation(i, from, surfacePoint, targetSize);
+  }
+
+  void MeasureRoundTrip(int i, Domain from, const SurfacePoint& surfacePoint, const Vector2& start,
+    const Vector3& image, const Derivative& derivative)
+  {
+    const Domain to = Opposite(from);
+    const SurfacePoint there = this->Locate(to, image, -1);
+    if (this->Told)
+    {
+      std::cout << "  its image " << image[0] << ", " << image[1] << " is in triangle "
+                << there.Triangle << "\n";
+    }
+    if (there.Triangle < 0)
+    {
+      this->Lose(i);
+      return;
+    }
+    const Vector2 back = this->WorkingImage(to, there);
+    double sourceStretch = 1.0;
+    double targetStretch = 1.0;
+    if (this->System.System == homeomorphism::CoordinateSystem::Smooth)
+    {
+      const Barycentric l = this->Map->GetCharts(from)
+                              .GetSmoothChart(surfacePoint.Triangle)
+                              .ToReference(surfacePoint.Point.InPlane);
+      sourceStretch = this->StretchAt(from, surfacePoint, l);
+      targetStretch = this->StretchAt(to, surfacePoint, l);
+    }
+    const double error = Norm(back - start);
+    // Rounding may have put the image into a neighbor.
+    const auto sizeOf = [&](Domain domain) {
+      return std::max(
+        this->SizeOf(domain, surfacePoint.Triangle), this->SizeOf(domain, there.Triangle));
+    };
+    const double sourceSize = sizeOf(from) * sourceStretch;
+    const double stretchedSize = sizeOf(to) * targetStretch;
+    const double inverseNorm = derivative.InverseNorm();
+    double limit = RoundTripLimit * HalfUlp * (sourceSize + inverseNorm * stretchedSize);
+    if (!(error <= limit))
+    {
+      // Where the derivative changes within the rounding of the image, what a change of the image
+      // by rounding amounts to is the limit.
+      limit += 4.0 * this->LargestShiftNear(to, image, 32.0 * HalfUlp * stretchedSize, back);
+    }
+    this->Take(ROUND_TRIP, error / limit, i);
+    if (this->Told)
+    {
+      const auto first = this->Map->GetCoordinates(from, surfacePoint);
+      const auto second = this->Map->GetCoordinates(to, there);
+      std::cout << "  coordinates (" << first.Edge << ", " << first.EdgeParameter << ", "
+                << first.ContourParameter << "), there (" << second.Edge << ", "
+                << second.EdgeParameter << ", " << second.ContourParameter << ")\n"
+                << "  comes back to " << back.x / this->GeometryOf(from).GetScale() << ", "
+                << back.y / this->GeometryOf(from).GetScale() << "\n"
+                << "  round trip's error " << error << " at sizes " << sourceSize << " and "
+                << stretchedSize << ", |J^-1| " << inverseNorm << ", det J "
+                << derivative.Determinant << "\n";
+    }
+  }
+
+  /// How far the images of points at most a distance away from a point are from a place: by how
+  /// much the map from @a from's domain turns rounding into errors, however fast its derivative
+  /// changes.
+  double LargestShiftNear(
+    Domain from, const Vector3& point, double distance, const Vector2& image) const
+  {
+    const MeshGeometry& geometry = this->GeometryOf(from);
+    const Vector3 normalized = geometry.ToNormalized(point.data());
+    double largest = 0.0;
+    for (TriangleIndex t = 0; t < static_cast<TriangleIndex>(this->Pair.Cells.size()); ++t)
+    {
+      if (DistanceOutside(this->CornersOf(from, t), { normalized[0], normalized[1] }) > distance)
+      {
+        continue;
+      }
+      const homeomorphism::TriangleShape& shape = geometry.GetShape(t);
+      const Vector2 center = geometry.ToFrame(t, normalized).InPlane;
+      // A triangle may be thinner than the distance: its whole thickness counts, there.
+      for (int i = 0; i < 5; ++i)
+      {
+        const double x = std::min(shape.Base, std::max(0.0, center.x + 0.5 * (i - 2) * distance));
+        const double thickness = x < shape.ApexX
+          ? shape.Height * (x / shape.ApexX)
+          : shape.Height * ((shape.Base - x) / (shape.Base - shape.ApexX));
+        const double lower = std::max(0.0, center.y - distance);
+        const double upper = std::min(thickness, center.y + distance);
+        for (int j = 0; j < 33 && lower <= upper; ++j)
+        {
+          SurfacePoint nearby;
+          nearby.Triangle = t;
+          nearby.Point.InPlane = { x, lower + 0.03125 * j * (upper - lower) };
+          largest = std::max(largest, Norm(this->WorkingImage(from, nearby) - image));
+        }
+      }
+    }
+    return largest;
+  }
+
+  /// The derivative from frame to frame, where a needle is as well-conditioned as any triangle.
+  Matrix2 FrameDerivativeAt(Domain from, const SurfacePoint& surfacePoint) const
+  {
+    const ChartedTriangulation& charts = this->Map->GetCharts(from);
+    const ChartedTriangulation& others = this->Map->GetCharts(Opposite(from));
+    const auto derivative = [&](const auto& chart, const auto& other) {
+      return MapDerivative(chart, other, chart.ToReference(surfacePoint.Point.InPlane));
+    };
+    switch (this->System.System)
+    {
+      case homeomorphism::CoordinateSystem::Contour:
+        return derivative(charts.GetContourChart(surfacePoint.Triangle),
+          others.GetContourChart(surfacePoint.Triangle));
+      case homeomorphism::CoordinateSystem::Smooth:
+        return derivative(charts.GetSmoothChart(surfacePoint.Triangle),
+          others.GetSmoothChart(surfacePoint.Triangle));
+      default:
+        return derivative(charts.GetLinearChart(surfacePoint.Triangle),
+          others.GetLinearChart(surfacePoint.Triangle));
+    }
+  }
+
+  static Vector2 Times(const Matrix2& matrix, const Vector2& v)
+  {
+    return v.x * matrix.ImageOfX + v.y * matrix.ImageOfY;
+  }
+
+  /// Maps a triangle around the place, so small that the map is almost affine on it and so large
+  /// that rounding does not matter, and looks at its orientation.
+  void MeasureOrientation(int i, Domain from, const SurfacePoint& surfacePoint, double targetSize)
+  {
+    const homeomorphism::TriangleShape& shape =
+      this->GeometryOf(from).GetShape(surfacePoint.Triangle);
+    const Barycentric l = shape.ToBarycentric(surfacePoint.Point.InPlane);
+    const double room = std::min({ l[0], l[1], l[2] });
+    const int turn = this->Random.Below(2);
+    // The frame's orientation is the corners', whatever their order in the plane.
+    const double handedness = this->GeometryOf(Opposite(from)).GetHandedness(surfacePoint.Triangle);
+    const double rounding = 64.0 * HalfUlp * targetSize;
+    constexpr int tries = 16;
+    for (int attempt = 0; attempt < tries; ++attempt)
+    {
+      const double size = std::ldexp(room, -6 - 3 * attempt);
+      if (size < 1e-13)
+      {
+        return;
+      }
+      // The corners, and the middles of the edges.
+      constexpr int count = 6;
+      std::array<SurfacePoint, count> places;
+      std::array<Matrix2, count> derivatives;
+      std::array<int, count> edges{};
+      for (int k = 0; k < count; ++k)
+      {
+        Barycentric moved = l;
+        const double step = k < 3 ? size : -0.5 * size;
+        moved[k % 3] += step;
+        moved[(k % 3 + 1 + turn) % 3] -= step;
+        places[k].Triangle = surfacePoint.Triangle;
+        places[k].Point.InPlane = shape.FromBarycentric(moved);
+        derivatives[k] = this->FrameDerivativeAt(from, places[k]);
+        if (this->System.System == homeomorphism::CoordinateSystem::Contour)
+        {
+          edges[k] = this->Map->GetCoordinates(from, places[k]).Edge;
+        }
+      }
+      if (std::count(edges.begin(), edges.end(), edges[0]) < count)
+      {
+        continue;
+      }
+      const Vector2& corner = places[0].Point.InPlane;
+      const Vector2 first = places[1].Point.InPlane - corner;
+      const Vector2 second = places[2].Point.InPlane - corner;
+      // What rounding leaves of the triangle itself: as much of a needle as of any triangle, but
+      // for Contour, whose frames are those of the edges.
+      const double area = Cross(first, second);
+      if (area < 1e-3 * size * size * shape.Base * shape.Height ||
+        (this->System.System == homeomorphism::CoordinateSystem::Contour &&
+          area < 64.0 * HalfUlp * shape.Base * Norm(first)))
+      {
+        return;
+      }
+      // Almost affine: whichever of the derivatives is taken, the image is much the same.
+      const double predicted = Cross(Times(derivatives[0], first), Times(derivatives[0], second));
+      bool tame = predicted > 0.0;
+      double longest = 0.0;
+      for (int a = 0; a < count && tame; ++a)
+      {
+        longest = std::max(
+          { longest, Norm(Times(derivatives[a], first)), Norm(Times(derivatives[a], second)) });
+        for (int b = 0; b < count; ++b)
+        {
+          const double other = Cross(Times(derivatives[a], first), Times(derivatives[b], second));
+          tame = tame && other > 0.8 * predicted && other < 1.25 * predicted;
+        }
+      }
+      if (!tame)
+      {
+        continue;
+      }
+      // An image whose height drowns in rounding says nothing, and smaller ones less.
+      if (predicted < rounding * (longest + rounding))
+      {
+        return;
+      }
+      std::array<Vector2, 3> images;
+      for (int k = 0; k < 3; ++k)
+      {
+        images[k] = this->WorkingImage(from, places[k]);
+      }
+      ++this->Result.Oriented;
+      this->Take(ORIENTATION,
+        handedness * Orientation(images[0], images[1], images[2]) > 0.0
+          ? 0.0
+          : std::numeric_limits<double>::infinity(),
+        i);
+      if (this->Told)
+      {
+        std::cout << "  triangle of size " << size << ", area of the image "
+                  << handedness * Cross(images[1] - images[0], images[2] - images[0])
+                  << ", as predicted " << predicted << ", longest edge " << longest << "\n";
+      }
+      return;
+    }
+  }
+
+  const TestedSystem& System;
+  RandomNumbers Random;
+  std::int64_t Number;
+  PlanePair Pair;
+  std::shared_ptr<const Homeomorphism> Map;
+  Report Result;
+  bool Told = false;
+};
+
+struct Options
+{
+  double Points = 0.0;
+  double Seconds = 0.0;
+  std::uint64_t Seed = 1;
+  std::string System;
+  std::string Family;
+  int Threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::int64_t Reproduce = -1;
+};
+
+/// Runs cases of one system and family until their points or the time are used up.
+Report RunCases(
+  const Options& options, const TestedSystem& system, int family, double points, double seconds)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto enough = [&](std::int64_t number) {
+    if (points > 0.0)
+    {
+      return static_cast<double>(number) * PointsPerCase >= points;
+    }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >=
+      seconds;
+  };
+  std::atomic<std::int64_t> next{ 0 };
+  std::vector<Report> reports(options.Threads);
+  std::vector<std::thread> threads;
+  threads.reserve(reports.size());
+  for (Report& report : reports)
+  {
+    threads.emplace_back([&]() {
+      for (;;)
+      {
+        const std::int64_t number = next++;
+        if (enough(number))
+        {
+          return;
+        }
+        report.Take(Case(system, family, options.Seed, number).Run());
+      }
+    });
+  }
+  Report total;
+  for (std::size_t i = 0; i < threads.size(); ++i)
+  {
+    threads[i].join();
+    total.Take(reports[i]);
+  }
+  return total;
+}
+
+bool Print(const TestedSystem& system, int family, const Report& report)
+{
+  std::cout << "| " << system.Name << " | " << Families[family].Name << " | " << report.Pairs
+            << " | " << report.Points << " | " << report.Lost;
+  bool good = report.Lost == 0;
+  for (const int q : { LOCATION, INSIDE, ROUND_TRIP })
+  {
+    std::cout << " | " << report.Worsts[q].Value << " (" << report.Worsts[q].Case << ")";
+  }
+  std::cout << " | " << (report.Worsts[DETERMINANT].Value > 1.0 ? "NOT POSITIVE" : "positive")
+            << " | " << report.Oriented
+            << (report.Worsts[ORIENTATION].Value > 1.0 ? " NOT ALL KEPT" : "") << " |" << std::endl;
+  const auto tell = [&](const char* what, std::int64_t number) {
+    std::cout << "LIMIT BROKEN: " << what << "; StressTest --reproduce " << system.Name << " "
+              << Families[family].Name << " " << number << "\n";
+    good = false;
+  };
+  for (int q = 0; q < NUMBER_OF_QUANTITIES; ++q)
+  {
+    if (report.Worsts[q].Value > 1.0)
+    {
+      tell(QuantityNames[q], report.Worsts[q].Case);
+    }
+  }
+  if (report.Lost > 0)
+  {
+    tell("a point of the domain was not found", report.FirstLost);
+  }
+  if (report.Pairs == 0)
+  {
+    std::cout << "no valid pair was made\n";
+    good = false;
+  }
+  return good;
+}
+
+int Usage()
+{
+  std::cerr << "StressTest [--points N] [--seconds S] [--seed N] [--system NAME] [--family NAME] "
+               "[--threads N]\n"
+               "StressTest --reproduce SYSTEM FAMILY CASE [--seed N]\nSystems:";
+  for (const TestedSystem& system : Systems)
+  {
+    std::cerr << " " << system.Name;
+  }
+  std::cerr << "\nFamilies:\n";
+  for (const Family& family : Families)
+  {
+    std::cerr << "  " << family.Name << ": " << family.Description << "\n";
+  }
+  return EXIT_FAILURE;
+}
+
+bool Parse(int argc, char* argv[], Options& options)
+{
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    const int left = argc - i - 1;
+    if (option == "--reproduce" && left >= 3)
+    {
+      options.System = argv[++i];
+      options.Family = argv[++i];
+      options.Reproduce = std::atoll(argv[++i]);
+    }
+    else if (option == "--points" && left >= 1)
+    {
+      options.Points = std::atof(argv[++i]);
+    }
+    else if (option == "--seconds" && left >= 1)
+    {
+      options.Seconds = std::atof(argv[++i]);
+    }
+    else if (option == "--seed" && left >= 1)
+    {
+      options.Seed = std::strtoull(argv[++i], nullptr, 10);
+    }
+    else if (option == "--threads" && left >= 1)
+    {
+      options.Threads = std::max(1, std::atoi(argv[++i]));
+    }
+    else if (option == "--system" && left >= 1)
+    {
+      options.System = argv[++i];
+    }
+    else if (option == "--family" && left >= 1)
+    {
+      options.Family = argv[++i];
+    }
+    else
+    {
+      return false;
+    }
+  }
+  return options.Points > 0.0 || options.Seconds > 0.0 || options.Reproduce >= 0;
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  Options options;
+  if (!Parse(argc, argv, options))
+  {
+    return Usage();
+  }
+  // Threads have cases of their own; VTK's, which are not meant to be started by several threads at
+  // once, would have nothing left to do.
+  vtkSMPTools::SetBackend("Sequential");
+  std::vector<std::pair<const TestedSystem*, int>> chosen;
+  for (const TestedSystem& system : Systems)
+  {
+    for (int family = 0; family < static_cast<int>(Families.size()); ++family)
+    {
+      if ((options.System.empty() || options.System == system.Name) &&
+        (options.Family.empty() || options.Family == Families[family].Name))
+      {
+        chosen.emplace_back(&system, family);
+      }
+    }
+  }
+  if (chosen.empty())
+  {
+    return Usage();
+  }
+  if (options.Reproduce >= 0)
+  {
+    std::cout.precision(17);
+    const auto [system, family] = chosen.front();
+    const Report report = Case(*system, family, options.Seed, options.Reproduce).Run();
+    std::vector<int> points{ report.LostPoint };
+    for (const Worst& worst : report.Worsts)
+    {
+      if (std::find(points.begin(), points.end(), worst.Point) == points.end())
+      {
+        points.push_back(worst.Point);
+      }
+    }
+    Case(*system, family, options.Seed, options.Reproduce).PrintMeshes();
+    for (const int point : points)
+    {
+      Case(*system, family, options.Seed, options.Reproduce).Run(point);
+    }
+    return Print(*system, family, report) ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
+
+  std::cout.precision(3);
+  std::cout
+    << "| system | family | pairs | points | lost | location (case) | image inside (case) | "
+       "round trip (case) | det J | triangles whose orientation was kept |\n"
+       "|---|---|--:|--:|--:|--:|--:|--:|---|--:|\n";
+  const auto share = static_cast<double>(chosen.size());
+  bool good = true;
+  Report total;
+  for (const auto& [system, family] : chosen)
+  {
+    const Report report =
+      RunCases(options, *system, family, options.Points / share, options.Seconds / share);
+    total.Take(report);
+    good = Print(*system, family, report) && good;
+  }
+  std::cout << total.Points << " points in " << total.Pairs << " pairs of meshes, seed "
+            << options.Seed << ": " << (good ? "no limit broken" : "LIMITS BROKEN") << "\n";
+  return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}
