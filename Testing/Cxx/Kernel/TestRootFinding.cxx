@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "RandomTriangles.h"
+
+#include "Kernel/RootFinding.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace homeomorphism;
+using namespace homeomorphism_test;
+
+namespace
+{
+
+/// scale * (x^power - root^power) on [0, 1]: increasing, with a slope that vanishes at 0.
+template <int Width, bool AtEnds>
+struct PowerEquation : RootBatch<Width, AtEnds>
+{
+  int Evaluations = 0;
+
+  void Set(int lane, double root, double guess, double)
+  {
+    (void)root;
+    this->Start(lane, 0.0, 1.0, guess);
+  }
+
+  void Evaluate(int lane, double root, double, double power)
+  {
+    ++this->Evaluations;
+    const double x = this->Root[lane];
+    this->Step(
+      lane, std::pow(x, power) - std::pow(root, power), power * std::pow(x, power - 1.0), 0x1p-26);
+  }
+};
+
+template <bool AtEnds>
+double Solve(double root, double guess, double power)
+{
+  PowerEquation<1, AtEnds> equation;
+  SolveBatch<1>(equation, &root, &guess, &power);
+  return equation.Root[0];
+}
+
+} // namespace
+
+TEST(RootFinding, FindsTheRootFromAnyGuess)
+{
+  RandomNumbers random(11);
+  for (int i = 0; i < 10000; ++i)
+  {
+    const double root = random.Uniform(0.01, 1.0);
+    const double guess = random.Uniform(-0.5, 1.5);
+    const double power = random.Integer(1, 5);
+    EXPECT_NEAR(Solve<false>(root, guess, power), root, 8.0 * Ulp * root) << root << " " << guess;
+    EXPECT_NEAR(Solve<true>(root, guess, power), root, 8.0 * Ulp * root) << root << " " << guess;
+  }
+}
+
+TEST(RootFinding, FindsRootsAtTheEnds)
+{
+  for (const double guess : { 0.0, 0.3, 1.0 })
+  {
+    for (const double power : { 1.0, 3.0 })
+    {
+      EXPECT_EQ(Solve<true>(1.0, guess, power), 1.0);
+      EXPECT_LE(Solve<true>(0.0, guess, power), 0x1p-50);
+      EXPECT_NEAR(Solve<false>(1.0, guess, power), 1.0, 8.0 * Ulp);
+    }
+  }
+}
+
+// The solution of an equation is the same to the bit, whatever else is solved beside it.
+TEST(RootFinding, EquationsOfABatchAreIndependent)
+{
+  constexpr int width = 8;
+  RandomNumbers random(12);
+  for (int i = 0; i < 1000; ++i)
+  {
+    double roots[width];
+    double guesses[width];
+    double powers[width];
+    for (int lane = 0; lane < width; ++lane)
+    {
+      roots[lane] = random.Uniform();
+      guesses[lane] = random.Uniform();
+      powers[lane] = random.Integer(1, 4);
+    }
+    PowerEquation<width, true> batch;
+    SolveBatch<width>(batch, roots, guesses, powers);
+    for (int lane = 0; lane < width; ++lane)
+    {
+      EXPECT_EQ(batch.Root[lane], Solve<true>(roots[lane], guesses[lane], powers[lane]));
+    }
+  }
+}
+
+// Values or slopes that are not numbers must not keep the loop from ending.
+TEST(RootFinding, EndsWithoutARoot)
+{
+  struct NoRoot : RootBatch<1, true>
+  {
+    void Set(int lane) { this->Start(lane, 0.0, 1.0, 0.5); }
+    void Evaluate(int lane)
+    {
+      const double nan = std::numeric_limits<double>::quiet_NaN();
+      this->Step(lane, nan, nan, 0x1p-26);
+    }
+  };
+  NoRoot equation;
+  SolveBatch<1>(equation);
+  SUCCEED();
+}

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Cxx/Kernel/RandomTriangles.h"
+
+#include "Mesh/BoxTree.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+using namespace homeomorphism;
+using homeomorphism_test::RandomNumbers;
+
+namespace
+{
+
+template <int Dimension>
+Box<Dimension> RandomBox(RandomNumbers& random, double size)
+{
+  std::array<double, Dimension> center;
+  for (double& x : center)
+  {
+    x = random.Uniform(-1.0, 1.0);
+  }
+  return Box<Dimension>::Around(center, size * random.Uniform());
+}
+
+template <int Dimension>
+void ExpectAllFound(int count, double size)
+{
+  RandomNumbers random(21 + count);
+  std::vector<Box<Dimension>> boxes;
+  for (int i = 0; i < count; ++i)
+  {
+    boxes.push_back(RandomBox<Dimension>(random, size));
+  }
+  std::vector<TriangleIndex> triangles(boxes.size());
+  std::iota(triangles.begin(), triangles.end(), 0);
+  BoxTree<Dimension> tree;
+  tree.Build(triangles, [&boxes](TriangleIndex t) { return boxes[t]; });
+  int offered = 0;
+  for (int query = 0; query < 200; ++query)
+  {
+    const Box<Dimension> box = RandomBox<Dimension>(random, 0.1);
+    std::multiset<TriangleIndex> found;
+    tree.Search(box, [&found](TriangleIndex t) {
+      found.insert(t);
+      return true;
+    });
+    offered += static_cast<int>(found.size());
+    for (TriangleIndex t = 0; t < count; ++t)
+    {
+      // A triangle whose box meets the query is found, and no triangle twice.
+      EXPECT_GE(found.count(t), boxes[t].Meets(box) ? 1u : 0u);
+      EXPECT_LE(found.count(t), 1u);
+    }
+  }
+  if (count >= 1000)
+  {
+    EXPECT_LT(offered, 200 * count / 4) << "A search is no faster than to look at all boxes";
+  }
+}
+
+} // namespace
+
+TEST(BoxTree, FindsWhatMeetsABox)
+{
+  for (const int count : { 1, 2, 4, 5, 17, 1000 })
+  {
+    ExpectAllFound<2>(count, 0.02);
+    ExpectAllFound<3>(count, 0.02);
+  }
+}
+
+TEST(BoxTree, FindsNothingWhenEmpty)
+{
+  BoxTree<2> tree;
+  tree.Build({}, [](TriangleIndex) { return Box<2>(); });
+  tree.Search(Box<2>::Around({ 0.0, 0.0 }, 1.0), [](TriangleIndex) {
+    ADD_FAILURE();
+    return true;
+  });
+}
+
+TEST(BoxTree, EndsWhenAVisitReturnsFalse)
+{
+  BoxTree<2> tree;
+  tree.Build({ 0, 1, 2, 3, 4, 5, 6, 7 }, [](TriangleIndex) {
+    return Box<2>::Around({ 0.0, 0.0 }, 1.0);
+  });
+  int visits = 0;
+  tree.Search(Box<2>::Around({ 0.0, 0.0 }, 1.0), [&visits](TriangleIndex) { return ++visits < 3; });
+  EXPECT_EQ(visits, 3);
+}
+
+// Nodes are stored as floats: boxes must grow, never shrink, by that rounding.
+TEST(BoxTree, RoundsBoxesOutward)
+{
+  const double edge = 1.0 + 0x1p-40;
+  BoxTree<2> tree;
+  tree.Build({ 0, 1 }, [edge](TriangleIndex t) {
+    Box<2> box;
+    box.Add({ t * 10.0, 0.0 });
+    box.Add({ t * 10.0 + edge, edge });
+    return box;
+  });
+  int visits = 0;
+  tree.Search(Box<2>::Around({ edge, edge }, 0.0), [&visits](TriangleIndex t) {
+    visits += t == 0;
+    return true;
+  });
+  EXPECT_EQ(visits, 1);
+}
