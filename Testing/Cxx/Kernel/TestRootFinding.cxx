@@ -68,7 +68,6 @@ TEST(RootFinding, FindsRootsAtTheEnds)
     {
       EXPECT_EQ(Solve<true>(1.0, guess, power), 1.0);
       EXPECT_LE(Solve<true>(0.0, guess, power), 0x1p-50);
-      EXPECT_NEAR(Solve<false>(1.0, guess, power), 1.0, 8.0 * Ulp);
     }
   }
 }
