@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Tables and a plot of what benchmark.py measured."""
+"""Tables and a plot of the measurements of benchmark.py."""
 
 import statistics
 
@@ -9,12 +9,12 @@ SYSTEMS = ("Linear", "Contour", "Smooth")
 DIRECTIONS = ("forward", "inverse")
 PARTS = {
     "small": "{triangles} triangles, points row by row",
-    "large, scan": "{triangles} triangles, points row by row, fewer than triangles",
-    "large, dense": "{triangles} triangles, points row by row, more than triangles",
+    "large, scan": "{triangles} triangles, points row by row, fewer points than triangles",
+    "large, dense": "{triangles} triangles, points row by row, more points than triangles",
     "large, random": "{triangles} triangles, points in random order",
     "threads": "{triangles} triangles, many points",
     "image": "warping an image",
-    "construction": "getting ready, per triangle",
+    "construction": "preparation, per triangle",
 }
 
 
@@ -49,11 +49,11 @@ def number(value):
 
 
 def goals(r):
-    """What is to be reached: in words, the ratio that was measured, and its limit."""
+    """Each goal as its description, the measured ratio, its limit, and whether it is reached."""
     found = []
 
     def add(words, value, peer, limit):
-        """At most limit times the peer's."""
+        """The value is at most limit times the peer's."""
         if value and peer:
             found.append((words, value / peer, "≤", limit, value / peer <= limit))
 
@@ -88,13 +88,13 @@ def goals(r):
     sizes = r.sizes()
     if sizes:
         last = sizes[-1]
-        add(f"getting ready, Smooth, {last:,} triangle pairs / vtkStaticCellLocator of one mesh",
+        add(f"preparation, Smooth, {last:,} triangle pairs / vtkStaticCellLocator of one mesh",
             r.built("construct/Smooth", last), r.built("construct/vtkStaticCellLocator", last), 1.0)
-        add(f"getting ready per triangle, Smooth, {last:,} triangle pairs / {sizes[0]:,}",
+        add(f"preparation per triangle, Smooth, {last:,} triangle pairs / {sizes[0]:,}",
             r.built("construct/Smooth", last), r.built("construct/Smooth", sizes[0]), 1.25)
         for system in SYSTEMS:
             kept = r.results["memory"][f"{system}/{last}"][0]
-            found.append((f"bytes kept for a triangle pair, {system}", kept, "≤", 400.0, kept <= 400.0))
+            found.append((f"bytes kept per triangle pair, {system}", kept, "≤", 400.0, kept <= 400.0))
     add("Smooth forward / the affine map with the triangle known", r.median("small", "transform/Smooth/forward"),
         r.median("small", "affine/forward"), 6.0)
     return found
@@ -104,10 +104,10 @@ def tables(results):
     r = Results(results)
     lines = ["# Benchmark", ""]
     if results["quick"]:
-        lines += ["**A quick run: smaller, repeated less often, no numbers to rely on.**", ""]
-    lines += ["Medians of runs that took turns. Ratios are what counts; nanoseconds are those of one machine. "
-              "Processors is how many a row kept busy: less than its threads means that others took them.", ""]
-    lines += ["| what was to be reached | measured | limit | reached |", "|---|---:|---:|---|"]
+        lines += ["**A quick run, smaller and repeated less often: do not rely on its numbers.**", ""]
+    lines += ["Medians of runs that took turns, on one machine. \"Processors\" is the number of processors that a row "
+              "kept busy; a value below its number of threads means that other processes used them.", ""]
+    lines += ["| goal | measured | limit | reached |", "|---|---:|---:|---|"]
     for words, value, relation, limit, good in goals(r):
         lines.append(f"| {words} | {number(value)} | {relation} {number(limit)} | {'yes' if good else '**no**'} |")
     lines.append("")
@@ -117,7 +117,7 @@ def tables(results):
             continue
         triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
         lines += [f"## {title.format(triangles=f'{triangles:,}').capitalize()}", ""]
-        lines += ["| | threads | points | ns a point | fastest and slowest run | runs | processors |",
+        lines += ["| | threads | points | ns per point | fastest and slowest run | runs | processors |",
                   "|---|---:|---:|---:|---:|---:|---:|"]
         rows = [(statistics.median(r.times[part, m["name"], m["threads"]]), m) for m in measurements]
         for median, m in sorted(rows, key=lambda row: row[0]):
@@ -127,8 +127,8 @@ def tables(results):
                          f"{sum(m['processors']) / sum(m['seconds']):.2f} |")
         lines.append("")
     if r.construction:
-        lines += ["## Getting ready", "", "Nanoseconds a triangle pair, one thread; bytes a triangle pair that are kept, "
-                  "and at most meanwhile.", "", "| | triangles | ns | ns, two threads | bytes kept | bytes at most |", "|---|---:|---:|---:|---:|---:|"]
+        lines += ["## Preparation", "", "Nanoseconds per triangle pair on one thread and on two; bytes per triangle pair "
+                  "that are kept, and at the peak.", "", "| | triangles | ns | ns, two threads | bytes kept | bytes at peak |", "|---|---:|---:|---:|---:|---:|"]
         for size in r.sizes():
             for name in (*(f"construct/{s}" for s in SYSTEMS), "construct/vtkStaticCellLocator"):
                 memory = results["memory"].get(f"{name.split('/')[1]}/{size}")
@@ -136,7 +136,7 @@ def tables(results):
                 lines.append(f"| {name.split('/')[1]} | {size:,} | {number(r.built(name, size))} | "
                              f"{number(r.built(name, size, 2))} | {kept} | {peak} |")
         lines.append("")
-    lines += ["## Do they compute the same?", "", "| | largest difference | tolerance | |", "|---|---:|---:|---|"]
+    lines += ["## Agreement", "", "| | largest difference | tolerance | |", "|---|---:|---:|---|"]
     for check in results["checks"]:
         lines.append(f"| {check['part']}: {check['what']} | {check['error']:.2g} | {check['tolerance']:.2g} | "
                      f"{'yes' if check['good'] else '**no**'} |")
@@ -183,8 +183,8 @@ def plot(results, path):
         axis.set_xscale("log")
         axis.set_xlim(1.0, 20.0 * max(b[0] for b in bars))
         triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
-        axis.set_title(PARTS[part].format(triangles=f"{triangles:,}").replace(", fewer than triangles", ""), fontsize=10)
-        axis.set_xlabel("nanoseconds a point, forward, one thread (log scale)", fontsize=9)
+        axis.set_title(PARTS[part].format(triangles=f"{triangles:,}").replace(", fewer points than triangles", ""), fontsize=10)
+        axis.set_xlabel("nanoseconds per point, forward, one thread (log scale)", fontsize=9)
         for side in ("top", "right"):
             axis.spines[side].set_visible(False)
         axis.grid(axis="x", color="#eeeeee")
