@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Carry anything from one triangulated domain onto another with the same triangles.
+"""Map anything from one triangulated domain onto another with the same triangles.
 
-Two ways to use it:
+Three ways to use it:
 
 - the class `Homeomorphism`, with numpy arrays in and out;
 - the VTK classes `vtkDifferentiableHomeomorphism`, `vtkHomeomorphismTransform`,
   `vtkTriangularCoordinates`, `vtkJacobianContinuity` and `vtkResampleThroughHomeomorphism`, for VTK
-  pipelines.
+  pipelines;
+- the command `dhm` (`python3 -m vtkhomeomorphism`), for files.
 
 >>> import numpy, vtkhomeomorphism
 >>> source = numpy.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
@@ -30,6 +31,7 @@ from .vtkFiltersHomeomorphism import (
 if TYPE_CHECKING:
     from .arrays import Homeomorphism
 
+__version__ = "1.0.0"
 __all__ = [
     "Homeomorphism",
     "vtkDifferentiableHomeomorphism",

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 from typing import Optional, Tuple
 
 import numpy
@@ -18,12 +20,12 @@ from .vtkFiltersHomeomorphism import (
     vtkTriangularCoordinates,
 )
 
-_SYSTEMS = {
+SYSTEMS = {
     "linear": vtkDifferentiableHomeomorphism.LINEAR,
     "contour": vtkDifferentiableHomeomorphism.CONTOUR,
     "smooth": vtkDifferentiableHomeomorphism.SMOOTH,
 }
-_CENTERS = {
+CENTERS = {
     "centroid": vtkDifferentiableHomeomorphism.CENTROID,
     "incenter": vtkDifferentiableHomeomorphism.INCENTER,
 }
@@ -34,6 +36,19 @@ def _choose(names: dict, value: str, what: str) -> int:
         return names[value.lower()]
     except (KeyError, AttributeError):
         raise ValueError(f"{what} must be one of {', '.join(names)}, not {value!r}") from None
+
+
+def _name_of(names: dict, value: int) -> str:
+    return next(name for name, number in names.items() if number == value)
+
+
+def configure(algorithm, system: int, center: int, discordant_by_linear: bool):
+    """Sets the coordinate system in a filter of the module."""
+    algorithm.SetCoordinateSystem(system)
+    algorithm.SetCenterPoint(center)
+    algorithm.SetDiscordantTriangles(
+        algorithm.USE_LINEAR if discordant_by_linear else algorithm.REFUSE
+    )
 
 
 def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
@@ -76,6 +91,25 @@ def _as_triangles(triangles, points: int) -> vtkCellArray:
         numpy_to_vtkIdTypeArray(offsets, deep=1), numpy_to_vtkIdTypeArray(connectivity, deep=1)
     )
     return cells
+
+
+def _rebuild(source, target, triangles, system, options):
+    return Homeomorphism(source, target, triangles, system, **options)
+
+
+def _cast(values: numpy.ndarray, dtype) -> numpy.ndarray:
+    """Float64 values as another type: rounded to integers and clipped to their limits; half and more is True."""
+    if dtype.kind == "b":
+        return values >= 0.5
+    if dtype.kind not in "iu":
+        return values.astype(dtype)
+    limits = numpy.iinfo(dtype)
+    rounded = numpy.rint(numpy.nan_to_num(values))
+    # The largest integers of 64 bits are not numbers of float64: they are compared, not converted.
+    low, high = rounded <= limits.min, rounded >= limits.max
+    result = numpy.where(low | high, 0, rounded).astype(dtype)
+    result[low], result[high] = limits.min, limits.max
+    return result
 
 
 class _Messages:
@@ -156,8 +190,8 @@ class Homeomorphism:
             mesh.SetPolys(cells)
         self._dimensions = dimensions
         self._settings = (
-            _choose(_SYSTEMS, system, "system"),
-            _choose(_CENTERS, center, "center"),
+            _choose(SYSTEMS, system, "system"),
+            _choose(CENTERS, center, "center"),
             discordant_by_linear,
         )
         self._filter = vtkDifferentiableHomeomorphism()
@@ -173,11 +207,21 @@ class Homeomorphism:
     def _set_up(self, algorithm):
         algorithm.SetSourceData(self._meshes[0])
         algorithm.SetTargetData(self._meshes[1])
-        algorithm.SetCoordinateSystem(self._settings[0])
-        algorithm.SetCenterPoint(self._settings[1])
-        algorithm.SetDiscordantTriangles(
-            algorithm.USE_LINEAR if self._settings[2] else algorithm.REFUSE
-        )
+        configure(algorithm, *self._settings)
+
+    def __reduce__(self):
+        arrays = [
+            vtk_to_numpy(mesh.GetPoints().GetData())[:, :dimension]
+            for mesh, dimension in zip(self._meshes, self._dimensions)
+        ]
+        triangles = vtk_to_numpy(self._meshes[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        system, center, discordant_by_linear = self._settings
+        options = {
+            "center": _name_of(CENTERS, center),
+            "discordant_by_linear": discordant_by_linear,
+            "tolerance": self._filter.GetTolerance(),
+        }
+        return _rebuild, (*arrays, triangles, _name_of(SYSTEMS, system), options)
 
     def _run(self, points, inverse: bool):
         vtk_points, dimension = _as_points(points, "points")
@@ -191,8 +235,7 @@ class Homeomorphism:
 
     def _map(self, points, inverse: bool) -> numpy.ndarray:
         output, dimension = self._run(points, inverse)
-        if dimension == 2:
-            dimension = self._dimensions[0 if inverse else 1]
+        dimension = self._image_dimension(dimension, inverse)
         result = numpy.array(vtk_to_numpy(output.GetPoints().GetData())[:, :dimension])
         mask = vtk_to_numpy(output.GetPointData().GetArray("vtkValidPointMask"))
         result[mask == 0] = numpy.nan
@@ -208,15 +251,19 @@ class Homeomorphism:
 
     def jacobian(self, points, inverse: bool = False) -> numpy.ndarray:
         """The derivative at points of the source's domain (of the inverse: the target's): float64, of
-        shape (n, d, d) for points of d coordinates; element [i, j, k] is the change of coordinate j of the
-        image of point i with coordinate k of the point. NaN outside."""
+        shape (n, k, d) for points of d coordinates whose images have k; element [i, j, l] is the change of
+        coordinate j of the image of point i with coordinate l of the point. NaN outside."""
         self._filter.ComputeJacobianOn()
         try:
             output, dimension = self._run(points, inverse)
         finally:
             self._filter.ComputeJacobianOff()
         jacobian = vtk_to_numpy(output.GetPointData().GetArray("Jacobian"))
-        return numpy.array(jacobian.reshape(-1, 3, 3)[:, :dimension, :dimension])
+        rows = self._image_dimension(dimension, inverse)
+        return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :dimension])
+
+    def _image_dimension(self, dimension: int, inverse: bool) -> int:
+        return self._dimensions[0 if inverse else 1] if dimension == 2 else dimension
 
     def coordinates(self, points):
         """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0
@@ -224,11 +271,7 @@ class Homeomorphism:
         algorithm = vtkTriangularCoordinates()
         messages = _Messages(algorithm)
         algorithm.SetInputData(0, self._meshes[0])
-        algorithm.SetCoordinateSystem(self._settings[0])
-        algorithm.SetCenterPoint(self._settings[1])
-        algorithm.SetDiscordantTriangles(
-            algorithm.USE_LINEAR if self._settings[2] else algorithm.REFUSE
-        )
+        configure(algorithm, *self._settings)
         algorithm.GenerateLinesOff()
         data = vtkPolyData()
         data.SetPoints(_as_points(points, "points")[0])
@@ -281,7 +324,8 @@ class Homeomorphism:
         inverse : bool
             The image lies over the target's domain instead, and the result over the source's.
 
-        Returns an array of the image's type.
+        Returns an array of the image's type: integers are rounded, of a mask half and more is True, the
+        parts of complex numbers are interpolated each.
         """
         array = numpy.asarray(image)
         if array.ndim not in (2, 3):
@@ -289,9 +333,26 @@ class Homeomorphism:
                 f"image must have the shape (rows, columns) or (rows, columns, channels), "
                 f"not {array.shape}"
             )
+        if array.dtype.kind not in "biufc":
+            raise TypeError(f"image must be an array of numbers, not of {array.dtype}")
+        if array.dtype.kind == "c":
+            options = {"shape": shape, "spacing": spacing, "inverse": inverse}
+            background = complex(background)
+            return (
+                self.warp_image(array.real, background=background.real, **options)
+                + 1j * self.warp_image(array.imag, background=background.imag, **options)
+            ).astype(array.dtype)
         rows, columns = array.shape[:2]
         channels = array.shape[2] if array.ndim == 3 else 1
-        out_rows, out_columns = shape if shape else (rows, columns)
+        out_rows, out_columns = (operator.index(n) for n in (shape if shape else (rows, columns)))
+        if min(rows, columns, channels, out_rows, out_columns) < 1:
+            raise ValueError(f"there are no pixels in {array.shape}, or in the shape {shape}")
+        if not (spacing > 0 and math.isfinite(spacing)):
+            raise ValueError(f"spacing must be a number greater than 0, not {spacing}")
+        if max(out_rows, out_columns) > numpy.iinfo(numpy.int32).max:
+            raise MemoryError(f"an image of {out_rows} x {out_columns} pixels is too large")
+        # VTK would end the process if there were not enough memory for values, mask and points.
+        numpy.empty((out_rows, out_columns, channels + 4))
         vtk_image = vtkImageData()
         vtk_image.SetDimensions(columns, rows, 1)
         vtk_image.SetSpacing(spacing, spacing, 1.0)
@@ -321,7 +382,4 @@ class Homeomorphism:
         )
         mask = vtk_to_numpy(output.GetArray("vtkValidPointMask")).reshape(out_rows, out_columns)
         warped[mask == 0] = background
-        if array.dtype.kind in "iu":
-            limits = numpy.iinfo(array.dtype)
-            warped = numpy.clip(numpy.rint(warped), limits.min, limits.max)
-        return warped.astype(array.dtype)
+        return _cast(warped, array.dtype)

@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""dhm coordinates"""
+
+import click
+
+from .. import options, pair
+from ..data import data_options
+from ..mapping import arrays_of, as_data, run
+from ..vtkFiltersHomeomorphism import vtkTriangularCoordinates
+
+
+class Coordinates:
+    """Attaches triangular coordinates to points."""
+
+    def __init__(self, mesh, settings, name):
+        self.name = name
+        self.filter = vtkTriangularCoordinates()
+        settings.apply(self.filter)
+        self.filter.SetInputDataObject(0, mesh)
+        self.filter.GenerateLinesOff()
+
+    def map_data(self, data):
+        self.filter.SetDataObject(data)
+        result = run(self.filter, self.name)
+        self.outside = self.filter.GetNumberOfOutsidePoints()
+        return result
+
+    def map_points(self, points):
+        return points, arrays_of(self.map_data(as_data(points)))
+
+
+@click.command("coordinates")
+@click.argument("files", nargs=2, metavar="MESH DATA")
+@click.option("--input-format", default="json", metavar="EXTENSION", show_default=True,
+              help="What the mesh is if it comes from standard input.")
+@data_options
+@options.map_settings("smooth")
+@options.quiet
+def command(files, input_format, data, settings):
+    """Attach triangular coordinates (e, p, c) in a mesh to the points of data.
+
+    MESH is the triangulation (of a triangulation file the source), DATA as for dhm map. The arrays: TriangleId,
+    EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1 on the
+    edge), vtkValidPointMask."""
+    mesh = pair.read_mesh(files[0], input_format)
+    data.process(files[1], Coordinates(mesh, settings, files[0]), moves=False)

@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""dhm map"""
+
+import click
+
+from .. import options
+from ..data import data_options
+from ..mapping import PointMap
+
+
+@click.command("map")
+@options.pair_files("SOURCE [TARGET] DATA", others=1)
+@data_options
+@options.map_settings("smooth; for a PROJ triangulation file linear, which is its official meaning")
+@options.inverse
+@click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (vector data; "
+              "default: what the triangulation file says, or the data's own).")
+@click.option("--densify", type=options.Number(above=True), default=0.0, metavar="LENGTH",
+              help="Divide the segments of vector data so that none is longer.")
+@click.option("-j", "--jacobian", is_flag=True, help="Add the derivative at each point: Jacobian, 9 numbers row by row.")
+@click.option("--determinant", is_flag=True, help="Add the ratio of areas at each point: JacobianDeterminant.")
+@click.option("--triangle-id", is_flag=True, help="Add the number of each point's triangle: TriangleId.")
+@click.option("--transform-all-vectors", is_flag=True, help="Transform all arrays of 3, 6 and 9 components by the "
+              "derivative, not only the active vectors, normals and tensors.")
+@click.option("--keep-vectors", is_flag=True, help="Leave vectors, normals and tensors as they are.")
+@options.quiet
+def command(inputs, data, settings, inverse, densify, jacobian, determinant, triangle_id, transform_all_vectors,
+            keep_vectors):
+    """Map data from the source's domain to the target's.
+
+    DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl),
+    VTK's (.vtp .vtu .vts .vtr .vti .vtm .vtk), or an image, whose pixels move as points (to warp it, use dhm warp).
+
+    Points outside the domain become nan and are marked 0 in vtkValidPointMask; features outside become empty. Of a
+    PROJ triangulation file, heights (a third coordinate) and the fallback strategy count as PROJ has them."""
+    pair = options.read_pair(inputs)
+    work = PointMap(pair, settings, inverse)
+    work.filter.SetComputeJacobian(jacobian)
+    work.filter.SetComputeJacobianDeterminant(determinant)
+    work.filter.SetComputeTriangleId(triangle_id)
+    work.filter.SetTransformAllInputVectors(transform_all_vectors)
+    work.filter.SetTransformActiveAttributes(not keep_vectors)
+    shift = pair.shift
+    crs = (shift.crs(inverse, output=False), shift.crs(inverse)) if shift else None
+    data.process(inputs.others[0], work, moves=True, shift=shift, densify=densify, known_crs=crs)

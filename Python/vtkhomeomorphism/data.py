@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Data of any kind to which a command does something point by point: tables, vector data, meshes, VTK's files, images."""
+
+import functools
+
+import click
+import numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+from . import images, meshes, options, tables, vectors, vtkfiles
+from .files import PICTURES, REFUSED, TABLES, USAGE, VECTORS, Failure, Input, Output, count, inform
+from .mapping import MASK, arrays_of, as_data, named_array
+
+READ = tuple(dict.fromkeys(TABLES + VECTORS + meshes.READ + vtkfiles.FORMATS + PICTURES))
+WRITE = TABLES + VECTORS + vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
+
+
+def data_options(command):
+    """The output and the options of data; the command takes `data`, a Data."""
+
+    @functools.wraps(command)
+    def wrapped(output, force, output_format, columns, data_format, require_inside, crs=None, **rest):
+        return command(data=Data(output, force, output_format, columns, data_format, require_inside, crs), **rest)
+
+    return options.add(
+        options.output("The result: of the data's kind (images become .vts), or - for standard output.", "csv"),
+        click.option("--columns", default="", metavar="LIST",
+                     help="Names or numbers (from 1) of a table's coordinate columns, separated by commas (default: "
+                          "usual names, such as x,y,z, E,N or lon,lat; of a table without names, the first two)."),
+        click.option("--data-format", default="csv", metavar="EXTENSION", show_default=True,
+                     help="What the data is if it comes from standard input."),
+        click.option("--require-inside", is_flag=True,
+                     help="Write nothing and fail (status 1) if a point is outside the domain."),
+    )(wrapped)
+
+
+class Data:
+    """Data that is read, worked on and written."""
+
+    def __init__(self, output, force, output_format, columns, data_format, require_inside, crs):
+        self.output = Output(output, output_format, force, WRITE, "data")
+        self.columns, self.data_format, self.require_inside, self.crs = columns, data_format, require_inside, crs
+
+    def process(self, name, work, moves, shift=None, densify=0.0, known_crs=None):
+        """Reads the data, works on it and writes it.
+
+        work : object with map_points(points) -> images, arrays and map_data(data) -> data, and the count `outside`
+        moves : whether points move
+        shift : a triangulation file's, whose map takes heights as the third coordinate
+        """
+        input = Input(name, self.data_format, "--data-format")
+        kind, target = input.format, self.output.format
+        if kind not in READ:
+            raise Failure(f"Cannot read {input.name} as data: the formats are .{', .'.join(READ)}.", USAGE)
+        if (target in TABLES) > (kind in TABLES):
+            raise Failure(f"Only points of a table can be written as one (.{target}), {input.name} is a .{kind}.", USAGE)
+        if (target in VECTORS) > (kind in VECTORS) or kind in VECTORS and target not in VECTORS:
+            raise Failure(f"Vector data stays vector data: .{kind} cannot be written as .{target}; the formats are "
+                          f".{', .'.join(VECTORS)}.", USAGE)
+        if target in meshes.FLAT_WRITE and not moves:
+            raise Failure(f"Coordinates are arrays of points, which a .{target} file does not have: write a .vtp.", USAGE)
+        with input:
+            if kind in VECTORS:
+                self._process_vectors(input, work, densify, known_crs)
+            elif kind in TABLES:
+                self._process_table(input, work, moves, shift)
+            else:
+                self._process_vtk(input, work, moves, shift)
+
+    def _report(self, outside, noun="point", extra="", mark=f"marked 0 in {MASK}"):
+        if outside:
+            message = f"{count(outside, noun)} {'is' if outside == 1 else 'are'} outside the domain{extra}"
+            if self.require_inside:
+                raise Failure(message + ".", REFUSED)
+            inform(f"{message}: {mark}.")
+
+    def _process_table(self, input, work, moves, shift):
+        table = tables.Table(input, self.columns, with_height=bool(shift and shift.offsets is not None))
+        points = table.coordinates
+        wrong = ~numpy.isfinite(points).all(axis=1)
+        extra = ""
+        if wrong.any():
+            extra = (f" (of {wrong.sum()}, the coordinates are not finite numbers; the first is point "
+                     f"{int(wrong.argmax())}, counted from 0)")
+        if self.output.format in TABLES:
+            images, arrays = work.map_points(points)
+            mark = f"marked 0 in {MASK}"
+            if "Fallback" in arrays:
+                mark += f"; {int(arrays['Fallback'].sum())} of them are mapped by the file's fallback strategy " \
+                        f'"{shift.fallback}", marked 1 in Fallback'
+            self._report(work.outside, extra=extra, mark=mark)
+            if moves:
+                table.move(images)
+            for name, values in arrays.items():
+                table.add(name, values)
+            with self.output as output:
+                table.write(output)
+            return
+        data = as_data(points)
+        data.SetVerts(meshes.as_cells(numpy.arange(len(points))[:, None]))
+        table.add_columns_to(data)
+        result = self._map_data(work, data, shift)
+        self._report(work.outside, extra=extra)
+        self._write(result)
+
+    def _map_data(self, work, data, shift):
+        """VTK's data; of a triangulation file with heights as the third coordinate."""
+        if shift is None or not isinstance(data, vtkPolyData):
+            return work.map_data(data)
+        points = meshes.points_of(data)
+        moved, arrays = work.map_points(points)
+        flat = vtkPolyData()
+        flat.ShallowCopy(data)
+        flat.SetPoints(meshes.as_points(points * [1, 1, 0]))
+        result = work.map_data(flat)
+        # Where the filter leaves points outside, they stay.
+        moved = numpy.where(numpy.isnan(moved), points, moved)
+        result.SetPoints(meshes.as_points(moved))
+        if "Fallback" in arrays:
+            result.GetPointData().AddArray(named_array(arrays["Fallback"], "Fallback"))
+        return result
+
+    def _process_vtk(self, input, work, moves, shift):
+        if input.format in PICTURES:
+            raster = images.read(input)
+            data = raster.grid.to_vtk(raster.window((0, raster.grid.width), (0, raster.grid.height)))
+        else:
+            data = vtkfiles.read(input) if input.format in vtkfiles.FORMATS else meshes.read(input)
+        result = self._map_data(work, data, shift)
+        self._report(work.outside)
+        self._write(result)
+
+    def _write(self, result):
+        if self.output.format in meshes.FLAT_WRITE and (arrays_of(result).get(MASK, numpy.ones(1)) == 0).any():
+            raise Failure(f"Points are outside the domain, which a .{self.output.format} file cannot mark: write a .vtp.")
+        with self.output as output:
+            meshes.write(result, output)
+
+    def _process_vectors(self, input, work, densify, known_crs):
+        layers = vectors.read(input)
+        crs_in, crs_out = known_crs or (None, None)
+        for name, layer in layers.items():
+            if crs_in and layer.crs and not _same_crs(layer.crs, crs_in):
+                inform(f"{input.name}, layer {name}: its coordinate reference system is {layer.crs.to_string()}, but "
+                       f"the map is from {crs_in}.")
+        result, outside = vectors.map_layers(layers, lambda points: work.map_points(points)[0], densify)
+        self._report(outside, "feature", mark=f"its geometry is empty, and it is marked 1 in {vectors.MARK}")
+        crs = self.crs or crs_out
+        if crs:
+            try:
+                result = {name: layer.set_crs(crs, allow_override=True) for name, layer in result.items()}
+            except Exception as error:
+                raise Failure(f"The coordinate reference system {crs} is not known: {error}", USAGE) from None
+        with self.output as output:
+            vectors.write(result, output)
+
+
+def _same_crs(crs, name):
+    try:
+        return crs.equals(name)
+    except Exception:
+        return True

@@ -1,0 +1,216 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pairs of triangulations: how commands read them from files, and write them."""
+
+from dataclasses import dataclass, field
+from typing import Optional
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+from . import meshes, tinshift, xmorph
+from .files import FILE, REFUSED, USAGE, Failure, Input, format_of
+
+FORMATS = ("json", "vtp", "vtk")
+"""Formats that hold both meshes."""
+
+
+@dataclass
+class Pair:
+    """Two meshes with the same triangles."""
+
+    meshes: list
+    """Source and target, vtkPolyData."""
+    names: list
+    """Their files."""
+    shift: Optional[tinshift.Shift] = None
+    """If they come from a triangulation file."""
+    extents: Optional[list] = None
+    """Of xmorph's meshes: the largest x and y of their pictures, or None where the file does not tell."""
+    metadata: dict = field(default_factory=dict)
+    """For a triangulation file that is written."""
+
+    @property
+    def source(self):
+        return self.meshes[0]
+
+    @property
+    def target(self):
+        return self.meshes[1]
+
+    @property
+    def name(self):
+        return " and ".join(dict.fromkeys(self.names))
+
+    def name_of(self, side):
+        if self.names[0] != self.names[1]:
+            return self.names[side]
+        return f"the {('source', 'target')[side]} of {self.names[0]}"
+
+    def is_flat(self):
+        """Whether both meshes have the same z everywhere."""
+        return all((numpy.ptp(meshes.points_of(mesh)[:, 2]) == 0) for mesh in self.meshes)
+
+    def require_flat(self):
+        for mesh, name in zip(self.meshes, self.names):
+            if numpy.ptp(meshes.points_of(mesh)[:, 2]) != 0:
+                raise Failure(f"{name} is not in a plane parallel to x and y.")
+
+
+def read(files, options):
+    """The pair in one file or two. `options` has target_array, target_uv, input_format and working_size."""
+    if list(files).count("-") > 1:
+        raise Failure("Only one of the files can come from standard input.", USAGE)
+    if len(files) == 1:
+        return _read_one(files[0], options)
+    formats = [options.input_format if name == "-" else format_of(name) for name in files]
+    if "json" in formats:
+        raise Failure(
+            f"{files[formats.index('json')]} is a triangulation file, which has both source and target: give it alone.",
+            USAGE,
+        )
+    if ("mesh" == formats[0]) != ("mesh" == formats[1]):
+        raise Failure("Either both files are meshes of xmorph (.mesh) or neither: they are triangulated together.", USAGE)
+    if formats[0] == "mesh":
+        return _read_xmorph(files, options)
+    pair = Pair([read_mesh(name, options.input_format) for name in files], list(files))
+    if formats == ["stl", "stl"]:
+        _join_points(pair)
+    return pair
+
+
+def _open(name, input_format):
+    return Input(name, input_format or "json", "--input-format")
+
+
+def _read_one(name, options):
+    with _open(name, options.input_format) as file:
+        names = [file.name, file.name]
+        if file.format == "json":
+            try:
+                shift = tinshift.read(file.path)
+            except tinshift.Invalid as error:
+                file.fail(str(error))
+            if len(shift.triangles) == 0:
+                file.fail("it has no triangles.")
+            pair = [meshes.make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
+            return Pair(pair, names, shift=shift, metadata=shift.metadata)
+        if options.target_uv:
+            if file.format != "obj":
+                raise Failure(f"--target-uv: only .obj files have texture coordinates, {file.name} does not.", USAGE)
+            return Pair([meshes.read(file), meshes.read_uv(file)], names)
+        source = meshes.read(file)
+    positions = source.GetPointData().GetArray(options.target_array)
+    if positions is None or positions.GetNumberOfComponents() not in (2, 3):
+        more = " or take its texture coordinates (--target-uv)" if format_of(name) == "obj" else ""
+        raise Failure(
+            f'{names[0]} has no point array "{options.target_array}" of 2 or 3 components with the target\'s positions: '
+            f"give the target's file, too, or name the array (--target-array){more}.",
+            USAGE,
+        )
+    target = meshes.make_mesh(vtk_to_numpy(positions), source.GetPolys())
+    target.SetVerts(source.GetVerts())
+    target.SetLines(source.GetLines())
+    return Pair([source, target], names)
+
+
+def read_mesh(name, input_format=""):
+    """A single mesh: of a triangulation file the source."""
+    with _open(name, input_format) as file:
+        if file.format not in ("json", "mesh"):
+            return meshes.read(file)
+        if file.format == "mesh":
+            grid = _upright(_read_grid(file))
+            return meshes.make_mesh(grid.reshape(-1, 2), xmorph.triangulate(grid, grid))
+        try:
+            shift = tinshift.read(file.path)
+        except tinshift.Invalid as error:
+            file.fail(str(error))
+        return meshes.make_mesh(shift.source, shift.triangles)
+
+
+def _read_grid(file):
+    try:
+        return xmorph.read(file.path)
+    except ValueError as error:
+        file.fail(str(error))
+
+
+def _upright(grid, bottom=None):
+    """With y upwards."""
+    bottom = xmorph.extent(grid)[1] if bottom is None else bottom
+    return numpy.stack((grid[..., 0], bottom - grid[..., 1]), axis=-1)
+
+
+def _read_xmorph(files, options):
+    grids, extents = [], []
+    for name in files:
+        with _open(name, options.input_format) as file:
+            grid = _read_grid(file)
+        end = None
+        if options.working_size:
+            # Tenths of pixels.
+            end = 10.0 * (numpy.array(options.working_size) - 1)
+        elif xmorph.fills_picture(grid):
+            end = xmorph.extent(grid)
+        grids.append(_upright(grid, None if end is None else end[1]))
+        extents.append(end)
+    try:
+        triangles = xmorph.triangulate(*grids)
+    except ValueError as error:
+        raise Failure(f"{' and '.join(files)}: {error}", FILE) from None
+    return Pair([meshes.make_mesh(grid.reshape(-1, 2), triangles) for grid in grids], list(files), extents=extents)
+
+
+def _join_points(pair):
+    """Of meshes whose triangles have points of their own: makes those one that coincide in both meshes."""
+    points = [meshes.points_of(mesh) for mesh in pair.meshes]
+    triangles = [meshes.triangles_of(mesh) for mesh in pair.meshes]
+    if points[0].shape != points[1].shape or not numpy.array_equal(*triangles):
+        return
+    _, first, joined = numpy.unique(numpy.hstack(points), axis=0, return_index=True, return_inverse=True)
+    # In the order of their first points.
+    order = numpy.argsort(first)
+    rank = numpy.empty_like(order)
+    rank[order] = numpy.arange(len(order))
+    cells = rank[joined.ravel()][triangles[0]]
+    pair.meshes = [meshes.make_mesh(p[first[order]], cells) for p in points]
+
+
+def fit_to_pictures(pair, sizes):
+    """Scales xmorph's meshes to their pictures, whose widths and heights in pixels are given."""
+    if pair.extents is None:
+        return
+    for side, (size, end) in enumerate(zip(sizes, pair.extents)):
+        if end is None or not (numpy.asarray(end) > 0).all():
+            raise Failure(
+                f"{pair.names[side]} does not fill its picture, and does not say how large that is: give the size of "
+                "xmorph's working picture (--working-size; in a session's file, resulting_size).",
+                USAGE,
+            )
+        # Xmorph's units end at the last pixel.
+        factors = (numpy.array(size) - 1) / end
+        points = meshes.points_of(pair.meshes[side])
+        pair.meshes[side] = meshes.make_mesh(points[:, :2] * factors, pair.meshes[side].GetPolys())
+
+
+def write(pair, output, target_array="Target"):
+    """Writes both meshes to one file of one of FORMATS."""
+    if output.format != "json":
+        both = vtkPolyData()
+        both.ShallowCopy(pair.source)
+        positions = numpy_to_vtk(meshes.points_of(pair.target), deep=True)
+        positions.SetName(target_array)
+        both.GetPointData().AddArray(positions)
+        meshes.write(both, output)
+        return
+    points = [meshes.points_of(mesh) for mesh in pair.meshes]
+    for name, array in zip(pair.names, points):
+        if array[:, 2].any():
+            raise Failure(
+                f"A triangulation file (.json) holds x and y only, but z is not 0 everywhere in {name}.", REFUSED
+            )
+    shift = pair.shift or tinshift.Shift(*(array[:, :2] for array in points), meshes.triangles_of(pair.source))
+    shift.metadata = pair.metadata
+    output.write_text(tinshift.text_of(shift))

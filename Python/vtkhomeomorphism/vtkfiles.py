@@ -1,0 +1,192 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""VTK's readers and writers. Run as `python -m vtkhomeomorphism.vtkfiles FILE FORMAT` it reads a file and tells
+whether that can be done: damaged files crash some of VTK's readers, or keep them busy for minutes, and so a child
+process tries first."""
+
+import os
+import subprocess
+import sys
+
+import numpy
+import vtkmodules.vtkIOLegacy as legacy
+import vtkmodules.vtkIOXML as xml
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkIOGeometry import vtkSTLReader
+
+from .files import FILE, USAGE, Failure, quote
+
+XML = ("vtp", "vtu", "vts", "vtr", "vti", "vtm", "vtmb", "vtpd", "vtpc")
+FORMATS = XML + ("vtk", "stl")
+SECONDS, SECONDS_A_MEGABYTE = 10, 2
+"""How long reading may take."""
+
+_messages = []
+
+
+def capture_messages():
+    """Keeps VTK's errors and warnings from standard error."""
+
+    def collect(caller, event, text=""):
+        # VTK's prefix tells the place in the C++ source.
+        _messages.append(text.split("): ", 1)[-1].strip())
+
+    collect.CallDataType = "string0"
+    window = vtkStringOutputWindow()
+    for event in ("ErrorEvent", "WarningEvent"):
+        window.AddObserver(event, collect)
+    vtkOutputWindow.SetInstance(window)
+
+
+def take_messages():
+    messages = [message for message in _messages if "returned failure for request" not in message]
+    _messages.clear()
+    return "\n".join(dict.fromkeys(messages))
+
+
+def _read(path, format):
+    """Data and errors. Warnings are errors: many readers only warn of data that is missing."""
+    take_messages()
+    if format == "vtk":
+        reader = legacy.vtkGenericDataObjectReader()
+        for kind in ("Scalars", "Vectors", "Normals", "Tensors", "ColorScalars", "TCoords", "Fields"):
+            getattr(reader, f"ReadAll{kind}On")()
+    elif format == "stl":
+        reader = vtkSTLReader()
+        reader.MergingOff()
+    else:
+        reader = xml.vtkXMLGenericDataObjectReader()
+    reader.SetFileName(path)
+    reader.Update()
+    data = reader.GetOutputDataObject(0)
+    errors = take_messages()
+    if not errors and (data is None or reader.GetErrorCode() != 0):
+        errors = f"it cannot be read as .{format}."
+    return data, errors or _find_bad_cell(data)
+
+
+def leaves_of(data):
+    """The data sets of a tree, or the data set itself."""
+    if isinstance(data, vtkCompositeDataSet):
+        iterator = data.NewIterator()
+        iterator.InitTraversal()
+        while not iterator.IsDoneWithTraversal():
+            yield iterator.GetCurrentDataObject()
+            iterator.GoToNextItem()
+    elif isinstance(data, vtkDataSet):
+        yield data
+
+
+def _find_bad_cell(data):
+    """What is wrong with the cells' point ids, which no reader of VTK looks at: otherwise memory of others would be
+    read."""
+    for leaf in leaves_of(data):
+        first = 0
+        for name in ("Verts", "Lines", "Polys", "Strips", "Cells"):
+            if not isinstance(leaf, vtkUnstructuredGrid if name == "Cells" else vtkPolyData):
+                continue
+            cells = getattr(leaf, "Get" + name)()
+            if cells is None or cells.GetNumberOfCells() == 0:
+                continue
+            ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+            if offsets[0] != 0 or (numpy.diff(offsets) < 0).any() or offsets[-1] != len(ids):
+                return "the offsets that say where each cell's points begin are wrong."
+            bad = (ids < 0) | (ids >= leaf.GetNumberOfPoints())
+            if bad.any():
+                place = int(bad.argmax())
+                cell = first + int(numpy.searchsorted(offsets, place, "right")) - 1
+                return f"cell {cell} has the point {ids[place]}, but points go from 0 to {leaf.GetNumberOfPoints() - 1}."
+            short = numpy.diff(offsets) < (3 if name in ("Polys", "Strips") else 0)
+            if short.any():
+                cell = int(short.argmax())
+                return f"cell {first + cell} is a polygon of {numpy.diff(offsets)[cell]} points."
+            first += cells.GetNumberOfCells()
+    return ""
+
+
+def read(input):
+    """The data object in a file of one of FORMATS. Raises Failure."""
+    limit = SECONDS + SECONDS_A_MEGABYTE * os.path.getsize(input.path) / 1e6
+    command = [sys.executable, "-m", __spec__.name, input.path, input.format]
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+    try:
+        child = subprocess.run(command, env=environment, capture_output=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        input.fail(f"reading takes longer than {limit:.0f} seconds: the file is damaged.")
+    if child.returncode not in (0, 1):
+        input.fail("VTK's reader crashes: the file is damaged or has been cut off.")
+    if child.returncode == 1:
+        text = child.stdout.decode("utf-8", "replace")
+        input.fail(quote(text.replace(input.path, input.name) or "it cannot be read.", 300))
+    data, errors = _read(input.path, input.format)
+    if errors:
+        input.fail(quote(errors, 300))
+    return data
+
+
+def extension_for(data):
+    writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
+    return writer.GetDefaultFileExtension() if writer else "vtk"
+
+
+def write(data, output):
+    """Writes a data object to a .vtk, or to the XML file of its type. (Via memory: on full disks some of VTK 9.1's
+    writers crash, others do not notice.)"""
+    right = extension_for(data)
+    if output.format not in ("vtk", right):
+        raise Failure(
+            f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}.",
+            USAGE,
+        )
+    take_messages()
+    if output.format == "vtk":
+        writer = legacy.vtkGenericDataObjectWriter()
+        writer.SetFileTypeToBinary()
+    else:
+        _require_names(data, output)
+        writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
+        # VTK before 9.4 cannot read appended data with every version of expat.
+        writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    writer.SetInputDataObject(data)
+    writer.Write()
+    errors = take_messages()
+    if errors or writer.GetErrorCode() != 0:
+        raise Failure(f"Cannot write {output.name}: {quote(errors, 300)}", FILE)
+    text = writer.GetOutputStdString() if output.format == "vtk" else writer.GetOutputString()
+    output.write_bytes(text if isinstance(text, bytes) else text.encode())
+
+
+def _require_names(data, output):
+    for leaf in leaves_of(data):
+        for attributes in (leaf.GetPointData(), leaf.GetCellData(), leaf.GetFieldData()):
+            for i in range(attributes.GetNumberOfArrays()):
+                name = attributes.GetAbstractArray(i).GetName() or ""
+                if set(name) & set("&<>\"'"):
+                    raise Failure(
+                        f"The name of the array {quote(name)} has a character that VTK's XML files cannot hold "
+                        f"(& < > \" '): rename it, or write a .vtk.",
+                    )
+
+
+def main(path, format):
+    capture_messages()
+    sys.stderr = open(os.devnull, "w")
+    try:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    except ImportError:
+        pass
+    try:
+        errors = _read(path, format)[1]
+    except MemoryError:
+        errors = "it asks for more memory than there is."
+    sys.stdout.buffer.write(errors.encode("utf-8", "replace"))
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,74 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes of xmorph and gtkmorph: grids of quadrilaterals laid over two photographs by hand. Rows run from the top,
+y downwards."""
+
+import numpy
+
+LARGEST = 10000
+"""The most columns or rows."""
+
+
+def read(path):
+    """The grid's points, of shape (rows, columns, 2). Raises ValueError, naming the line."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        lines = file.read().split("\n")
+
+    def fail(number, expected):
+        raise ValueError(f"line {number + 1}: expected {expected}.")
+
+    if lines[0].split()[:1] != ["M2"]:
+        fail(0, 'M2, the first line of an xmorph mesh')
+    try:
+        columns, rows = (int(word) for word in lines[1].split()[:2])
+    except (ValueError, IndexError):
+        columns = rows = 0
+    if not (2 <= columns <= LARGEST and 2 <= rows <= LARGEST):
+        fail(1, f"the numbers of columns and rows, 2 to {LARGEST}")
+    points = []
+    for i in range(2, 2 + columns * rows):
+        try:
+            x, y = (float(word) for word in lines[i].split()[:2])
+        except (ValueError, IndexError):
+            fail(i, f"x and y of point {i - 2}")
+        points.append((x, y))
+    return numpy.array(points).reshape(rows, columns, 2)
+
+
+def extent(grid):
+    """The largest x and y."""
+    return grid.reshape(-1, 2).max(axis=0).clip(0)
+
+
+def fills_picture(grid):
+    """Whether the rim is the rectangle from the origin to the largest x and y, to a pixel of the hand."""
+    end = extent(grid)
+    rims = ((grid[0, :, 1], 0), (grid[-1, :, 1], end[1]), (grid[:, 0, 0], 0), (grid[:, -1, 0], end[0]))
+    return all((numpy.abs(rim - value) <= 0.005 * end.max()).all() for rim, value in rims)
+
+
+def _smallest_angle(grid, triangles):
+    """Of each triangle (..., 3), the smallest angle in the grid; negative where it is turned over."""
+    corners = grid.reshape(-1, 2)[triangles]
+    u = numpy.roll(corners, -1, axis=-2) - corners
+    v = numpy.roll(corners, -2, axis=-2) - corners
+    cross = v[..., 0] * u[..., 1] - v[..., 1] * u[..., 0]
+    return numpy.arctan2(cross, (u * v).sum(axis=-1)).min(axis=-1)
+
+
+def triangulate(first, second):
+    """Cuts each quadrilateral along the diagonal that has the better smallest angle in both grids (y upwards)."""
+    if first.shape != second.shape:
+        raise ValueError("the two meshes do not have the same numbers of columns and rows.")
+    rows, columns = first.shape[:2]
+    a = (numpy.arange(rows - 1)[:, None] * columns + numpy.arange(columns - 1)).ravel()
+    b, d = a + 1, a + columns
+    c = d + 1
+    cuts = [
+        numpy.stack([numpy.stack(t, axis=1) for t in cut], axis=1)
+        for cut in (((a, b, c), (a, c, d)), ((a, b, d), (b, c, d)))
+    ]
+    along_ac, along_bd = (
+        numpy.minimum(_smallest_angle(first, cut), _smallest_angle(second, cut)).min(axis=1) for cut in cuts
+    )
+    return numpy.where((along_ac >= along_bd)[:, None, None], *cuts).reshape(-1, 3)

@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command dhm as a process, in a folder for each test that it must leave in order."""
+
+import collections
+import os
+import re
+import resource
+import subprocess
+import sys
+
+import pytest
+
+DONE, REFUSED, USAGE, FILE = range(4)
+Result = collections.namedtuple("Result", "status out err")
+COMMAND = [sys.executable, "-m", "vtkhomeomorphism"]
+
+
+class Dhm:
+    def __init__(self, folder, temporary):
+        self.folder, self.temporary = folder, temporary
+        self.environment = dict(os.environ, TMPDIR=str(temporary))
+
+    def __call__(self, *arguments, status=DONE, input=b"", stdout=subprocess.PIPE, limit=None):
+        """Runs it, checks its exit status and that it left no temporary file."""
+
+        def limit_files():
+            if limit is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        ran = subprocess.run(
+            [*COMMAND, *map(str, arguments)], cwd=self.folder, env=self.environment, input=input, stdout=stdout,
+            stderr=subprocess.PIPE, timeout=300, preexec_fn=limit_files,
+        )
+        result = Result(ran.returncode, ran.stdout, ran.stderr.decode())
+        what = f"dhm {' '.join(map(str, arguments))}: {result.err}"
+        assert result.status in (status if isinstance(status, set) else {status}), what
+        self.assert_tidy(what)
+        assert not re.search("[\0-\x08\x0b-\x1f]", result.err), what
+        assert not result.err or result.err.startswith("dhm: "), what
+        assert "Traceback" not in result.err, what
+        return result
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen([*COMMAND, *map(str, arguments)], cwd=self.folder, env=self.environment, **options)
+
+    def refuse(self, status, *arguments, says=(), **options):
+        """Runs it, and expects a message with these words, and nothing new in the folder."""
+        before = self.list_files()
+        result = self(*arguments, status=status, **options)
+        for words in [says] if isinstance(says, str) else says:
+            assert words in result.err, (words, result.err)
+        assert self.list_files() == before
+        return result
+
+    def list_files(self):
+        return {p: p.stat().st_mtime_ns for p in self.folder.rglob("*") if p.is_file()}
+
+    def assert_tidy(self, what=""):
+        left = [p.name for p in self.temporary.iterdir()]
+        left += [p.name for p in self.folder.rglob("*unfinished*")]
+        assert left == [], what
+
+    def path(self, name):
+        return self.folder / name
+
+
+@pytest.fixture
+def dhm(tmp_path):
+    folder, temporary = tmp_path / "work", tmp_path / "temporary"
+    folder.mkdir(), temporary.mkdir()
+    return Dhm(folder, temporary)

@@ -1,0 +1,299 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""dhm warp, with Pillow, tifffile and rasterio as independent readers and writers."""
+
+import numpy
+import pytest
+from conftest import FILE, REFUSED, USAGE
+from pairs import Pair, make_grid, make_pair, map_points, write_json, write_mesh, xy
+
+Image = pytest.importorskip("PIL.Image")
+WIDTH, HEIGHT = 24, 18
+
+
+@pytest.fixture
+def pair():
+    return make_pair(4, 3, width=WIDTH - 1, height=HEIGHT - 1)
+
+
+@pytest.fixture
+def image(dhm):
+    pixels = numpy.random.default_rng(4).integers(0, 256, (HEIGHT, WIDTH, 3)).astype(numpy.uint8)
+    Image.fromarray(pixels).save(dhm.path("image.png"))
+    return pixels
+
+
+def warp(dhm, pair, *options, image="image.png", output="out.png"):
+    write_json(dhm.path("pair.json"), pair)
+    dhm("warp", "--force", "-s", "smooth", *options, "pair.json", image, "-o", output)
+    return dhm.path(output)
+
+
+def read(path):
+    return numpy.asarray(Image.open(path))
+
+
+def test_identity_keeps_all_pixels(dhm, pair, image):
+    same = pair._replace(target=pair.source)
+    for name in ("out.png", "out.ppm", "out.tif", "out.vti"):
+        path = warp(dhm, same, output=name)
+        if name == "out.vti":
+            path = warp(dhm, same, image="out.vti", output="again.png")
+        pixels = read(path)
+        numpy.testing.assert_array_equal(pixels[:, :, :3], image)
+        assert pixels.shape[2] == 3 or (pixels[:, :, 3] == 255).all()
+
+
+def test_shift_alpha_and_background(dhm, pair, image):
+    # Four pixels to the right and three up; rows are counted from above.
+    moved = pair._replace(target=pair.source + [4, 3])
+    rgba = read(warp(dhm, moved))
+    numpy.testing.assert_array_equal(rgba[:-3, 4:, :3], image[3:, :-4])
+    alpha = numpy.zeros((HEIGHT, WIDTH))
+    alpha[:-3, 4:] = 255
+    numpy.testing.assert_array_equal(rgba[:, :, 3], alpha)
+    assert (rgba[alpha == 0] == 0).all()
+    back = read(warp(dhm, moved, "--inverse"))
+    numpy.testing.assert_array_equal(back[3:, :-4, :3], image[:-3, 4:])
+    assert (read(warp(dhm, moved, output="out.ppm"))[alpha == 0] == 255).all()
+    orange = read(warp(dhm, moved, "--background", "#ff8001"))
+    assert orange.shape[2] == 3 and (orange[alpha == 0] == [255, 128, 1]).all()
+    black = read(warp(dhm, moved, "--background", "black", "--size", "40x30"))
+    numpy.testing.assert_array_equal(black[30 - 18 - 3 : 30 - 3, 4:28], image)
+    assert black.astype(int).sum() == image.astype(int).sum()
+
+
+def test_pixels_are_looked_up_by_the_inverse(dhm, pair, image):
+    row, column = numpy.mgrid[0:HEIGHT, 0:WIDTH]
+    points = numpy.column_stack((column.ravel(), HEIGHT - 1 - row.ravel()))
+    out = read(warp(dhm, pair, "--background", "black")).astype(float)
+    origins = xy(map_points(dhm, ["pair.json"], points, "--inverse", "-s", "smooth"))
+    x, y = origins[:, 0].clip(0, WIDTH - 1), HEIGHT - 1 - origins[:, 1].clip(0, HEIGHT - 1)
+    i, j = (numpy.minimum(v.astype(int), n - 2) for v, n in ((x, WIDTH), (y, HEIGHT)))
+    u, v = (x - i)[:, None], (y - j)[:, None]
+    real = image.astype(float)
+    expected = (1 - v) * ((1 - u) * real[j, i] + u * real[j, i + 1]) + v * (
+        (1 - u) * real[j + 1, i] + u * real[j + 1, i + 1])
+    assert numpy.abs(out.reshape(-1, 3) - expected).max() <= 0.5 + 1e-6
+
+
+def test_tiles_are_seamless(dhm, monkeypatch):
+    """A warp in small tiles, each from its own window of the image, is that of the whole image."""
+    from vtkhomeomorphism import images, mapping, meshes, pair as pairs
+
+    for turn in (0.0, 0.7):
+        own = make_pair(7, 6, width=180, height=140, seed=5)
+        c, s = numpy.cos(turn), numpy.sin(turn)
+        target = 0.6 * (own.target - [90, 70]) @ [[c, -s], [s, c]] + [90, 70]
+        both = pairs.Pair([meshes.make_mesh(p, own.triangles) for p in (own.source, target)], ["a", "b"])
+        pixels = numpy.random.default_rng(6).integers(0, 256, (141, 181, 3)).astype(numpy.uint8)
+        warp = images.Warp(both, mapping.Settings())
+        raster = images.Raster(pixels)
+        monkeypatch.setattr(images, "TILE", 1000)
+        whole = warp.warp(raster, raster.grid)
+        monkeypatch.setattr(images, "TILE", 23)
+        read = []
+        window = raster.window
+        monkeypatch.setattr(raster, "window", lambda *w: read.append(w) or window(*w))
+        tiled = warp.warp(raster, raster.grid)
+        numpy.testing.assert_array_equal(tiled[1], whole[1])
+        assert numpy.abs(tiled[0].astype(int) - whole[0]).max() <= 1
+        # Points that rounding puts on another place: hardly any.
+        assert (tiled[0] != whole[0]).mean() < 1e-3
+        assert max((c[1] - c[0]) * (r[1] - r[0]) for c, r in read) < 0.2 * pixels[:, :, 0].size
+
+
+@pytest.mark.parametrize("mode, dtype", [("L", "u1"), ("LA", "u1"), ("RGBA", "u1"), ("I;16", "u2"), ("P", "u1"), ("1", "u1")])
+def test_kinds_of_pixels(dhm, pair, mode, dtype):
+    same = pair._replace(target=pair.source)
+    bands = {"LA": 2, "RGBA": 4}.get(mode, 1)
+    pixels = numpy.random.default_rng(7).integers(0, 2 ** (8 * int(dtype[1])), (HEIGHT, WIDTH, bands)).astype(dtype)
+    flat = pixels[:, :, 0] if bands == 1 else pixels
+    picture = Image.fromarray(flat if mode != "1" else flat > 127)
+    if mode == "P":
+        picture.putpalette(numpy.random.default_rng(8).integers(0, 256, 768).astype("u1").tobytes())
+    picture.save(dhm.path("kind.png"))
+    expected = numpy.asarray(picture.convert("RGB") if mode == "P" else picture)
+    out = read(warp(dhm, same, "--background", "white", image="kind.png", output="kind-out.png"))
+    if mode == "1":
+        expected = expected * 255
+    numpy.testing.assert_array_equal(out, expected)
+
+
+def test_sixteen_bits_a_color_stay(dhm, pair):
+    tifffile = pytest.importorskip("tifffile")
+    same = pair._replace(target=pair.source)
+    deep = numpy.random.default_rng(9).integers(0, 65536, (HEIGHT, WIDTH, 3)).astype("u2")
+    tifffile.imwrite(dhm.path("deep.tif"), deep, photometric="rgb")
+    options = ("--background", "white")
+    warp(dhm, same, *options, image="deep.tif", output="deep.png")
+    again = tifffile.imread(warp(dhm, same, *options, image="deep.png", output="again.tif"))
+    numpy.testing.assert_array_equal(again, deep)
+    write_json(dhm.path("pair.json"), same)
+    dhm.refuse(REFUSED, "warp", "pair.json", "deep.tif", "-o", "new.jpg", says=(".jpg", "uint16"))
+    heights = numpy.random.default_rng(10).random((HEIGHT, WIDTH)).astype("f4")
+    tifffile.imwrite(dhm.path("heights.tif"), heights)
+    again = tifffile.imread(warp(dhm, same, "--background", "black", image="heights.tif", output="again.tif"))
+    numpy.testing.assert_allclose(again, heights, rtol=1e-6)
+    dhm.refuse(REFUSED, "warp", "pair.json", "heights.tif", "-o", "new.png", says=(".png", "float32"))
+
+
+def test_wrong_colors_sizes_and_names(dhm, pair, image):
+    write_json(dhm.path("pair.json"), pair)
+
+    def refuse(*options, output="new.png", says):
+        dhm.refuse(USAGE, "warp", "pair.json", "image.png", *options, "-o", output, says=says)
+
+    for color in ("red", "#12345", "#12345g", "#1234567"):
+        refuse("--background", color, says=(color, "#rrggbb"))
+    for size in ("0x5", "5", "x", "5x", "-3x4", "3x4x5", "1e3x2", "200000x2", "4.5x3"):
+        refuse("--size=" + size, says=(size, "WIDTHxHEIGHT"))
+    refuse("--background", "transparent", output="new.jpg", says=("transparent", ".jpg"))
+    for name in ("new", "new.gif", "new.csv", "new.vtp"):
+        refuse(output=name, says=".png")
+    refuse("--crs", "EPSG:3067", says=("--crs", "georeferenced"))
+
+
+def test_meshes_beside_the_image(dhm, pair, image):
+    small = make_pair(2, 2)
+    write_json(dhm.path("beside.json"), Pair(small.source + [1000, 0], small.target + [1000, 0], small.triangles))
+    for options in ((), ("-i",)):
+        dhm.refuse(REFUSED, "warp", *options, "beside.json", "image.png", "-o", "new.png",
+                   says=("image.png", "beside.json", "x from 1000 to 1001", "do not overlap"))
+    write_json(dhm.path("unit.json"), small)
+    assert "less than a hundredth" in dhm("warp", "unit.json", "image.png", "-o", "unit.png").err
+    write_json(dhm.path("pair.json"), pair)
+    assert dhm("warp", "pair.json", "image.png", "-o", "pair.png").err == ""
+
+
+def write_xmorph(path, columns, points):
+    path.write_text(f"M2\n{columns} {len(points) // columns}\n" + "".join(f"{x!r} {y!r} 0\n" for x, y in points.tolist()))
+
+
+def test_xmorph_meshes(dhm, image):
+    # In xmorph's own units, ten to a pixel of its working image; rows from the top.
+    points, _ = make_grid(3, 2, 10 * (WIDTH - 1), 10 * (HEIGHT - 1))
+    write_xmorph(dhm.path("a.mesh"), 4, points)
+    dhm("warp", "a.mesh", "a.mesh", "image.png", "-o", "out.ppm")
+    numpy.testing.assert_array_equal(read(dhm.path("out.ppm")), image)
+    inner = points.copy()
+    inner[:4, 1] += 30
+    write_xmorph(dhm.path("b.mesh"), 4, inner)
+    dhm.refuse(USAGE, "warp", "b.mesh", "b.mesh", "image.png", "-o", "new.ppm", says=("b.mesh", "--working-size"))
+    dhm("warp", "b.mesh", "b.mesh", "image.png", "-f", "-o", "out.ppm", "--working-size", f"{WIDTH}x{HEIGHT}")
+    out = read(dhm.path("out.ppm"))
+    numpy.testing.assert_array_equal(out[3:], image[3:])
+    assert (out[:3] == 255).all()
+    write_xmorph(dhm.path("c.mesh"), 3, points)
+    dhm.refuse(FILE, "warp", "a.mesh", "c.mesh", "image.png", "-o", "new.ppm", says="columns and rows")
+    write_mesh(dhm.path("a.off"), points, make_grid(3, 2)[1])
+    dhm.refuse(USAGE, "warp", "a.mesh", "a.off", "image.png", "-o", "new.ppm", says=".mesh")
+    for text in ("", "M3\n", "M2\n1 5\n", "M2\nx y\n", "M2\n2 2\n0 0 0\n1 0 0\n0 q 0\n", "M2\n2 2\n0 0 0\n"):
+        dhm.path("bad.mesh").write_text(text)
+        dhm.refuse(FILE, "warp", "bad.mesh", "a.mesh", "image.png", "-o", "new.ppm", says=("bad.mesh", "line"))
+
+
+def test_damaged_images(dhm, pair, image):
+    write_json(dhm.path("pair.json"), pair)
+    for name in ("good.jpg", "good.ppm", "good.tif", "good.vti"):
+        warp(dhm, pair, output=name)
+    (dhm.path("image.png")).rename(dhm.path("good.png"))
+    for name in ("good.png", "good.jpg", "good.ppm", "good.tif", "good.vti"):
+        data = dhm.path(name).read_bytes()
+        for bad in (b"", data[:20], data[: len(data) // 2], numpy.random.default_rng(8).bytes(700)):
+            bad_name = "bad" + name[-4:]
+            dhm.path(bad_name).write_bytes(bad)
+            dhm.refuse(FILE, "warp", "pair.json", bad_name, "-o", "new.png", says=bad_name)
+    # Another kind than the name says.
+    dhm.path("jpeg.png").write_bytes(dhm.path("good.jpg").read_bytes())
+    dhm.refuse(FILE, "warp", "pair.json", "jpeg.png", "-o", "new.png", says="jpeg.png")
+    dhm.path("huge.ppm").write_bytes(b"P6 1000000 1000000 255\n" + bytes(100))
+    dhm.refuse(FILE, "warp", "pair.json", "huge.ppm", "-o", "new.png")
+
+
+# --- GeoTIFF
+
+rasterio = pytest.importorskip("rasterio")
+
+
+@pytest.fixture
+def shift(dhm):
+    """Between two grids on the ground, both far from their origins."""
+    own = make_pair(5, 4, width=2000, height=1600, seed=11)
+    result = Pair(own.source + [3384000, 6672000], own.target + [384000, 6669000], own.triangles)
+    write_json(dhm.path("shift.json"), result, input_crs="EPSG:2393", output_crs="EPSG:3067")
+    return result
+
+
+def write_geotiff(path, pixels, x, y, size, crs="EPSG:2393", **options):
+    with rasterio.open(path, "w", driver="GTiff", width=pixels.shape[1], height=pixels.shape[0], count=pixels.shape[2],
+                       dtype=pixels.dtype, crs=crs, transform=rasterio.transform.from_origin(x, y, size, size),
+                       **options) as file:
+        file.write(numpy.moveaxis(pixels, 2, 0))
+
+
+def test_geotiff_pixels_are_where_the_inverse_says(dhm, shift):
+    x = numpy.arange(120) * 10 + 3384405.0
+    y = 6673195.0 - numpy.arange(90) * 10
+    pixels = numpy.stack(numpy.broadcast_arrays(x - 3384000, (y - 6672000)[:, None]), axis=2).astype("f4")
+    write_geotiff(dhm.path("in.tif"), pixels, 3384400, 6673200, 10)
+    dhm("warp", "shift.json", "in.tif", "-o", "out.tif")
+    with rasterio.open(dhm.path("out.tif")) as file:
+        assert file.crs == "EPSG:3067" and numpy.isnan(file.nodata)
+        assert file.transform.a == pytest.approx(10) and file.transform.e == pytest.approx(-10)
+        values = file.read()
+        rows, columns = numpy.nonzero(numpy.isfinite(values[0]))
+        places = numpy.column_stack(rasterio.transform.xy(file.transform, rows, columns))
+    assert len(rows) > 0.9 * 120 * 90
+    some = numpy.random.default_rng(12).choice(len(rows), 300, replace=False)
+    origins = xy(map_points(dhm, ["shift.json"], places[some], "--inverse"))
+    found = values[:, rows[some], columns[some]].T + [3384000, 6672000]
+    numpy.testing.assert_allclose(found, origins, atol=2e-3)
+    # And back, on the first file's pixels.
+    dhm("warp", "--inverse", "shift.json", "out.tif", "-o", "back.tif", "--like", "in.tif")
+    with rasterio.open(dhm.path("back.tif")) as file:
+        assert file.crs == "EPSG:2393" and file.shape == (90, 120)
+        back = numpy.moveaxis(file.read(), 0, 2)
+    known = numpy.isfinite(back).all(axis=2)
+    assert known.mean() > 0.9
+    # Interpolated across the edges of triangles, where the piecewise linear map bends.
+    difference = numpy.abs(back[known] - pixels[known])
+    assert difference.max() < 10 and numpy.median(difference) < 1e-2
+
+
+def test_geotiff_alpha_nodata_and_palette(dhm, shift):
+    rgb = numpy.random.default_rng(13).integers(1, 256, (60, 80, 3)).astype("u1")
+    write_geotiff(dhm.path("rgb.tif"), rgb, 3383500, 6673500, 20)
+    dhm("warp", "shift.json", "rgb.tif", "-o", "alpha.tif")
+    with rasterio.open(dhm.path("alpha.tif")) as file:
+        assert [c.name for c in file.colorinterp] == ["red", "green", "blue", "alpha"]
+        assert set(numpy.unique(file.read(4))) == {0, 255}
+    dhm("warp", "shift.json", "rgb.tif", "-o", "red.tif", "--background", "#ff0000", "--crs", "EPSG:32635")
+    with rasterio.open(dhm.path("red.tif")) as file:
+        assert file.count == 3 and file.crs == "EPSG:32635"
+    heights = numpy.full((60, 80, 1), 100, "i2")
+    heights[20:25, 30:40] = -9999
+    write_geotiff(dhm.path("nodata.tif"), heights, 3384100, 6673300, 10, nodata=-9999)
+    dhm("warp", "shift.json", "nodata.tif", "-o", "nodata-out.tif")
+    with rasterio.open(dhm.path("nodata-out.tif")) as file:
+        assert file.nodata == -9999 and set(numpy.unique(file.read(1))) == {-9999, 100}
+    index = (numpy.arange(4800).reshape(60, 80, 1) % 2).astype("u1")
+    write_geotiff(dhm.path("palette.tif"), index, 3384100, 6673300, 10, photometric="palette")
+    with rasterio.open(dhm.path("palette.tif"), "r+") as file:
+        file.write_colormap(1, {0: (250, 0, 0), 1: (250, 200, 0)})
+    dhm("warp", "shift.json", "palette.tif", "-o", "palette-out.tif")
+    with rasterio.open(dhm.path("palette-out.tif")) as file:
+        r, g, b, a = file.read()
+        assert (r[a > 0] == 250).all() and (b == 0).all()
+
+
+def test_geotiff_refusals(dhm, shift):
+    rgb = numpy.zeros((20, 20, 3), "u1")
+    write_geotiff(dhm.path("rgb.tif"), rgb, 3384500, 6673000, 10)
+    dhm.refuse(USAGE, "warp", "shift.json", "rgb.tif", "-o", "new.png", says=".tif")
+    with rasterio.open(dhm.path("turned.tif"), "w", driver="GTiff", width=20, height=20, count=1, dtype="uint8",
+                       crs="EPSG:2393", transform=rasterio.Affine(1, 0.2, 3384500, 0.2, -1, 6673000)) as file:
+        file.write(rgb[:, :, 0], 1)
+    dhm.refuse(FILE, "warp", "shift.json", "turned.tif", "-o", "new.tif", says=("turned.tif", "gdalwarp"))
+    write_geotiff(dhm.path("away.tif"), rgb, 0, 0, 10)
+    dhm.refuse(REFUSED, "warp", "shift.json", "away.tif", "-o", "new.tif", says="do not overlap")

@@ -1,0 +1,296 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""dhm map and dhm coordinates: what they compute, against numpy, and tables in and out."""
+
+import csv
+import io
+
+import numpy
+import pytest
+from conftest import FILE, REFUSED, USAGE
+from pairs import MASK, Pair, barycentric, inside_points, interpolate, make_pair, map_points, read_csv, write_csv, \
+    write_json, write_mesh, write_vtk, xy
+
+
+@pytest.fixture
+def pair(dhm):
+    result = make_pair()
+    write_mesh(dhm.path("a.off"), result.source, result.triangles)
+    write_mesh(dhm.path("b.off"), result.target, result.triangles)
+    write_json(dhm.path("pair.json"), result)
+    return result
+
+
+MESHES = ["a.off", "b.off"]
+
+
+def test_linear_interpolates_and_is_what_triangulation_files_mean(dhm, pair):
+    points = inside_points(pair, 300)
+    expected = interpolate(points, pair)
+    for files, options in ((MESHES, ["-s", "linear"]), (["pair.json"], [])):
+        numpy.testing.assert_allclose(xy(map_points(dhm, files, points, *options)), expected, rtol=0, atol=1e-14)
+
+
+def test_smooth_is_the_default_of_meshes_and_differs_within_triangles_only(dhm, pair):
+    ends = pair.triangles[:, :2]
+    t = numpy.random.default_rng(3).random((len(ends), 1))
+    on_edges, expected = ((1 - t) * p[ends[:, 0]] + t * p[ends[:, 1]] for p in pair[:2])
+    for system in ("Linear", "contour", "SMOOTH"):
+        options = ("--system", system, "--linear-where-discordant")
+        numpy.testing.assert_allclose(xy(map_points(dhm, MESHES, on_edges, *options)), expected, rtol=0, atol=1e-12)
+        numpy.testing.assert_array_equal(xy(map_points(dhm, MESHES, pair.source, *options)), pair.target)
+    points = inside_points(pair, 100)
+    smooth = xy(map_points(dhm, MESHES, points))
+    assert numpy.abs(smooth - interpolate(points, pair)).max() > 1e-3
+    numpy.testing.assert_array_equal(xy(map_points(dhm, ["pair.json"], points, "-s", "smooth")), smooth)
+
+
+def test_other_systems_tell_how_far_they_are_from_the_official_meaning(dhm, pair):
+    write_json(dhm.path("degrees.json"), Pair(pair.source, pair.target + [25, 60], pair.triangles),
+               output_crs="EPSG:4258")
+    points = inside_points(pair, 200)
+    for name, scale in (("pair.json", [1, 1]), ("degrees.json", [numpy.cos(numpy.radians(60.5)), 1])):
+        write_csv(dhm.path("p.csv"), points)
+        result = dhm("map", name, "p.csv", "-s", "smooth", "-o", "-")
+        distance = numpy.hypot(*((xy(read_csv(result.out)) - xy(map_points(dhm, [name], points))) * scale).T).max()
+        said = float(result.err.split("point ")[1].split(":")[1].split()[0])
+        meters = name == "degrees.json"
+        assert said == pytest.approx(distance * (111195 if meters else 1), rel=0.02)
+        assert ("meters" in result.err) == meters
+
+
+def test_the_inverse_returns(dhm, pair):
+    points = inside_points(pair, 200)
+    for system in ("linear", "contour", "smooth"):
+        options = ("--system", system, "--linear-where-discordant")
+        images = xy(map_points(dhm, MESHES, points, *options))
+        assert numpy.abs(images - points).max() > 0.01
+        back = xy(map_points(dhm, MESHES, images, "--inverse", *options))
+        numpy.testing.assert_allclose(back, points, rtol=0, atol=1e-13)
+
+
+def test_jacobian_determinant_and_triangle(dhm, pair):
+    points = inside_points(pair, 200)
+    found, weights = barycentric(points, pair.source, pair.triangles)
+    points, found = points[weights.min(axis=1) > 1e-4], found[weights.min(axis=1) > 1e-4]
+    table = map_points(dhm, MESHES, points, "--jacobian", "--determinant", "--triangle-id")
+    assert (table["TriangleId"] == found).all()
+    jacobian = numpy.stack([table[f"Jacobian_{k}"] for k in range(9)], axis=1).reshape(-1, 3, 3)[:, :2, :2]
+    for axis in range(2):
+        step = 1e-6 * numpy.eye(2)[axis]
+        ahead, behind = (xy(map_points(dhm, MESHES, points + s)) for s in (step, -step))
+        numpy.testing.assert_allclose(jacobian[:, :, axis], (ahead - behind) / 2e-6, atol=1e-5)
+    numpy.testing.assert_allclose(table["JacobianDeterminant"], numpy.linalg.det(jacobian), atol=1e-12)
+
+
+def test_points_outside_are_marked_and_never_invented(dhm, pair):
+    write_csv(dhm.path("p.csv"), [[0.5, 0.5], [1.5, 0.5], [numpy.nan, 0.2]])
+    result = dhm("map", *MESHES, "p.csv", "-o", "-")
+    assert "2 points are outside" in result.err and "1" in result.err
+    table = read_csv(result.out)
+    assert table[MASK].tolist() == [1, 0, 0]
+    assert numpy.isnan(xy(table)).all(axis=1).tolist() == [False, True, True]
+    dhm.refuse(REFUSED, "map", "--require-inside", *MESHES, "p.csv", "-o", "new.csv", says="2 points are outside")
+    assert dhm("map", "-q", *MESHES, "p.csv", "-o", "-").err == ""
+    near = map_points(dhm, MESHES, [[0.5, -1e-6]], "--tolerance", "1e-5")
+    assert near[MASK] == 1 and abs(near["y"][0]) < 1e-5
+
+
+def test_coordinates_leave_points_where_they_are(dhm, pair):
+    write_csv(dhm.path("p.csv"), [[0.5, 0.51], [1.5, 0.5]])
+    table = read_csv(dhm("coordinates", "a.off", "p.csv", "-o", "-").out)
+    assert xy(table).tolist() == [[0.5, 0.51], [1.5, 0.5]] and table[MASK].tolist() == [1, 0]
+    assert 0 <= table["ContourParameter"][0] <= 1 and table["EdgeLabel"][0] in (1, 2, 3)
+
+
+def test_heights_as_proj_maps_them(dhm, pair):
+    """Interpolated linearly at the place in the source, in the file's columns, forward and back."""
+    points = inside_points(pair, 100)
+    found, weights = barycentric(points, pair.source, pair.triangles)
+    offsets = numpy.random.default_rng(4).random(len(pair.source))
+    change = (weights * offsets[pair.triangles[found]]).sum(axis=1)
+    vertices = numpy.hstack((pair.source, pair.target, offsets[:, None]))
+    both = {"transformed_components": ["horizontal", "vertical"]}
+    columns = ["source_x", "source_y", "target_x", "target_y"]
+    write_json(dhm.path("h.json"), pair, **both, vertices_columns=columns + ["offset_z"], vertices=vertices.tolist())
+    vertices = numpy.hstack((vertices[:, :4], numpy.full((len(offsets), 1), 7.0), 7 + offsets[:, None]))
+    write_json(dhm.path("z.json"), pair, **both, vertices_columns=columns + ["source_z", "target_z"],
+               vertices=vertices.tolist())
+    write_json(dhm.path("v.json"), pair, transformed_components=["vertical"],
+               vertices_columns=["source_x", "source_y", "offset_z"],
+               vertices=numpy.hstack((pair.source, offsets[:, None])).tolist())
+    given = numpy.column_stack((points, numpy.full(len(points), 50.0)))
+    for name in ("h.json", "z.json", "v.json"):
+        table = map_points(dhm, [name], given)
+        expected = points if name == "v.json" else interpolate(points, pair)
+        numpy.testing.assert_allclose(xy(table), expected, rtol=0, atol=1e-13)
+        numpy.testing.assert_allclose(table["z"], 50 + change, rtol=0, atol=1e-12)
+        images = numpy.column_stack((xy(table), table["z"]))
+        back = map_points(dhm, [name], images, "--inverse")
+        numpy.testing.assert_allclose(numpy.column_stack((xy(back), back["z"])), given, rtol=0, atol=1e-12)
+        dhm("convert", name, "-o", "again.json", "-f")
+        again = map_points(dhm, ["again.json"], given)
+        numpy.testing.assert_array_equal(again["z"], table["z"])
+
+
+def test_fallback_strategies_extend_the_nearest_triangle(dhm, pair):
+    points = numpy.array([[0.5, 0.5], [-0.3, 0.4], [1.2, 1.3], [0.3, -0.01]])
+    corners = pair.source[pair.triangles]
+    for strategy in ("nearest_centroid", "nearest_side"):
+        write_json(dhm.path("f.json"), pair, format_version="1.1", fallback_strategy=strategy)
+        result = dhm.path("p.csv")
+        write_csv(result, points)
+        ran = dhm("map", "f.json", "p.csv", "-o", "-")
+        table = read_csv(ran.out)
+        assert table["Fallback"].tolist() == [0, 1, 1, 1] and table[MASK].tolist() == [1, 0, 0, 0]
+        assert strategy in ran.err
+        for k in range(1, 4):
+            if strategy == "nearest_centroid":
+                cell = ((corners.mean(axis=1) - points[k]) ** 2).sum(axis=1).argmin()
+            else:
+                t = numpy.linspace(0, 1, 2001)[:, None, None, None]
+                sides = corners + t * (numpy.roll(corners, -1, axis=1) - corners)
+                cell = ((sides - points[k]) ** 2).sum(axis=-1).min(axis=(0, 2)).argmin()
+            own = Pair(pair.source, pair.target, pair.triangles[cell : cell + 1])
+            numpy.testing.assert_allclose(xy(table)[k], interpolate(points[k : k + 1], own)[0], atol=1e-12)
+
+
+# --- Tables
+
+
+def test_tables_keep_every_digit_and_column(dhm, pair):
+    text = ("\ufeff# measured in 1990\nName;N;E;\"Remark; long\";no\r\n\"Old \"\"Oak\"\"\";0.250;0.50;x;007\n"
+            "Stone;3;3;\"two\nlines\";1.10\n")
+    dhm.path("t.csv").write_text(text, encoding="utf-8")
+    out = dhm("map", "pair.json", "t.csv", "-o", "-").out.decode()
+    assert out.startswith("# measured in 1990\n")
+    lines = list(csv.reader(io.StringIO(out.split("\n", 1)[1]), delimiter=";"))
+    assert lines[0] == ["Name", "N", "E", "Remark; long", "no", MASK]
+    assert [(l[0], l[3], l[4]) for l in lines[1:]] == [('Old "Oak"', "x", "007"), ("Stone", "two\nlines", "1.10")]
+    image = [float(lines[1][2]), float(lines[1][1])]
+    numpy.testing.assert_allclose(image, interpolate(numpy.array([[0.5, 0.25]]), pair)[0], atol=1e-15)
+    # Coordinates that do not move keep their text.
+    out = dhm("coordinates", "pair.json", "t.csv", "-o", "-").out.decode()
+    assert ";0.250;0.50;x;007;" in out and ";3;3;" in out
+
+
+@pytest.mark.parametrize("text, rows", [
+    (b'x,y,desc\n0.4,0.5,6" pipe\n0.5,0.5,8" pipe\n0.6,0.5,none\n', 3),
+    (b"x,y,n\r0.4,0.5,a\r0.5,0.5,b\r", 2),
+    (b'x y n\n0.4 0.5 "a\tb"\n  0.4\t0.4   c  \n', 2),
+    (b'id,x,y\n"#1",0.5,0.25\n2,0.25,0.5\n', 2),
+    (b'"#1",0.5,0.25\n2,0.25,0.5\n', 2),
+    (b'x,y,n\r\n0.5,0.25,"two\r\nlines\r"\r\n\r\n0.25,0.5,\r\n', 2),
+    (b"x;y;\xe4\n0.5;0.25;\xfc\n", 1),
+])
+def test_tables_go_through_twice(dhm, pair, text, rows):
+    dhm.path("t.csv").write_bytes(text)
+    columns = ["--columns", "2,3"] if text.startswith(b'"#1"') else []
+    identity = Pair(pair.source, pair.source, pair.triangles)
+    write_json(dhm.path("same.json"), identity)
+    dhm("map", *columns, "same.json", "t.csv", "-o", "once.csv")
+    dhm("map", *columns, "same.json", "once.csv", "-o", "twice.csv")
+    separator = ";" if b";" in text else "," if b"," in text else " "
+    once, twice = (
+        list(csv.reader(io.StringIO(dhm.path(n).read_bytes().decode("latin-1"), newline=""), delimiter=separator))
+        for n in ("once.csv", "twice.csv")
+    )
+    assert len(once) == rows + (0 if text.startswith(b'"#1"') else 1)
+    for a, b in zip(once, twice):
+        assert len(a) == len(once[0])
+        b = b[: len(a)]
+        assert a[0] == b[0] or float(a[0]) == pytest.approx(float(b[0]))
+        assert a[-2] == b[-2] or float(a[-2]) == pytest.approx(float(b[-2]))
+    for word in ("a\tb", "two\r\nlines\r", "\xfc", '6" pipe', "#1"):
+        if word.encode("latin-1") in text:
+            assert any(word in field for row in twice for field in row)
+
+
+def test_columns_are_chosen(dhm, pair):
+    expected = interpolate(numpy.array([[0.25, 0.5]]), pair)[0]
+    for x, y in (("x", "y"), ("E", "N"), ("Easting", "Northing"), ("Rechtswert", "Hochwert"), ("lon", "lat"),
+                 (" X", "y "), ("POINT_X", "POINT_Y")):
+        dhm.path("t.csv").write_text(f"id;{y};{x}\n7;0.5;0.25\n")
+        out = dhm("map", "pair.json", "t.csv", "-o", "-").out.decode().splitlines()
+        assert out[0] == f"id;{y};{x};{MASK}"
+        numpy.testing.assert_allclose([float(w) for w in out[1].split(";")], [7, *expected[::-1], 1], atol=1e-15)
+    dhm.path("t.csv").write_text("up,right,id\n0.5,0.25,1\n")
+    for columns in ("right,up", "2,1", " RIGHT,Up"):
+        out = dhm("map", "pair.json", "t.csv", "--columns", columns, "-o", "-").out.decode().splitlines()
+        numpy.testing.assert_allclose([float(w) for w in out[1].split(",")[:2]], expected[::-1], atol=1e-15)
+    for columns in ("4,1", "up", "0,1", "x,y", "1,2,3,1", "up,up", "up,1"):
+        dhm.refuse(USAGE, "map", "pair.json", "t.csv", "--columns", columns, "-o", "n.csv", says="--columns")
+    # Guessing would map something else than points.
+    dhm.path("t.csv").write_text("height,a,b\n0.5,0.25,0.5\n")
+    dhm.refuse(FILE, "map", "pair.json", "t.csv", "-o", "n.csv", says=("t.csv", '"height", "a", "b"', "--columns"))
+
+
+@pytest.mark.parametrize("text, says", [
+    ("", "no points"), ("\n\n# nothing\n", "no points"), ("x,y\n", "no points"), ("x,y\n1,2\n3\n", "line 3"),
+    ("x,y\n1,2\n3,b\n", "line 3"), ('x,y\n1,"2\n', "line 2"), ("x,y\n0.1,0.2\n0.3,\n", "line 3"),
+    ("x\n1\n", "two coordinates"), ("x,y\n1,2,3\n", "line 2"), ("x,y\n1,1e999\n", "line 2"),
+    ("x,y\n0x1,2\n", "line 2"), ("x,y\n1_0,2\n", "line 2"), ('# c\n\nx,y,n\n1,2,"a\nb"\n3,b,c\n', "line 6"),
+    ("x;y\n0,5;0,25\n", "decimal commas"), ("0,5;0,25\n", "decimal commas"), ("x y\n0.5 1\n0,5 0,25\n", "line 3"),
+    ("id\tx\ty\n1\t0,5\t1\n", "line 2"),
+])
+def test_damaged_tables(dhm, pair, text, says):
+    dhm.path("bad.csv").write_text(text)
+    dhm.refuse(FILE, "map", "pair.json", "bad.csv", "-o", "new.csv", says=("bad.csv", says))
+
+
+def test_noise_is_not_a_table(dhm, pair):
+    dhm.path("bad.csv").write_bytes(numpy.random.default_rng(9).bytes(3000))
+    dhm.refuse(FILE, "map", "pair.json", "bad.csv", "-o", "new.csv", says="bad.csv")
+
+
+def test_tables_become_point_data(dhm, pair):
+    meshio = pytest.importorskip("meshio")
+    dhm.path("t.csv").write_text('id,x,y,name,x\n7,0.5,0.25,"Old, Oak",1\n8,0.25,0.5,Stone,2\n,0.125,0.5,"",3\n')
+    dhm("map", "pair.json", "t.csv", "-o", "t.vtk")
+    dhm("coordinates", "pair.json", "t.vtk", "-o", "c.vtp")
+    dhm("map", "--inverse", "pair.json", "t.vtk", "-o", "back.vtp")
+    text = dhm.path("c.vtp").read_text()
+    for name in ('Name="id"', 'Name="name"', 'Name="x"', 'Name="EdgeLabel"'):
+        assert name in text
+    for name in ("R&D", "a<b", 'w"x'):
+        with open(dhm.path("n.csv"), "w", newline="") as file:
+            csv.writer(file).writerows([["x", "y", name], [0.5, 0.5, 1]])
+        dhm.refuse(REFUSED, "map", "pair.json", "n.csv", "-o", "n.vtp", says=(name, ".vtk"))
+        assert name in next(csv.reader([dhm("map", "pair.json", "n.csv", "-o", "-").out.decode().split("\n")[0]]))
+
+
+def test_a_million_rows_are_read_and_written_by_columns(dhm, pair):
+    """A tenth of them, all different, come out in their order."""
+    points = inside_points(pair, 100000)
+    table = map_points(dhm, ["pair.json"], points)
+    some = numpy.arange(0, 100000, 999)
+    numpy.testing.assert_allclose(xy(table)[some], interpolate(points[some], pair), rtol=0, atol=1e-14)
+
+
+# --- Meshes and VTK's files
+
+
+def test_vtk_data_keeps_its_arrays(dhm, pair):
+    points = inside_points(pair, 60)
+    write_vtk(dhm.path("d.vtk"), points, [[0, 1, 2]], target=points)
+    dhm("map", *MESHES, "d.vtk", "-o", "d.vtp", "--keep-vectors")
+    assert 'Name="Moved"' in dhm.path("d.vtp").read_text()
+    dhm("map", "--inverse", *MESHES, "d.vtp", "-o", "back.off", "-q")
+    meshio = pytest.importorskip("meshio")
+    back = meshio.read(dhm.path("back.off"))
+    numpy.testing.assert_allclose(back.points[:, :2], points, rtol=0, atol=1e-13)
+    numpy.testing.assert_array_equal(back.cells[0].data, [[0, 1, 2]])
+
+
+def test_meshes_with_points_outside_are_not_written_where_they_cannot_be_marked(dhm, pair):
+    write_mesh(dhm.path("d.off"), [[0.5, 0.5], [0.6, 0.5], [1.5, 0.6]], [[0, 1, 2]])
+    dhm.refuse(REFUSED, "map", *MESHES, "d.off", "-o", "new.obj", says=".vtp")
+    dhm("map", *MESHES, "d.off", "-o", "new.vtp")
+
+
+def test_kinds_that_do_not_fit(dhm, pair):
+    write_csv(dhm.path("p.csv"), [[0.5, 0.5]])
+    for data, output, says in (("a.off", "new.csv", "table"), ("p.csv", "new.vtu", ".vtp"), ("p.csv", "new.xyzzy", ".csv"),
+                               ("p.csv", "new", "no extension"), ("p.csv", "", "empty"), ("p.csv", "new.gpkg", ".gpkg")):
+        dhm.refuse(USAGE, "map", "pair.json", data, "-o", output, says=says)
+    dhm.refuse(USAGE, "coordinates", "pair.json", "a.off", "-o", "new.obj", says=".vtp")
