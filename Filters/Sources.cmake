@@ -61,6 +61,12 @@ set(continuity_headers
   Continuity/OneSidedDerivative.h
   Continuity/RayFans.h)
 
+# Pairs made from others, and what there is to know about a pair.
+set(construction_sources
+  Construction/InBetweenPath.cxx)
+set(construction_headers
+  Construction/InBetweenPath.h)
+
 # What the VTK classes share.
 set(pipeline_sources
   Pipeline/AttributeTransformation.cxx

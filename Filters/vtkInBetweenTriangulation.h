@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkInBetweenTriangulation
+ * @brief   triangulations on the way from a source to a target, for morphs
+ *
+ * vtkInBetweenTriangulation moves the points of a triangulation (input port 0, the source) to those
+ * of another with the same triangles (input port 1, the target). At Time 0 the output is the
+ * source, at Time 1 the target, both to the bit. A morph maps data from the source to the output
+ * for a sequence of times, with vtkDifferentiableHomeomorphism, or images from both ends.
+ *
+ * A triangle may fold on the way: it is then turned over at some times, though it is not at the
+ * ends, and there is no map to the mesh. Of each path the times at which a triangle folds follow
+ * from the zeros of a quadratic polynomial. They are known before any frame is made, for the whole
+ * path and not only at Time. See Path for how folds are avoided. Where no path is free of them,
+ * they are reported as data (NumberOfFoldingTriangles and the following): this is no error.
+ *
+ * The output has the source's cells, point data and cell data, points of double precision, and the
+ * cell array `Folded` (unsigned char): 1 where the triangle has another orientation than in the
+ * source at Time, or no area, decided exactly from the output's coordinates.
+ *
+ * Folds are defined if both meshes are planar, in planes parallel to the same two axes
+ * (GetPlanar). Other meshes move along straight lines, and no folds are reported.
+ *
+ * The meshes are validated as in vtkDifferentiableHomeomorphism, and requested whole; the output is
+ * part of piece 0. Points are processed in parallel (vtkSMPTools); results do not depend on the
+ * number of threads.
+ *
+ * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
+ */
+
+#ifndef vtkInBetweenTriangulation_h
+#define vtkInBetweenTriangulation_h
+
+#include "vtkFiltersHomeomorphismModule.h" // for the export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // for the internals
+
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkInBetweenTriangulation : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkInBetweenTriangulation* New();
+  vtkTypeMacro(vtkInBetweenTriangulation, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// The paths of the points.
+  enum Paths
+  {
+    /// Straight lines, at constant speed.
+    STRAIGHT = 0,
+    /// The mesh turns and scales as a whole, at a constant rate, by the similarity that takes the
+    /// source to the target best (least squares over the points), and points move along straight
+    /// lines relative to it.
+    ROTATING = 1,
+    /// STRAIGHT if no triangle folds on that path, else ROTATING if fewer fold there.
+    FEWEST_FOLDS = 2
+  };
+
+  ///@{
+  /// The source mesh, input port 0.
+  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
+  void SetSourceData(vtkPolyData* source);
+  ///@}
+
+  ///@{
+  /// The target mesh, input port 1.
+  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetTargetData(vtkPolyData* target);
+  ///@}
+
+  ///@{
+  /// How far the points have moved, from 0 (the source) to 1 (the target). 0.5 by default.
+  vtkSetClampMacro(Time, double, 0.0, 1.0);
+  vtkGetMacro(Time, double);
+  ///@}
+
+  ///@{
+  /// See Paths. FEWEST_FOLDS by default. It depends on the meshes only, so that all times are on
+  /// one path.
+  vtkSetClampMacro(Path, int, STRAIGHT, FEWEST_FOLDS);
+  vtkGetMacro(Path, int);
+  ///@}
+
+  ///@{
+  /// See vtkDifferentiableHomeomorphism. Triangles left out have part neither in the path nor in
+  /// the folds. Off by default.
+  vtkSetMacro(MaskInvalidTriangles, bool);
+  vtkGetMacro(MaskInvalidTriangles, bool);
+  vtkBooleanMacro(MaskInvalidTriangles, bool);
+  ///@}
+
+  /// The path of the last update, STRAIGHT or ROTATING.
+  vtkGetMacro(UsedPath, int);
+
+  ///@{
+  /// Of a rotating path: the angle by which the mesh turns from source to target, in degrees within
+  /// [-180, 180], counterclockwise in the plane's coordinates in the order of their axes, and the
+  /// factor by which lengths scale. 0 and 1 on a straight path.
+  vtkGetMacro(RotationAngle, double);
+  vtkGetMacro(ScaleFactor, double);
+  ///@}
+
+  /// Whether both meshes are planar, in planes parallel to the same two axes.
+  vtkGetMacro(Planar, bool);
+
+  /// Whether source and target are mirror images of each other: then all triangles fold.
+  vtkGetMacro(Mirrored, bool);
+
+  ///@{
+  /// Number of triangles that fold at some time on the path, the cell id of the first to fold (-1
+  /// if none does), the time at which it folds, and the time at which the last has unfolded.
+  /// Without folds, the times are 1 and 0.
+  vtkGetMacro(NumberOfFoldingTriangles, vtkIdType);
+  vtkGetMacro(FirstFoldingTriangle, vtkIdType);
+  vtkGetMacro(FirstFoldTime, double);
+  vtkGetMacro(LastFoldTime, double);
+  ///@}
+
+  /// Number of triangles that are folded at Time: the sum of the array `Folded`.
+  vtkGetMacro(NumberOfFoldedTriangles, vtkIdType);
+
+protected:
+  vtkInBetweenTriangulation();
+  ~vtkInBetweenTriangulation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  double Time = 0.5;
+  int Path = FEWEST_FOLDS;
+  bool MaskInvalidTriangles = false;
+  int UsedPath = STRAIGHT;
+  double RotationAngle = 0.0;
+  double ScaleFactor = 1.0;
+  bool Planar = false;
+  bool Mirrored = false;
+  vtkIdType NumberOfFoldingTriangles = 0;
+  vtkIdType FirstFoldingTriangle = -1;
+  double FirstFoldTime = 1.0;
+  double LastFoldTime = 0.0;
+  vtkIdType NumberOfFoldedTriangles = 0;
+
+private:
+  vtkInBetweenTriangulation(const vtkInBetweenTriangulation&) = delete;
+  void operator=(const vtkInBetweenTriangulation&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif
