@@ -81,7 +81,8 @@ set(pipeline_headers
   Pipeline/FilterSupport.h
   Pipeline/HomeomorphismCache.h
   Pipeline/ImageSampling.h
-  Pipeline/ProcessStatistics.h)
+  Pipeline/ProcessStatistics.h
+  Pipeline/VTKVersions.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results
 # would change from one machine to another. Nobody asks for floating-point exceptions or errno: without

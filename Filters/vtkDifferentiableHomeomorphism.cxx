@@ -611,7 +611,7 @@ void vtkDifferentiableHomeomorphism::Internals::Measure(
     auto* inner = vtkAlgorithm::SafeDownCast(caller);
     auto* outer = static_cast<vtkDifferentiableHomeomorphism*>(client);
     outer->UpdateProgress(inner->GetProgress());
-    inner->SetAbortExecute(outer->GetAbortExecute());
+    inner->SetAbortExecute(ShouldAbort(outer));
   });
   const unsigned long observer = continuity->AddObserver(vtkCommand::ProgressEvent, passOn);
   continuity->Update();

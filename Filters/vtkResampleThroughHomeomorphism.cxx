@@ -6,6 +6,7 @@
 #include "Pipeline/FilterSupport.h"
 #include "Pipeline/ImageSampling.h"
 #include "Pipeline/ProcessStatistics.h"
+#include "Pipeline/VTKVersions.h"
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkCallbackCommand.h"
@@ -267,8 +268,7 @@ vtkSmartPointer<vtkDataObject> WithoutCaches(vtkDataObject* data)
     copy->SetPoints(grid->GetPoints());
     if (grid->GetCells())
     {
-      copy->SetCells(
-        grid->GetCellTypesArray(), grid->GetCells(), grid->GetFaceLocations(), grid->GetFaces());
+      CopyCells(grid, copy.Get());
     }
     copy->GetPointData()->ShallowCopy(grid->GetPointData());
     copy->GetCellData()->ShallowCopy(grid->GetCellData());
@@ -565,7 +565,7 @@ int vtkResampleThroughHomeomorphism::Resample(
       origins->InsertNextPoint(pulledBack->GetPoint(i));
     }
   }
-  if (this->GetAbortExecute())
+  if (ShouldAbort(this))
   {
     return 1;
   }

@@ -7,11 +7,14 @@
 
 #include "Kernel/ExactSign.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -86,13 +89,30 @@ TriangleList FindTriangles(const Triangulation& triangulation, Predicate&& predi
   return found;
 }
 
+using Int32Array = vtkAOSDataArrayTemplate<vtkTypeInt32>;
+using Int64Array = vtkAOSDataArrayTemplate<vtkTypeInt64>;
+
+/// The ids as an array of 64-bit integers: the array itself if it is one, otherwise a copy. A
+/// vtkCellArray may keep its offsets as an implicit array and either array with any value type.
+vtkSmartPointer<Int64Array> AsInt64Array(vtkDataArray* ids)
+{
+  if (auto* array = Int64Array::FastDownCast(ids))
+  {
+    return array;
+  }
+  auto copy = vtkSmartPointer<vtkTypeInt64Array>::New();
+  copy->DeepCopy(ids);
+  return copy;
+}
+
 /// Reads polygons from offsets and connectivity, which need not be well formed. The memory itself
 /// is read, and not by the arrays' own methods: so sanitizers of this module's code see what is
 /// read.
-template <typename OffsetArray>
-void ReadPolygons(OffsetArray* offsetArray, OffsetArray* connectivityArray,
-  vtkIdType numberOfPoints, vtkIdType firstCell, LargeArray<Triangulation::Corners>& triangles,
-  Offenders& notTriangles, Offenders& badConnectivity)
+template <typename Id>
+void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
+  vtkAOSDataArrayTemplate<Id>* connectivityArray, vtkIdType numberOfPoints, vtkIdType firstCell,
+  LargeArray<Triangulation::Corners>& triangles, Offenders& notTriangles,
+  Offenders& badConnectivity)
 {
   const vtkIdType cells = std::max<vtkIdType>(0, offsetArray->GetNumberOfValues() - 1);
   const vtkIdType entries = connectivityArray->GetNumberOfValues();
@@ -403,15 +423,19 @@ LargeArray<Triangulation::Corners> ReadTriangles(
   }
   if (count > 0)
   {
-    if (polygons->IsStorage64Bit())
+    vtkDataArray* offsets = polygons->GetOffsetsArray();
+    vtkDataArray* connectivity = polygons->GetConnectivityArray();
+    auto* offsets32 = Int32Array::FastDownCast(offsets);
+    auto* connectivity32 = Int32Array::FastDownCast(connectivity);
+    if (offsets32 && connectivity32)
     {
-      ReadPolygons(polygons->GetOffsetsArray64(), polygons->GetConnectivityArray64(),
-        numberOfPoints, firstCell, triangles, notTriangles, badConnectivity);
+      ReadPolygons(offsets32, connectivity32, numberOfPoints, firstCell, triangles, notTriangles,
+        badConnectivity);
     }
     else
     {
-      ReadPolygons(polygons->GetOffsetsArray32(), polygons->GetConnectivityArray32(),
-        numberOfPoints, firstCell, triangles, notTriangles, badConnectivity);
+      ReadPolygons<vtkTypeInt64>(AsInt64Array(offsets), AsInt64Array(connectivity), numberOfPoints,
+        firstCell, triangles, notTriangles, badConnectivity);
     }
   }
   notTriangles.Report(problems, "polygon with another number of corners than three");

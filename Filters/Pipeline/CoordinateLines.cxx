@@ -3,6 +3,8 @@
 
 #include "CoordinateLines.h"
 
+#include "VTKVersions.h"
+
 #include "vtkTriangularCoordinates.h"
 
 #include "vtkAlgorithm.h"
@@ -133,7 +135,7 @@ void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
     if (t % 1024 == 0)
     {
       self->UpdateProgress(0.1 * t / topology.GetNumberOfTriangles());
-      if (self->GetAbortExecute())
+      if (ShouldAbort(self))
       {
         break;
       }

@@ -13,6 +13,8 @@
 #include "Mesh/MeshValidation.h"
 #include "Pipeline/HomeomorphismCache.h"
 
+#include "VTKVersions.h"
+
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkAlgorithm.h"
 #include "vtkArrayDispatch.h"
@@ -182,7 +184,7 @@ vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
   {
     self->UpdateProgress(progressBegin +
       (progressEnd - progressBegin) * static_cast<double>(begin) / static_cast<double>(count));
-    if (self->GetAbortExecute())
+    if (ShouldAbort(self))
     {
       return begin;
     }

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file VTKVersions.h
+/// What VTK's versions name differently. The compiler looks for a method instead of comparing
+/// version numbers, because ParaView's VTK has numbers of its own.
+
+#ifndef homeomorphism_VTKVersions_h
+#define homeomorphism_VTKVersions_h
+
+#include "vtkAlgorithm.h"
+#include "vtkUnstructuredGrid.h"
+
+namespace homeomorphism
+{
+namespace versions
+{
+
+template <typename Algorithm>
+auto ShouldAbort(Algorithm* self, int) -> decltype(self->CheckAbort())
+{
+  return self->CheckAbort();
+}
+template <typename Algorithm>
+bool ShouldAbort(Algorithm* self, long)
+{
+  return self->GetAbortExecute() != 0;
+}
+
+template <typename Grid>
+auto GetCellTypes(Grid* grid, int) -> decltype(grid->GetCellTypes())
+{
+  return grid->GetCellTypes();
+}
+template <typename Grid>
+auto GetCellTypes(Grid* grid, long)
+{
+  return grid->GetCellTypesArray();
+}
+
+template <typename Grid>
+auto CopyCells(Grid* from, Grid* to, int) -> decltype(from->GetPolyhedronFaceLocations(), void())
+{
+  to->SetPolyhedralCells(GetCellTypes(from, 0), from->GetCells(),
+    from->GetPolyhedronFaceLocations(), from->GetPolyhedronFaces());
+}
+template <typename Grid>
+auto CopyCells(Grid* from, Grid* to, long) -> decltype(from->GetFaceLocations(), void())
+{
+  to->SetCells(GetCellTypes(from, 0), from->GetCells(), from->GetFaceLocations(), from->GetFaces());
+}
+
+} // namespace versions
+
+/// Whether an algorithm has been asked to abort. Since VTK 9.3, a request to an algorithm upstream
+/// counts, too.
+inline bool ShouldAbort(vtkAlgorithm* self)
+{
+  return versions::ShouldAbort(self, 0);
+}
+
+/// Gives one grid the cells of another, polyhedra included. VTK 9.4 has renamed the lists of faces,
+/// VTK 9.6 that of types.
+inline void CopyCells(vtkUnstructuredGrid* from, vtkUnstructuredGrid* to)
+{
+  versions::CopyCells(from, to, 0);
+}
+
+} // namespace homeomorphism
+
+#endif
