@@ -63,9 +63,11 @@ set(continuity_headers
 
 # Pairs made from others, and what there is to know about a pair.
 set(construction_sources
-  Construction/InBetweenPath.cxx)
+  Construction/InBetweenPath.cxx
+  Construction/PairRefinement.cxx)
 set(construction_headers
-  Construction/InBetweenPath.h)
+  Construction/InBetweenPath.h
+  Construction/PairRefinement.h)
 
 # What the VTK classes share.
 set(pipeline_sources

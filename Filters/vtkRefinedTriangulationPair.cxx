@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "vtkRefinedTriangulationPair.h"
+
+#include "Construction/PairRefinement.h"
+#include "Pipeline/FilterSupport.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkErrorCode.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <array>
+
+using namespace homeomorphism;
+
+vtkStandardNewMacro(vtkRefinedTriangulationPair);
+
+class vtkRefinedTriangulationPair::Internals
+{
+public:
+  HomeomorphismCache Cache;
+};
+
+namespace
+{
+
+/// One of the finer meshes, made from the original one.
+void MakeMesh(vtkPolyData* original, const Triangulation& triangulation, const RefinedPair& refined,
+  Domain domain, vtkPolyData* mesh)
+{
+  const vtkIdType oldPoints = original->GetNumberOfPoints();
+  const auto newPoints = static_cast<vtkIdType>(refined.NewPoints.size());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(oldPoints + newPoints);
+  for (vtkIdType i = 0; i < oldPoints; ++i)
+  {
+    double p[3];
+    original->GetPoint(i, p);
+    points->SetPoint(i, p);
+  }
+  vtkPointData* pointData = mesh->GetPointData();
+  pointData->InterpolateAllocate(original->GetPointData(), oldPoints + newPoints);
+  for (vtkIdType i = 0; i < oldPoints; ++i)
+  {
+    pointData->CopyData(original->GetPointData(), i, i);
+  }
+  vtkNew<vtkIdList> corners;
+  corners->SetNumberOfIds(3);
+  for (vtkIdType i = 0; i < newPoints; ++i)
+  {
+    const RefinedPair::Point& point = refined.NewPoints[static_cast<std::size_t>(i)];
+    points->SetPoint(oldPoints + i,
+      refined.NewPositions[static_cast<std::size_t>(domain)][static_cast<std::size_t>(i)].data());
+    std::array<double, 3> weights = point.Weights;
+    for (int k = 0; k < 3; ++k)
+    {
+      corners->SetId(k, triangulation.GetCorners(point.Triangle)[static_cast<std::size_t>(k)]);
+    }
+    pointData->InterpolatePoint(original->GetPointData(), oldPoints + i, corners, weights.data());
+  }
+  vtkNew<vtkCellArray> triangles;
+  vtkNew<vtkIdTypeArray> originals;
+  originals->SetName("OriginalCellIds");
+  const auto numberOfTriangles = static_cast<vtkIdType>(refined.Triangles.size());
+  originals->SetNumberOfTuples(numberOfTriangles);
+  vtkCellData* cellData = mesh->GetCellData();
+  cellData->CopyAllocate(original->GetCellData(), numberOfTriangles);
+  for (vtkIdType i = 0; i < numberOfTriangles; ++i)
+  {
+    const auto n = static_cast<std::size_t>(i);
+    const vtkIdType cell = triangulation.GetCellId(refined.Originals[n]);
+    triangles->InsertNextCell(3, refined.Triangles[n].data());
+    originals->SetValue(i, cell);
+    cellData->CopyData(original->GetCellData(), cell, i);
+  }
+  mesh->SetPoints(points);
+  mesh->SetPolys(triangles);
+  cellData->AddArray(originals);
+}
+
+} // namespace
+
+vtkRefinedTriangulationPair::vtkRefinedTriangulationPair()
+  : Internal(new Internals)
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkRefinedTriangulationPair::~vtkRefinedTriangulationPair() = default;
+
+void vtkRefinedTriangulationPair::SetSourceData(vtkPolyData* source)
+{
+  this->SetInputData(0, source);
+}
+
+void vtkRefinedTriangulationPair::SetTargetData(vtkPolyData* target)
+{
+  this->SetInputData(1, target);
+}
+
+int vtkRefinedTriangulationPair::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Set(AskedForWhole(), 1);
+  return 1;
+}
+
+int vtkRefinedTriangulationPair::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
+  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
+  return 1;
+}
+
+int vtkRefinedTriangulationPair::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  RequestWhole(inputs[0]->GetInformationObject(0));
+  RequestWhole(inputs[1]->GetInformationObject(0));
+  return 1;
+}
+
+int vtkRefinedTriangulationPair::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
+  vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->Result = INVALID;
+  this->LargestError = 0.0;
+  this->NumberOfSamples = 0;
+  const std::shared_ptr<const Homeomorphism> map =
+    this->Internal->Cache.Get(source, target, GetOptions(this));
+  ReportProblems(this, this->Internal->Cache.GetProblems());
+  if (!map)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    return 0;
+  }
+  if (!IsFirstPiece(request, outputs))
+  {
+    this->Result = REFINED;
+    return 1;
+  }
+  const MeshGeometry& targetGeometry = map->GetPair().GetGeometry(Domain::Target);
+  const double maximumError = this->MaximumError > 0.0
+    ? this->MaximumError
+    : 1e-4 * targetGeometry.GetDiagonal() * targetGeometry.GetInverseScale();
+  const RefinedPair refined = Refine(*map, source, target, maximumError,
+    this->MaximumNumberOfTriangles, [this] { return this->GetAbortExecute() != 0; });
+  this->LargestError = refined.LargestError;
+  this->NumberOfSamples = refined.Samples;
+  switch (refined.Result)
+  {
+    case RefinedPair::Outcome::Refined:
+      break;
+    case RefinedPair::Outcome::TooManyTriangles:
+      this->Result = TOO_MANY_TRIANGLES;
+      this->SetErrorCode(vtkErrorCode::UserError);
+      vtkErrorMacro(<< "More than " << this->MaximumNumberOfTriangles
+                    << " triangles are needed for a maximum error of " << maximumError
+                    << "; the error is still " << refined.LargestError
+                    << ". Increase MaximumError or MaximumNumberOfTriangles.");
+      return 0;
+    case RefinedPair::Outcome::BelowRounding:
+      this->Result = BELOW_ROUNDING;
+      this->SetErrorCode(vtkErrorCode::UserError);
+      vtkErrorMacro(<< "A maximum error of " << maximumError
+                    << " is below the rounding of the coordinates; the error is still "
+                    << refined.LargestError << ". Increase MaximumError.");
+      return 0;
+    case RefinedPair::Outcome::Aborted:
+      this->Result = ABORTED;
+      return 1;
+  }
+
+  const Triangulation& triangulation = map->GetPair().GetTriangulation();
+  std::array<vtkNew<vtkPolyData>, 2> meshes;
+  MakeMesh(source, triangulation, refined, Domain::Source, meshes[0]);
+  MakeMesh(target, triangulation, refined, Domain::Target, meshes[1]);
+  MeshDiagnostics problems;
+  if (!TriangulationPair::Read(meshes[0], meshes[1], false, problems))
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    vtkErrorMacro(<< "In the rounding of coordinates the finer meshes are not valid. Increase "
+                     "MaximumError. "
+                  << DescribeProblems(problems, MeshDiagnostic::Outcome::Refused));
+    return 0;
+  }
+  this->Result = REFINED;
+  vtkPolyData::GetData(outputs, 0)->ShallowCopy(meshes[0]);
+  vtkPolyData::GetData(outputs, 1)->ShallowCopy(meshes[1]);
+  this->UpdateProgress(1.0);
+  return 1;
+}
+
+void vtkRefinedTriangulationPair::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
+  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
+  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
+  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
+  os << indent << "MaximumError: " << this->MaximumError << "\n";
+  os << indent << "MaximumNumberOfTriangles: " << this->MaximumNumberOfTriangles << "\n";
+  os << indent << "Result: " << this->Result << "\n";
+  os << indent << "LargestError: " << this->LargestError << "\n";
+  os << indent << "NumberOfSamples: " << this->NumberOfSamples << "\n";
+}

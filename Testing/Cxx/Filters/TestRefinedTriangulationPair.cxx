@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Finer pairs: the piecewise linear map keeps the tolerance where it was not measured, the meshes
+// are valid and conforming, and data is interpolated as in the original triangles.
+
+#include "FilterRuns.h"
+
+#include "vtkRefinedTriangulationPair.h"
+
+#include "vtkCellData.h"
+#include "vtkPolyData.h"
+#include "vtkSMPTools.h"
+
+namespace
+{
+
+using namespace filter_runs;
+
+vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, double maximumError)
+{
+  auto filter = vtkSmartPointer<vtkRefinedTriangulationPair>::New();
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->SetMaximumError(maximumError);
+  return filter;
+}
+
+/// The images of points by the homeomorphism of a pair.
+vtkSmartPointer<vtkPointSet> MapPoints(
+  vtkPolyData* source, vtkPolyData* target, vtkPolyData* cloud, int coordinateSystem)
+{
+  vtkNew<vtkDifferentiableHomeomorphism> map;
+  map->SetSourceData(source);
+  map->SetTargetData(target);
+  map->SetDataObject(cloud);
+  map->SetCoordinateSystem(coordinateSystem);
+  // On surfaces points between corners are off the surface by rounding.
+  map->SetTolerance(1e-12);
+  map->Update();
+  EXPECT_EQ(map->GetNumberOfOutsidePoints(), 0);
+  return vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
+}
+
+/// The largest distance between a pair's homeomorphism and the finer pair's piecewise linear map at
+/// points at random, a part of them close to edges and vertices.
+double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter, int system)
+{
+  const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, 20000, 5));
+  const auto exact = MapPoints(pair.Source, pair.Target, cloud, system);
+  const auto linear = MapPoints(
+    filter->GetOutput(), filter->GetTargetOutput(), cloud, vtkDifferentiableHomeomorphism::LINEAR);
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+  {
+    largest = std::max(largest, Distance(PointOf(exact, i), PointOf(linear, i)));
+  }
+  return largest;
+}
+
+TEST(RefinedTriangulationPair, KeepsTheMaximumErrorAtPointsAtRandom)
+{
+  const MeshPair pair = MakePlanarPair(4, 23);
+  vtkIdType triangles = pair.Source->GetNumberOfCells();
+  for (const double maximumError : { 0.01, 0.003 })
+  {
+    const auto filter = MakeFilter(pair, maximumError);
+    filter->Update();
+    EXPECT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
+    EXPECT_LE(filter->GetLargestError(), maximumError);
+    EXPECT_GT(filter->GetNumberOfSamples(), 0);
+    EXPECT_LE(
+      LargestError(pair, filter, vtkDifferentiableHomeomorphism::SMOOTH), 1.05 * maximumError);
+    EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), triangles);
+    triangles = filter->GetOutput()->GetNumberOfCells();
+  }
+}
+
+TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfContourAndOnSurfaces)
+{
+  const MeshPair planar = MakePlanarPair(3, 29, 0.1);
+  const auto contour = MakeFilter(planar, 0.005);
+  contour->SetCoordinateSystem(vtkRefinedTriangulationPair::CONTOUR);
+  contour->SetDiscordantTriangles(vtkRefinedTriangulationPair::REFUSE);
+  contour->Update();
+  EXPECT_LE(LargestError(planar, contour, vtkDifferentiableHomeomorphism::CONTOUR), 0.00525);
+
+  const MeshPair closed = MakeClosedPair(1, 31);
+  const auto surface = MakeFilter(closed, 0.01);
+  surface->Update();
+  EXPECT_EQ(surface->GetResult(), vtkRefinedTriangulationPair::REFINED);
+  EXPECT_LE(LargestError(closed, surface, vtkDifferentiableHomeomorphism::SMOOTH), 0.0105);
+}
+
+TEST(RefinedTriangulationPair, DividesNothingWhereTheMapIsLinear)
+{
+  const MeshPair pair = MakePlanarPair(4, 37);
+  const auto filter = MakeFilter(pair, 1e-9);
+  filter->SetCoordinateSystem(vtkRefinedTriangulationPair::LINEAR);
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), pair.Source->GetNumberOfCells());
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), pair.Source->GetNumberOfPoints());
+}
+
+TEST(RefinedTriangulationPair, IsConformingAndKeepsPointsAndAreas)
+{
+  const MeshPair pair = MakePlanarPair(4, 41);
+  const auto filter = MakeFilter(pair, 0.004);
+  filter->Update();
+  vtkPolyData* meshes[2] = { filter->GetOutput(), filter->GetTargetOutput() };
+  vtkPolyData* originals[2] = { pair.Source, pair.Target };
+  for (int side = 0; side < 2; ++side)
+  {
+    for (vtkIdType i = 0; i < pair.Source->GetNumberOfPoints(); ++i)
+    {
+      EXPECT_EQ(PointOf(meshes[side], i), PointOf(originals[side], i));
+    }
+    double area = 0.0;
+    for (vtkIdType c = 0; c < meshes[side]->GetNumberOfCells(); ++c)
+    {
+      const auto p = CornersOf(meshes[side], c);
+      const double twice = Cross(p[1] - p[0], p[2] - p[0])[2];
+      EXPECT_GT(twice, 0.0);
+      area += 0.5 * twice;
+    }
+    EXPECT_NEAR(area, 16.0, 1e-11);
+  }
+  // Every edge has two triangles, or lies on the boundary of the square: none ends at a vertex
+  // within an edge.
+  std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+  for (vtkIdType c = 0; c < meshes[0]->GetNumberOfCells(); ++c)
+  {
+    vtkNew<vtkIdList> ids;
+    meshes[0]->GetCellPoints(c, ids);
+    for (int k = 0; k < 3; ++k)
+    {
+      ++edges[std::minmax(vtkIdType(ids->GetId(k)), vtkIdType(ids->GetId((k + 1) % 3)))];
+    }
+  }
+  for (const auto& edge : edges)
+  {
+    ASSERT_LE(edge.second, 2);
+    if (edge.second == 1)
+    {
+      const Point a = PointOf(meshes[0], edge.first.first);
+      const Point b = PointOf(meshes[0], edge.first.second);
+      EXPECT_TRUE((a[0] == b[0] && (a[0] == 0.0 || a[0] == 4.0)) ||
+        (a[1] == b[1] && (a[1] == 0.0 || a[1] == 4.0)));
+    }
+  }
+}
+
+TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
+{
+  const MeshPair pair = MakePlanarPair(3, 43);
+  const auto heights = RandomArray("Height", 1, pair.Source->GetNumberOfPoints(), 47);
+  pair.Source->GetPointData()->AddArray(heights);
+  const auto cellNumbers = RandomArray("Region", 1, pair.Source->GetNumberOfCells(), 53);
+  pair.Target->GetCellData()->AddArray(cellNumbers);
+  const auto filter = MakeFilter(pair, 0.004);
+  filter->Update();
+  vtkPolyData* refined = filter->GetOutput();
+  vtkDataArray* interpolated = PointArray(refined, "Height");
+  ASSERT_NE(interpolated, nullptr);
+  EXPECT_EQ(PointArray(filter->GetTargetOutput(), "Height"), nullptr);
+  vtkDataArray* ids = refined->GetCellData()->GetArray("OriginalCellIds");
+  vtkDataArray* regions = filter->GetTargetOutput()->GetCellData()->GetArray("Region");
+  for (vtkIdType c = 0; c < refined->GetNumberOfCells(); ++c)
+  {
+    const auto original = static_cast<vtkIdType>(ids->GetTuple1(c));
+    EXPECT_EQ(regions->GetTuple1(c), cellNumbers->GetValue(original));
+    const auto corners = CornersOf(pair.Source, original);
+    vtkNew<vtkIdList> cornerIds;
+    pair.Source->GetCellPoints(original, cornerIds);
+    vtkNew<vtkIdList> partIds;
+    refined->GetCellPoints(c, partIds);
+    const double area = Cross(corners[1] - corners[0], corners[2] - corners[0])[2];
+    for (int k = 0; k < 3; ++k)
+    {
+      const Point p = PointOf(refined, partIds->GetId(k));
+      double height = 0.0;
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        const Point& next = corners[static_cast<std::size_t>((corner + 1) % 3)];
+        const Point& last = corners[static_cast<std::size_t>((corner + 2) % 3)];
+        height += Cross(next - p, last - p)[2] / area * heights->GetValue(cornerIds->GetId(corner));
+      }
+      EXPECT_NEAR(interpolated->GetTuple1(partIds->GetId(k)), height, 1e-10);
+    }
+  }
+}
+
+TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
+{
+  const MeshPair pair = MakePlanarPair(3, 59);
+  const auto filter = MakeFilter(pair, 0.004);
+  filter->Update();
+  vtkNew<vtkPolyData> first;
+  first->DeepCopy(filter->GetTargetOutput());
+  vtkSMPTools::Initialize(1);
+  filter->Modified();
+  filter->Update();
+  vtkSMPTools::Initialize();
+  ASSERT_EQ(filter->GetTargetOutput()->GetNumberOfPoints(), first->GetNumberOfPoints());
+  const double unit = 0x1p-40;
+  MeshPair scaled;
+  for (const bool isTarget : { false, true })
+  {
+    vtkNew<vtkPolyData> mesh;
+    mesh->DeepCopy(isTarget ? pair.Target : pair.Source);
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      mesh->GetPoints()->SetPoint(i, (unit * PointOf(mesh, i)).data());
+    }
+    (isTarget ? scaled.Target : scaled.Source) = mesh;
+  }
+  const auto other = MakeFilter(scaled, 0.004 * unit);
+  other->Update();
+  ASSERT_EQ(other->GetTargetOutput()->GetNumberOfPoints(), first->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < first->GetNumberOfPoints(); ++i)
+  {
+    EXPECT_EQ(PointOf(filter->GetTargetOutput(), i), PointOf(first, i));
+    EXPECT_EQ(PointOf(other->GetTargetOutput(), i), unit * PointOf(first, i));
+  }
+}
+
+TEST(RefinedTriangulationPair, ReportsWhatItCannotDo)
+{
+  const MeshPair pair = MakePlanarPair(3, 61);
+  const auto few = MakeFilter(pair, 1e-4);
+  few->SetMaximumNumberOfTriangles(100);
+  Messages fewMessages(few);
+  few->Update();
+  EXPECT_TRUE(fewMessages.HasError());
+  EXPECT_EQ(few->GetResult(), vtkRefinedTriangulationPair::TOO_MANY_TRIANGLES);
+  EXPECT_EQ(few->GetOutput()->GetNumberOfCells(), 0);
+  EXPECT_GT(few->GetLargestError(), 1e-4);
+
+  MeshPair far = MakePlanarPair(2, 67);
+  for (vtkPolyData* mesh : { far.Source.Get(), far.Target.Get() })
+  {
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      mesh->GetPoints()->SetPoint(i, (PointOf(mesh, i) + Point{ 0x1p44, 0x1p44, 0.0 }).data());
+    }
+  }
+  const auto below = MakeFilter(far, 1e-6);
+  below->SetMaximumNumberOfTriangles(100000);
+  Messages belowMessages(below);
+  below->Update();
+  EXPECT_TRUE(belowMessages.HasError());
+  EXPECT_EQ(below->GetResult(), vtkRefinedTriangulationPair::BELOW_ROUNDING);
+
+  const auto invalid = MakeFilter({ pair.Source, MakePlanarPair(4, 1).Target }, 0.01);
+  Messages invalidMessages(invalid);
+  invalid->Update();
+  EXPECT_TRUE(invalidMessages.HasError());
+  EXPECT_EQ(invalid->GetResult(), vtkRefinedTriangulationPair::INVALID);
+}
+
+} // namespace
