@@ -64,10 +64,14 @@ set(continuity_headers
 # Pairs made from others, and what there is to know about a pair.
 set(construction_sources
   Construction/InBetweenPath.cxx
-  Construction/PairRefinement.cxx)
+  Construction/MapStatistics.cxx
+  Construction/PairRefinement.cxx
+  Construction/PairStatistics.cxx)
 set(construction_headers
   Construction/InBetweenPath.h
-  Construction/PairRefinement.h)
+  Construction/MapStatistics.h
+  Construction/PairRefinement.h
+  Construction/PairStatistics.h)
 
 # What the VTK classes share.
 set(pipeline_sources

@@ -1,0 +1,419 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "vtkTriangulationPairReport.h"
+
+#include "Construction/MapStatistics.h"
+#include "Construction/PairStatistics.h"
+#include "Pipeline/FilterSupport.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkDoubleArray.h"
+#include "vtkErrorCode.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkIntArray.h"
+#include "vtkJacobianContinuity.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace homeomorphism;
+
+vtkStandardNewMacro(vtkTriangulationPairReport);
+
+namespace
+{
+
+constexpr double None = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<const char*, 2> MeshNames{ "Source", "Target" };
+constexpr std::array<const char*, 3> SystemNames{ "Linear", "Contour", "Smooth" };
+
+/// A table of one row.
+class Row
+{
+public:
+  explicit Row(vtkTable* table)
+    : Table(table)
+  {
+  }
+
+  void Add(const std::string& name, double value) { this->AddTo<vtkDoubleArray>(name, value); }
+  void Add(const std::string& name, bool value) { this->AddTo<vtkIntArray>(name, value ? 1 : 0); }
+  void Add(const std::string& name, vtkIdType value) { this->AddTo<vtkIdTypeArray>(name, value); }
+  void Add(const std::string& name, const Extreme& extreme)
+  {
+    this->Add(name, extreme.Value);
+    this->Add(name + "Cell", extreme.Cell);
+  }
+
+private:
+  template <typename Array, typename Value>
+  void AddTo(const std::string& name, Value value)
+  {
+    vtkNew<Array> column;
+    column->SetName(name.c_str());
+    column->InsertNextValue(value);
+    this->Table->AddColumn(column);
+  }
+
+  vtkTable* Table;
+};
+
+const char* NameOf(MeshDiagnostic::Kind kind)
+{
+  switch (kind)
+  {
+    case MeshDiagnostic::Kind::PointCountsDiffer:
+      return "PointCountsDiffer";
+    case MeshDiagnostic::Kind::CellCountsDiffer:
+      return "CellCountsDiffer";
+    case MeshDiagnostic::Kind::TooManyTriangles:
+      return "TooManyTriangles";
+    case MeshDiagnostic::Kind::NotTriangles:
+      return "NotTriangles";
+    case MeshDiagnostic::Kind::BadConnectivity:
+      return "BadConnectivity";
+    case MeshDiagnostic::Kind::ConnectivityDiffers:
+      return "ConnectivityDiffers";
+    case MeshDiagnostic::Kind::RepeatedCorner:
+      return "RepeatedCorner";
+    case MeshDiagnostic::Kind::NotFinite:
+      return "NotFinite";
+    case MeshDiagnostic::Kind::DegenerateTriangle:
+      return "DegenerateTriangle";
+    case MeshDiagnostic::Kind::NonManifoldEdge:
+      return "NonManifoldEdge";
+    case MeshDiagnostic::Kind::NonOrientable:
+      return "NonOrientable";
+    case MeshDiagnostic::Kind::Flipped:
+      return "Flipped";
+    case MeshDiagnostic::Kind::Overlapping:
+      return "Overlapping";
+    case MeshDiagnostic::Kind::Discordant:
+      return "Discordant";
+  }
+  return "";
+}
+
+void FillDefects(const MeshDiagnostics& defects, vtkTable* table)
+{
+  vtkNew<vtkStringArray> kinds;
+  kinds->SetName("Kind");
+  vtkNew<vtkStringArray> meshes;
+  meshes->SetName("Mesh");
+  vtkNew<vtkIdTypeArray> counts;
+  counts->SetName("Count");
+  vtkNew<vtkIntArray> leftOut;
+  leftOut->SetName("LeftOut");
+  vtkNew<vtkIdTypeArray> firstCells;
+  firstCells->SetName("FirstCell");
+  for (const MeshDiagnostic& defect : defects)
+  {
+    kinds->InsertNextValue(NameOf(defect.What));
+    meshes->InsertNextValue(defect.Where);
+    counts->InsertNextValue(defect.Count);
+    leftOut->InsertNextValue(defect.Result == MeshDiagnostic::Outcome::Masked);
+    firstCells->InsertNextValue(defect.FirstCells.empty() ? -1 : defect.FirstCells.front());
+  }
+  for (vtkAbstractArray* column :
+    std::initializer_list<vtkAbstractArray*>{ kinds, meshes, counts, leftOut, firstCells })
+  {
+    table->AddColumn(column);
+  }
+}
+
+/// Adds a cell array with a value for each triangle, @a other for other cells.
+template <typename Array, typename Values, typename Value>
+void AddCellArray(vtkPolyData* mesh, const Triangulation& triangulation, const char* name,
+  const Values& values, Value other)
+{
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(mesh->GetNumberOfCells());
+  array->FillValue(static_cast<typename Array::ValueType>(other));
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    array->SetValue(triangulation.GetCellId(t),
+      static_cast<typename Array::ValueType>(values[static_cast<std::size_t>(t)]));
+  }
+  mesh->GetCellData()->AddArray(array);
+}
+
+/// What vtkJacobianContinuity finds.
+struct Continuity
+{
+  vtkIdType DifferentiableEdges = -1;
+  vtkIdType Creases = -1;
+  vtkIdType UndecidedEdges = -1;
+  double LargestJump = None;
+};
+
+} // namespace
+
+vtkTriangulationPairReport::vtkTriangulationPairReport()
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(4);
+}
+
+vtkTriangulationPairReport::~vtkTriangulationPairReport() = default;
+
+void vtkTriangulationPairReport::SetSourceData(vtkPolyData* source)
+{
+  this->SetInputData(0, source);
+}
+
+void vtkTriangulationPairReport::SetTargetData(vtkPolyData* target)
+{
+  this->SetInputData(1, target);
+}
+
+vtkTable* vtkTriangulationPairReport::GetStatistics()
+{
+  return vtkTable::SafeDownCast(this->GetOutputDataObject(2));
+}
+
+vtkTable* vtkTriangulationPairReport::GetDefects()
+{
+  return vtkTable::SafeDownCast(this->GetOutputDataObject(3));
+}
+
+double vtkTriangulationPairReport::GetStatistic(const char* column)
+{
+  vtkTable* table = this->GetStatistics();
+  auto* array =
+    table && column ? vtkDataArray::SafeDownCast(table->GetColumnByName(column)) : nullptr;
+  return array && array->GetNumberOfTuples() > 0 ? array->GetTuple1(0) : None;
+}
+
+int vtkTriangulationPairReport::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Set(AskedForWhole(), 1);
+  return 1;
+}
+
+int vtkTriangulationPairReport::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port < 2 ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+int vtkTriangulationPairReport::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+  {
+    DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(port));
+  }
+  return 1;
+}
+
+int vtkTriangulationPairReport::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  RequestWhole(inputs[0]->GetInformationObject(0));
+  RequestWhole(inputs[1]->GetInformationObject(0));
+  return 1;
+}
+
+int vtkTriangulationPairReport::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const std::array<vtkPolyData*, 2> meshes{ vtkPolyData::GetData(inputs[0]),
+    vtkPolyData::GetData(inputs[1]) };
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->Valid = false;
+
+  // Leaving invalid triangles out finds all kinds of defects, and lets the rest be measured.
+  MeshDiagnostics defects;
+  HomeomorphismOptions options;
+  options.System = CoordinateSystem::Linear;
+  options.MaskInvalidTriangles = true;
+  options.DiscordantByLinear = true;
+  const std::shared_ptr<const Homeomorphism> linear =
+    Homeomorphism::Make(meshes[0], meshes[1], options, defects);
+  this->Valid = linear && defects.empty();
+  if (!IsFirstPiece(request, outputs))
+  {
+    return 1;
+  }
+  std::array<vtkPolyData*, 2> measured;
+  for (int side = 0; side < 2; ++side)
+  {
+    measured[static_cast<std::size_t>(side)] = vtkPolyData::GetData(outputs, side);
+    measured[static_cast<std::size_t>(side)]->ShallowCopy(meshes[static_cast<std::size_t>(side)]);
+  }
+  Row row(vtkTable::GetData(outputs, 2));
+  FillDefects(defects, vtkTable::GetData(outputs, 3));
+  row.Add("Valid", this->Valid);
+  row.Add("Measured", linear != nullptr);
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    const std::string name = MeshNames[side];
+    const PointCounts counts = CountPoints(meshes[side]);
+    row.Add(name + "Points", vtkIdType(meshes[side]->GetNumberOfPoints()));
+    row.Add(name + "Triangles", vtkIdType(meshes[side]->GetNumberOfPolys()));
+    row.Add(name + "UnusedPoints", counts.Unused);
+    row.Add(name + "DuplicatePoints", counts.Duplicate);
+  }
+  if (!linear)
+  {
+    return 1;
+  }
+
+  const TriangulationPair& pair = linear->GetPair();
+  const Triangulation& triangulation = pair.GetTriangulation();
+  const auto numberOfTriangles = static_cast<std::size_t>(triangulation.GetNumberOfTriangles());
+  std::vector<bool> invalid(numberOfTriangles);
+  vtkIdType numberOfInvalid = 0;
+  for (std::size_t t = 0; t < numberOfTriangles; ++t)
+  {
+    invalid[t] = triangulation.IsMasked(static_cast<TriangleIndex>(t));
+    numberOfInvalid += invalid[t];
+  }
+  const TriangulationCounts counts = CountConnections(triangulation);
+  row.Add("InvalidTriangles", numberOfInvalid);
+  row.Add("Mirrored", IsMirrored(pair));
+  row.Add("Components", counts.Components);
+  row.Add("InteriorEdges", counts.InteriorEdges);
+  row.Add("BoundaryEdges", counts.BoundaryEdges);
+  row.Add("BoundaryLoops", counts.BoundaryLoops);
+  row.Add("OppositeWindings", counts.OppositeWindings);
+  row.Add("ReorderedTriangles", CountReordered(meshes[0], meshes[1]));
+
+  std::array<double, 2> meanEdges;
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    const auto domain = static_cast<Domain>(side);
+    const std::string name = MeshNames[side];
+    const MeshShapes shapes = MeasureShapes(pair, domain);
+    meanEdges[side] = shapes.MeanEdgeLength;
+    row.Add(name + "Planar", pair.GetGeometry(domain).IsPlanar());
+    row.Add(name + "Area", shapes.Area);
+    row.Add(name + "MeanEdgeLength", shapes.MeanEdgeLength);
+    row.Add(name + "SmallestAngle", shapes.SmallestAngle);
+    row.Add(name + "ShareOfAnglesBelow10", shapes.SharesOfSmallAngles[0]);
+    row.Add(name + "ShareOfAnglesBelow15", shapes.SharesOfSmallAngles[1]);
+    row.Add(name + "ShareOfAnglesBelow20", shapes.SharesOfSmallAngles[2]);
+    row.Add(name + "LargestAreaRatio", shapes.LargestAreaRatio);
+    row.Add(name + "DiscordantTriangles", shapes.DiscordantTriangles);
+    AddCellArray<vtkDoubleArray>(
+      measured[side], triangulation, "SmallestAngle", shapes.SmallestAngles, None);
+    AddCellArray<vtkDoubleArray>(
+      measured[side], triangulation, "AreaRatio", shapes.AreaRatios, None);
+    AddCellArray<vtkUnsignedCharArray>(
+      measured[side], triangulation, "Concordant", shapes.Concordant, 0);
+    AddCellArray<vtkUnsignedCharArray>(measured[side], triangulation, "Invalid", invalid, 0);
+  }
+  const LinearMaps maps = MeasureLinearMaps(pair);
+  row.Add("LargestStretch", maps.LargestStretch);
+  row.Add("SmallestStretch", maps.SmallestStretch);
+  row.Add("LargestDistortion", maps.LargestDistortion);
+  for (vtkPolyData* mesh : measured)
+  {
+    AddCellArray<vtkDoubleArray>(mesh, triangulation, "Determinant", maps.Determinants, None);
+    AddCellArray<vtkDoubleArray>(mesh, triangulation, "Distortion", maps.Distortions, None);
+  }
+  this->UpdateProgress(0.05);
+
+  std::array<vtkNew<vtkPolyData>, 2> copies;
+  for (std::size_t side = 0; side < 2; ++side)
+  {
+    copies[side]->ShallowCopy(meshes[side]);
+  }
+  // What is left out is in the table of defects: no warnings.
+  vtkNew<vtkCallbackCommand> ignore;
+  ignore->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
+  for (int system = LINEAR; system <= SMOOTH; ++system)
+  {
+    if (this->GetAbortExecute())
+    {
+      return 1;
+    }
+    const std::string name = SystemNames[static_cast<std::size_t>(system)];
+    MapSamples samples;
+    SecondDifference second;
+    if (this->MeasureMaps)
+    {
+      options.System = static_cast<homeomorphism::CoordinateSystem>(system);
+      options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
+      MeshDiagnostics known;
+      const std::shared_ptr<const Homeomorphism> map =
+        Homeomorphism::Make(meshes[0], meshes[1], options, known);
+      samples = SampleMap(*map, *linear);
+      second = MeasureSecondDifference(*map, meanEdges[0], meanEdges[1]);
+      if (system == this->CoordinateSystem)
+      {
+        for (vtkPolyData* mesh : measured)
+        {
+          AddCellArray<vtkDoubleArray>(
+            mesh, triangulation, "SmallestDeterminant", samples.SmallestDeterminants, None);
+          AddCellArray<vtkDoubleArray>(
+            mesh, triangulation, "LargestDeterminant", samples.LargestDeterminants, None);
+          AddCellArray<vtkDoubleArray>(
+            mesh, triangulation, "DeviationFromLinear", samples.Deviations, None);
+        }
+      }
+    }
+    row.Add(name + "SmallestDeterminant", samples.SmallestDeterminant);
+    row.Add(name + "LargestDeterminant", samples.LargestDeterminant);
+    row.Add(name + "Samples", samples.Samples);
+    row.Add(name + "NotPositive", samples.NotPositive);
+    row.Add(name + "DeviationFromLinear", samples.LargestDeviation);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      row.Add(name + "DeviationFromLinear" + "XYZ"[axis],
+        samples.LargestDeviation.Cell < 0 ? None
+                                          : samples.DeviationPoint[static_cast<std::size_t>(axis)]);
+    }
+    row.Add(name + "SecondDifference", second.RootMeanSquare);
+    row.Add(name + "SecondDifferenceSamples", second.Samples);
+    this->UpdateProgress(0.05 + 0.3 * system + 0.1);
+
+    Continuity continuity;
+    if (this->MeasureContinuity)
+    {
+      vtkNew<vtkJacobianContinuity> measure;
+      measure->SetSourceData(copies[0]);
+      measure->SetTargetData(copies[1]);
+      measure->SetCoordinateSystem(system);
+      measure->SetCenterPoint(this->CenterPoint);
+      measure->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
+      measure->SetMaskInvalidTriangles(true);
+      measure->AddObserver(vtkCommand::WarningEvent, ignore);
+      measure->Update();
+      continuity = { measure->GetNumberOfDifferentiableEdges(), measure->GetNumberOfCreases(),
+        measure->GetNumberOfUndecidedEdges(), measure->GetLargestJump() };
+    }
+    row.Add(name + "DifferentiableEdges", continuity.DifferentiableEdges);
+    row.Add(name + "Creases", continuity.Creases);
+    row.Add(name + "UndecidedEdges", continuity.UndecidedEdges);
+    row.Add(name + "LargestJump", continuity.LargestJump);
+    this->UpdateProgress(0.05 + 0.3 * (system + 1));
+  }
+  this->UpdateProgress(1.0);
+  return 1;
+}
+
+void vtkTriangulationPairReport::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
+  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
+  os << indent << "MeasureMaps: " << this->MeasureMaps << "\n";
+  os << indent << "MeasureContinuity: " << this->MeasureContinuity << "\n";
+  os << indent << "Valid: " << this->Valid << "\n";
+}

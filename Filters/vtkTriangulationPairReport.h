@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkTriangulationPairReport
+ * @brief   statistics of a pair of triangulations and of the maps that it defines
+ *
+ * vtkTriangulationPairReport measures a pair, the source (input port 0) and the target (input port
+ * 1), and the homeomorphisms that it defines in all coordinate systems. The results are data.
+ * Defects of the meshes are results, too, and no errors: invalid triangles are left out of the
+ * measurements, and if the rest is no pair, only points and defects are counted.
+ *
+ * Output ports 0 and 1 are source and target with these cell arrays (double unless it says
+ * otherwise; NaN for cells that are not triangles or invalid):
+ *
+ * - `SmallestAngle`: the triangle's smallest angle in this mesh, in degrees;
+ * - `AreaRatio`: of the triangle and its neighbors in this mesh, the largest ratio of areas, from
+ *   1; NaN without neighbors;
+ * - `Concordant` (unsigned char): 1 where the triangle is concordant in this mesh;
+ * - `Determinant`: the ratio of the triangle's area in the target to that in the source;
+ * - `Distortion`: the condition number of the triangle's linear map, the largest factor by which it
+ *   changes lengths over the smallest, from 1;
+ * - `SmallestDeterminant`, `LargestDeterminant`: extremes of the Jacobian determinant in the chosen
+ *   CoordinateSystem over samples of the triangle; positive where the map has the pair's
+ *   orientation (a mirror image counts as an orientation);
+ * - `DeviationFromLinear`: the largest distance between images by the chosen system and by Linear
+ *   over the samples, in the target's units;
+ * - `Invalid` (unsigned char): 1 for triangles that were left out.
+ *
+ * Output port 2 is a vtkTable of one row. Its columns begin with `Source` or `Target` (a mesh),
+ * with `Linear`, `Contour` or `Smooth` (a map), or with neither (the pair). Counts are vtkIdType,
+ * flags int (0 or 1), all others double. Cell ids are -1, and other values NaN, where there is
+ * nothing to measure.
+ *
+ * - `Valid`: whether the pair defines a map as it is. `Measured`: whether the pair does so without
+ *   its invalid triangles; otherwise only the columns up to `TargetDuplicatePoints` and
+ *   `InvalidTriangles` have values.
+ * - `SourcePoints`, `SourceTriangles` (polygons), `SourceUnusedPoints`, `SourceDuplicatePoints`,
+ *   and the same of the target. Duplicate points have the very coordinates of another of smaller
+ *   id.
+ * - `InvalidTriangles`; `Mirrored`; `Components`, `InteriorEdges`, `BoundaryEdges`,
+ *   `BoundaryLoops`; `OppositeWindings` (triangles wound otherwise than most of their component);
+ *   `ReorderedTriangles` (triangles whose points come in another order in the target).
+ * - `SourcePlanar`, `SourceArea`, `SourceMeanEdgeLength`; `SourceSmallestAngle` in degrees and
+ *   `SourceSmallestAngleCell`; `SourceShareOfAnglesBelow10`, `-15` and `-20`: the share, from 0 to
+ *   1, of triangles whose smallest angle is below that number of degrees;
+ *   `SourceLargestAreaRatio` and `SourceLargestAreaRatioCell`; `SourceDiscordantTriangles`; the
+ *   same of the target.
+ * - `LargestStretch`, `SmallestStretch`, `LargestDistortion`, each with `-Cell`: of the linear maps
+ *   of triangles.
+ * - `SmoothSmallestDeterminant`, `SmoothLargestDeterminant`, each with `-Cell`; `SmoothSamples` and
+ *   `SmoothNotPositive`, the number of samples and of those with a determinant that is not
+ *   positive; the same of the other systems.
+ * - `SmoothDeviationFromLinear`, the largest distance of images from those by Linear, in the
+ *   target's units, `-Cell`, and `-X`, `-Y`, `-Z`, the point of the source where it occurs.
+ * - `SmoothSecondDifference` and `SmoothSecondDifferenceSamples`: how much the map bends at a
+ *   tenth of an edge, the root mean square over the domain of the Hessian norm of second
+ *   differences |f(x + h) + f(x - h) - 2 f(x)| / h^2, with lengths in mean edge lengths of source
+ *   and target. 0 for affine maps. Planar pairs only.
+ * - `SmoothDifferentiableEdges`, `SmoothCreases`, `SmoothUndecidedEdges`, `SmoothLargestJump`: what
+ *   vtkJacobianContinuity finds at the interior edges. NaN and -1 without MeasureContinuity.
+ *
+ * Output port 3 is a vtkTable with a row for each kind of defect: `Kind` (the name of the kind, as
+ * in Documentation/diagnostics.md), `Mesh` ("source", "target" or "pair"), `Count`, `LeftOut` (1 if
+ * the triangles were left out, 0 if the meshes are no pair because of the defect), and `FirstCell`
+ * (the least cell id concerned, or -1).
+ *
+ * Contour is measured with USE_LINEAR for discordant triangles. Samples are always the same points.
+ * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The
+ * meshes are requested whole, and the outputs are part of piece 0.
+ *
+ * @sa vtkDifferentiableHomeomorphism, vtkJacobianContinuity
+ */
+
+#ifndef vtkTriangulationPairReport_h
+#define vtkTriangulationPairReport_h
+
+#include "vtkFiltersHomeomorphismModule.h" // for the export macro
+#include "vtkPolyDataAlgorithm.h"
+
+class vtkTable;
+
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkTriangulationPairReport : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkTriangulationPairReport* New();
+  vtkTypeMacro(vtkTriangulationPairReport, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// The coordinate systems; see vtkDifferentiableHomeomorphism.
+  enum CoordinateSystems
+  {
+    LINEAR = 0,
+    CONTOUR = 1,
+    SMOOTH = 2
+  };
+
+  /// Where the contours of the Contour system start.
+  enum CenterPoints
+  {
+    CENTROID = 0,
+    INCENTER = 1
+  };
+
+  ///@{
+  /// The source mesh, input port 0.
+  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
+  void SetSourceData(vtkPolyData* source);
+  ///@}
+
+  ///@{
+  /// The target mesh, input port 1.
+  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetTargetData(vtkPolyData* target);
+  ///@}
+
+  ///@{
+  /// The system of the cell arrays: LINEAR, CONTOUR or SMOOTH (default). The table has all.
+  vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
+  vtkGetMacro(CoordinateSystem, int);
+  ///@}
+
+  ///@{
+  /// Where the contours of the Contour system start: CENTROID (default) or INCENTER.
+  vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
+  vtkGetMacro(CenterPoint, int);
+  ///@}
+
+  ///@{
+  /// Whether the maps are sampled: determinants, deviations and second differences. On by default.
+  vtkSetMacro(MeasureMaps, bool);
+  vtkGetMacro(MeasureMaps, bool);
+  vtkBooleanMacro(MeasureMaps, bool);
+  ///@}
+
+  ///@{
+  /// Whether continuity is measured at the interior edges. It takes most of the time. On by
+  /// default.
+  vtkSetMacro(MeasureContinuity, bool);
+  vtkGetMacro(MeasureContinuity, bool);
+  vtkBooleanMacro(MeasureContinuity, bool);
+  ///@}
+
+  ///@{
+  /// The outputs, after an update: the target with its arrays (port 1; the source's is
+  /// GetOutput()), the statistics (port 2) and the defects (port 3).
+  vtkPolyData* GetTargetOutput() { return this->GetOutput(1); }
+  vtkTable* GetStatistics();
+  vtkTable* GetDefects();
+  ///@}
+
+  /// The value of a column of the statistics, NaN if there is no such column.
+  double GetStatistic(const char* column);
+
+  /// Whether the pair defines a map as it is, after an update.
+  vtkGetMacro(Valid, bool);
+
+protected:
+  vtkTriangulationPairReport();
+  ~vtkTriangulationPairReport() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  int CoordinateSystem = SMOOTH;
+  int CenterPoint = CENTROID;
+  bool MeasureMaps = true;
+  bool MeasureContinuity = true;
+  bool Valid = false;
+
+private:
+  vtkTriangulationPairReport(const vtkTriangulationPairReport&) = delete;
+  void operator=(const vtkTriangulationPairReport&) = delete;
+};
+
+#endif
