@@ -1,0 +1,532 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Kernel/CubicElement.h"
+
+#include "Kernel/RunningError.h"
+
+#include <algorithm>
+
+namespace homeomorphism
+{
+namespace
+{
+
+// The same formulas serve doubles and doubles with error bounds.
+template <typename T>
+struct Vector
+{
+  T x;
+  T y;
+
+  Vector() = default;
+  Vector(T a, T b)
+    : x(a)
+    , y(b)
+  {
+  }
+  Vector(const Vector2& v)
+    : x(v.x)
+    , y(v.y)
+  {
+  }
+};
+
+template <typename T>
+Vector<T> operator+(const Vector<T>& a, const Vector<T>& b)
+{
+  return { a.x + b.x, a.y + b.y };
+}
+
+template <typename T>
+Vector<T> operator-(const Vector<T>& a, const Vector<T>& b)
+{
+  return { a.x - b.x, a.y - b.y };
+}
+
+template <typename T>
+Vector<T> operator*(const T& s, const Vector<T>& a)
+{
+  return { s * a.x, s * a.y };
+}
+
+template <typename T>
+T Cross(const Vector<T>& a, const Vector<T>& b)
+{
+  return a.x * b.y - a.y * b.x;
+}
+
+template <typename T>
+T Dot(const Vector<T>& a, const Vector<T>& b)
+{
+  return a.x * b.x + a.y * b.y;
+}
+
+template <typename T>
+Vector<T> Apply(const Matrix2& m, const Vector<T>& v)
+{
+  return { T(m.ImageOfX.x) * v.x + T(m.ImageOfY.x) * v.y,
+    T(m.ImageOfX.y) * v.x + T(m.ImageOfY.y) * v.y };
+}
+
+// From each corner to the centroid.
+template <typename T>
+std::array<Vector<T>, 3> ToCentroid(const std::array<Vector2, 3>& points)
+{
+  const T third = T(1.0) / T(3.0);
+  std::array<Vector<T>, 3> toCentroid;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vector<T> here = points[i];
+    toCentroid[i] = third *
+      ((Vector<T>(points[NextCorner(i)]) - here) + (Vector<T>(points[PreviousCorner(i)]) - here));
+  }
+  return toCentroid;
+}
+
+template <typename T>
+CubicOrdinates<Vector<T>> MakeOrdinates(
+  const CubicElement& element, const std::array<Vector<T>, 3>& toCentroid)
+{
+  const T third = T(1.0) / T(3.0);
+  const T half = T(0.5);
+  CubicOrdinates<Vector<T>> b;
+  for (int i = 0; i < 3; ++i)
+  {
+    b.Corner[i] = element.Values[i];
+    b.Inner[i] = b.Corner[i] + third * Apply(element.Gradients[i], toCentroid[i]);
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    const Vector<T> edge = Vector<T>(element.Points[j]) - Vector<T>(element.Points[i]);
+    const Vector<T> slopes =
+      Apply(element.Gradients[i], edge) + Apply(element.Gradients[j], edge);
+    b.AfterStart[k] = b.Corner[i] + third * Apply(element.Gradients[i], edge);
+    b.BeforeEnd[k] = b.Corner[j] - third * Apply(element.Gradients[j], edge);
+    // From the edge's midpoint to the centroid. In this direction the derivative at the midpoint is
+    // the mean of the normal derivatives at the ends plus the cubic's own derivative along the edge.
+    const Vector<T> toMiddle = toCentroid[i] - half * edge;
+    const T along = Dot(toMiddle, edge) / Dot(edge, edge);
+    b.Middle[k] = half * (b.AfterStart[k] + b.BeforeEnd[k]) +
+      half * third *
+        (Apply(element.Gradients[i], toMiddle) + Apply(element.Gradients[j], toMiddle)) +
+      along * ((b.Corner[j] - b.Corner[i]) - half * slopes);
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    b.Spoke[i] = third * (b.Inner[i] + b.Middle[NextCorner(i)] + b.Middle[PreviousCorner(i)]);
+  }
+  b.Center = third * (b.Spoke[0] + b.Spoke[1] + b.Spoke[2]);
+  return b;
+}
+
+// The derivatives of D towards the start and towards the end of a piece's edge, both from the
+// centroid, are quadratic. Their Bernstein ordinates, by weights of start, end and centroid: 200,
+// 110, 020, 101, 011, 002.
+template <typename V>
+struct DerivativeOrdinates
+{
+  std::array<V, 6> ToStart;
+  std::array<V, 6> ToEnd;
+};
+
+template <typename V, typename T>
+DerivativeOrdinates<V> Differentiate(const CubicOrdinates<V>& b, int k, T three)
+{
+  const int i = NextCorner(k);
+  const int j = PreviousCorner(k);
+  const V fromCentroid[6] = { b.Inner[i], b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j],
+    b.Center };
+  const V fromStart[6] = { b.Corner[i], b.AfterStart[k], b.BeforeEnd[k], b.Inner[i], b.Middle[k],
+    b.Spoke[i] };
+  const V fromEnd[6] = { b.AfterStart[k], b.BeforeEnd[k], b.Corner[j], b.Middle[k], b.Inner[j],
+    b.Spoke[j] };
+  DerivativeOrdinates<V> d;
+  for (int n = 0; n < 6; ++n)
+  {
+    d.ToStart[n] = three * (fromStart[n] - fromCentroid[n]);
+    d.ToEnd[n] = three * (fromEnd[n] - fromCentroid[n]);
+  }
+  return d;
+}
+
+constexpr int QuadraticWeights[6][3] = { { 2, 0, 0 }, { 1, 1, 0 }, { 0, 2, 0 }, { 1, 0, 1 },
+  { 0, 1, 1 }, { 0, 0, 2 } };
+constexpr double QuadraticMultiplicity[6] = { 1.0, 2.0, 1.0, 2.0, 2.0, 1.0 };
+
+// Row by row of equal weight of the centroid, so that a row is a polynomial of the edge.
+constexpr int QuarticNumber(int end, int centroid)
+{
+  return 5 * centroid - centroid * (centroid - 1) / 2 + end;
+}
+
+std::array<QuarticIndex, 15> MakeQuarticIndices()
+{
+  std::array<QuarticIndex, 15> indices{};
+  for (int centroid = 0; centroid <= 4; ++centroid)
+  {
+    for (int end = 0; end + centroid <= 4; ++end)
+    {
+      indices[QuarticNumber(end, centroid)] = { 4 - end - centroid, end, centroid };
+    }
+  }
+  return indices;
+}
+
+double QuarticMultiplicity(const QuarticIndex& index)
+{
+  constexpr double factorial[5] = { 1.0, 1.0, 2.0, 6.0, 24.0 };
+  return 24.0 / (factorial[index.Start] * factorial[index.End] * factorial[index.Centroid]);
+}
+
+template <typename T>
+void MakeDeterminant(const CubicElement& element, std::array<T, 45>& coefficients)
+{
+  const std::array<Vector<T>, 3> toCentroid = ToCentroid<T>(element.Points);
+  const CubicOrdinates<Vector<T>> ordinates = MakeOrdinates<T>(element, toCentroid);
+  // The areas of the three pieces are equal.
+  const Vector<T> first = Vector<T>(element.Points[1]) - Vector<T>(element.Points[0]);
+  const Vector<T> second = Vector<T>(element.Points[2]) - Vector<T>(element.Points[0]);
+  const T scale = T(3.0) / Cross(first, second);
+  const std::array<QuarticIndex, 15>& indices = QuarticIndices();
+  for (int k = 0; k < 3; ++k)
+  {
+    DerivativeOrdinates<Vector<T>> d = Differentiate(ordinates, k, T(3.0));
+    const Vector<T> toStart = Apply(element.Affine, toCentroid[NextCorner(k)]);
+    const Vector<T> toEnd = Apply(element.Affine, toCentroid[PreviousCorner(k)]);
+    for (int n = 0; n < 6; ++n)
+    {
+      d.ToStart[n] = d.ToStart[n] - toStart;
+      d.ToEnd[n] = d.ToEnd[n] - toEnd;
+    }
+    T sums[15] = {};
+    for (int m = 0; m < 6; ++m)
+    {
+      for (int n = 0; n < 6; ++n)
+      {
+        const int end = QuadraticWeights[m][1] + QuadraticWeights[n][1];
+        const int centroid = QuadraticWeights[m][2] + QuadraticWeights[n][2];
+        T& sum = sums[QuarticNumber(end, centroid)];
+        sum = sum +
+          T(QuadraticMultiplicity[m] * QuadraticMultiplicity[n]) *
+            Cross(d.ToStart[m], d.ToEnd[n]);
+      }
+    }
+    for (int n = 0; n < 15; ++n)
+    {
+      coefficients[15 * k + n] = scale * sums[n] / T(QuarticMultiplicity(indices[n]));
+    }
+  }
+}
+
+using Quartic = std::array<RunningError, 15>;
+
+// The two halves of a quartic triangle, cut from the middle of its edge from start to end to the
+// third corner; each is turned so that a different edge is cut next.
+std::array<Quartic, 2> Bisect(const Quartic& quartic)
+{
+  std::array<Quartic, 2> halves;
+  for (int centroid = 0; centroid <= 4; ++centroid)
+  {
+    const int degree = 4 - centroid;
+    RunningError row[5];
+    for (int end = 0; end <= degree; ++end)
+    {
+      row[end] = quartic[QuarticNumber(end, centroid)];
+    }
+    // de Casteljau: the start's half has the weights (start, middle, centroid).
+    for (int step = 0; step <= degree; ++step)
+    {
+      // Turned: start's half as (centroid, start, middle), end's half as (end, centroid, middle).
+      const int middle = step;
+      halves[0][QuarticNumber(degree - middle, middle)] = row[0];
+      halves[1][QuarticNumber(centroid, middle)] = row[degree - step];
+      for (int n = 0; n + step < degree; ++n)
+      {
+        row[n] = RunningError(0.5) * (row[n] + row[n + 1]);
+      }
+    }
+  }
+  return halves;
+}
+
+double LeastOf(const Quartic& quartic, double enough, int subdivisions)
+{
+  double least = quartic[0].LowerBound();
+  for (const RunningError& coefficient : quartic)
+  {
+    const double bound = coefficient.LowerBound();
+    least = bound < least || std::isnan(bound) ? bound : least;
+  }
+  if (subdivisions == 0 || least > enough || std::isnan(least))
+  {
+    return least;
+  }
+  // The corners' coefficients are values of the determinant: nothing raises them.
+  for (int corner : { QuarticNumber(0, 0), QuarticNumber(4, 0), QuarticNumber(0, 4) })
+  {
+    if (quartic[corner].LowerBound() <= least)
+    {
+      return least;
+    }
+  }
+  const std::array<Quartic, 2> halves = Bisect(quartic);
+  const double first = LeastOf(halves[0], enough, subdivisions - 1);
+  if (first <= least)
+  {
+    return least;
+  }
+  return std::max(least, std::min(first, LeastOf(halves[1], enough, subdivisions - 1)));
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+Matrix2 AffineDerivative(const std::array<Vector2, 3>& from, const std::array<Vector2, 3>& to)
+{
+  const Vector2 a = from[1] - from[0];
+  const Vector2 b = from[2] - from[0];
+  const Vector2 c = to[1] - to[0];
+  const Vector2 d = to[2] - to[0];
+  const double area = DifferenceOfProducts(a.x, b.y, a.y, b.x);
+  return { { DifferenceOfProducts(c.x, b.y, d.x, a.y) / area,
+             DifferenceOfProducts(c.y, b.y, d.y, a.y) / area },
+    { DifferenceOfProducts(d.x, a.x, c.x, b.x) / area,
+      DifferenceOfProducts(d.y, a.x, c.y, b.x) / area } };
+}
+
+//------------------------------------------------------------------------------
+Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point)
+{
+  int apex = 0;
+  double longest = -1.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector2 edge = points[PreviousCorner(k)] - points[NextCorner(k)];
+    const double squared = Dot(edge, edge);
+    apex = squared > longest ? k : apex;
+    longest = squared > longest ? squared : longest;
+  }
+  const Vector2 start = points[NextCorner(apex)];
+  const Vector2 edge = points[PreviousCorner(apex)] - start;
+  const Vector2 toApex = points[apex] - start;
+  const Vector2 d = point - start;
+  const double height = Cross(edge, d) / Cross(edge, toApex);
+  const double along = (Dot(edge, d) - height * Dot(edge, toApex)) / longest;
+  Barycentric l;
+  l[apex] = height;
+  l[PreviousCorner(apex)] = along;
+  l[NextCorner(apex)] = 1.0 - height - along;
+  return l;
+}
+
+//------------------------------------------------------------------------------
+CubicPiece FindPiece(const Barycentric& l)
+{
+  const int k = l[0] <= l[1] ? (l[0] <= l[2] ? 0 : 2) : (l[1] <= l[2] ? 1 : 2);
+  return { k, l[NextCorner(k)] - l[k], l[PreviousCorner(k)] - l[k], 3.0 * l[k] };
+}
+
+//------------------------------------------------------------------------------
+CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element)
+{
+  const CubicOrdinates<Vector<double>> b =
+    MakeOrdinates<double>(element, ToCentroid<double>(element.Points));
+  CubicOrdinates<Vector2> ordinates;
+  for (int i = 0; i < 3; ++i)
+  {
+    ordinates.Corner[i] = element.Values[i];
+    ordinates.AfterStart[i] = { b.AfterStart[i].x, b.AfterStart[i].y };
+    ordinates.BeforeEnd[i] = { b.BeforeEnd[i].x, b.BeforeEnd[i].y };
+    ordinates.Inner[i] = { b.Inner[i].x, b.Inner[i].y };
+    ordinates.Middle[i] = { b.Middle[i].x, b.Middle[i].y };
+    ordinates.Spoke[i] = { b.Spoke[i].x, b.Spoke[i].y };
+  }
+  ordinates.Center = { b.Center.x, b.Center.y };
+  return ordinates;
+}
+
+//------------------------------------------------------------------------------
+void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, const Barycentric& l,
+  Vector2& value, Matrix2& derivative)
+{
+  const CubicPiece piece = FindPiece(l);
+  const int k = piece.Opposite;
+  const int i = NextCorner(k);
+  const int j = PreviousCorner(k);
+  const double u = piece.Start;
+  const double v = piece.End;
+  const double w = piece.Centroid;
+  const double weights[6] = { u * u, 2.0 * u * v, v * v, 2.0 * u * w, 2.0 * v * w, w * w };
+  const Vector2 fromCentroid[6] = { b.Inner[i], b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j],
+    b.Center };
+  const Vector2 fromStart[6] = { b.Corner[i], b.AfterStart[k], b.BeforeEnd[k], b.Inner[i],
+    b.Middle[k], b.Spoke[i] };
+  const Vector2 fromEnd[6] = { b.AfterStart[k], b.BeforeEnd[k], b.Corner[j], b.Middle[k],
+    b.Inner[j], b.Spoke[j] };
+  Vector2 start;
+  Vector2 end;
+  Vector2 centroid;
+  for (int n = 0; n < 6; ++n)
+  {
+    start = start + weights[n] * fromStart[n];
+    end = end + weights[n] * fromEnd[n];
+    centroid = centroid + weights[n] * fromCentroid[n];
+  }
+  value = u * start + v * end + w * centroid;
+  const Vector2 along = 3.0 * (end - start);
+  const Vector2 inward = 3.0 * (centroid - start);
+  // The derivative takes edge to along and the vector from the start to the centroid to inward.
+  const Vector2 edge = element.Points[j] - element.Points[i];
+  const Vector2 toCentroid = (1.0 / 3.0) * (edge + (element.Points[k] - element.Points[i]));
+  const double area = Cross(edge, toCentroid);
+  derivative = { (1.0 / area) * (toCentroid.y * along - edge.y * inward),
+    (1.0 / area) * (edge.x * inward - toCentroid.x * along) };
+}
+
+//------------------------------------------------------------------------------
+const std::array<QuarticIndex, 15>& QuarticIndices()
+{
+  static const std::array<QuarticIndex, 15> indices = MakeQuarticIndices();
+  return indices;
+}
+
+//------------------------------------------------------------------------------
+DeterminantCoefficients GetDeterminantCoefficients(const CubicElement& element)
+{
+  DeterminantCoefficients coefficients;
+  MakeDeterminant<double>(element, coefficients);
+  return coefficients;
+}
+
+//------------------------------------------------------------------------------
+double LeastDeterminant(const CubicElement& element, double enough, int subdivisions)
+{
+  std::array<RunningError, 45> coefficients;
+  MakeDeterminant<RunningError>(element, coefficients);
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+  {
+    Quartic quartic;
+    std::copy_n(coefficients.begin() + 15 * k, 15, quartic.begin());
+    const double bound = LeastOf(quartic, enough, subdivisions);
+    least = bound < least || std::isnan(bound) ? bound : least;
+  }
+  // What is not a number certifies nothing.
+  return std::isnan(least) ? -std::numeric_limits<double>::infinity() : least;
+}
+
+//------------------------------------------------------------------------------
+double GreatestDisplacement(const CubicElement& element)
+{
+  const CubicOrdinates<Vector2> b = GetOrdinates(element);
+  double greatest = Dot(b.Center, b.Center);
+  for (const std::array<Vector2, 3>* ordinates :
+    { &b.Corner, &b.AfterStart, &b.BeforeEnd, &b.Inner, &b.Middle, &b.Spoke })
+  {
+    for (const Vector2& ordinate : *ordinates)
+    {
+      greatest = std::max(greatest, Dot(ordinate, ordinate));
+    }
+  }
+  return std::sqrt(greatest);
+}
+
+//------------------------------------------------------------------------------
+BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
+{
+  // Two basis functions at a time, as the components of one map.
+  std::array<CubicOrdinates<Vector2>, 5> basis;
+  for (int n = 0; n < 9; ++n)
+  {
+    CubicElement element{ points, {}, {}, {} };
+    for (int m = n; m <= std::min(n + 1, 8); ++m)
+    {
+      Vector2& target = m % 3 == 0
+        ? element.Values[m / 3]
+        : (m % 3 == 1 ? element.Gradients[m / 3].ImageOfX : element.Gradients[m / 3].ImageOfY);
+      (m == n ? target.x : target.y) = 1.0;
+    }
+    basis[n / 2] = GetOrdinates(element);
+    ++n;
+  }
+  const double area = 0.5 * Cross(points[1] - points[0], points[2] - points[0]);
+  BendingMatrix matrix{};
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    const Vector2 edge = points[j] - points[i];
+    const Vector2 toCentroid = (1.0 / 3.0) * (edge + (points[k] - points[i]));
+    const double cross = Cross(edge, toCentroid);
+    // d/dx and d/dy as combinations of the derivatives along edge and toCentroid.
+    const Vector2 alongX{ toCentroid.y / cross, -edge.y / cross };
+    const Vector2 alongY{ -toCentroid.x / cross, edge.x / cross };
+    // Second derivatives xx, xy, yy of the nine functions at the corners of the piece.
+    double hessians[3][3][9];
+    for (int pair = 0; pair < 5; ++pair)
+    {
+      const CubicOrdinates<Vector2>& b = basis[pair];
+      // Rows of the control net towards the end (columns) and the centroid (rows).
+      const Vector2 net[4][4] = { { b.Corner[i], b.AfterStart[k], b.BeforeEnd[k], b.Corner[j] },
+        { b.Inner[i], b.Middle[k], b.Inner[j], {} }, { b.Spoke[i], b.Spoke[j], {}, {} },
+        { b.Center, {}, {}, {} } };
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        const int r = corner == 2 ? 1 : 0;
+        const int c = corner == 1 ? 1 : 0;
+        const Vector2 aa = 6.0 * (net[r][c] + net[r][c + 2] - 2.0 * net[r][c + 1]);
+        const Vector2 bb = 6.0 * (net[r][c] + net[r + 2][c] - 2.0 * net[r + 1][c]);
+        const Vector2 ab =
+          6.0 * (net[r][c] + net[r + 1][c + 1] - net[r][c + 1] - net[r + 1][c]);
+        const Vector2 xx = alongX.x * alongX.x * aa + 2.0 * alongX.x * alongX.y * ab +
+          alongX.y * alongX.y * bb;
+        const Vector2 xy = alongX.x * alongY.x * aa +
+          (alongX.x * alongY.y + alongX.y * alongY.x) * ab + alongX.y * alongY.y * bb;
+        const Vector2 yy = alongY.x * alongY.x * aa + 2.0 * alongY.x * alongY.y * ab +
+          alongY.y * alongY.y * bb;
+        hessians[corner][0][2 * pair] = xx.x;
+        hessians[corner][1][2 * pair] = xy.x;
+        hessians[corner][2][2 * pair] = yy.x;
+        if (pair < 4)
+        {
+          hessians[corner][0][2 * pair + 1] = xx.y;
+          hessians[corner][1][2 * pair + 1] = xy.y;
+          hessians[corner][2][2 * pair + 1] = yy.y;
+        }
+      }
+    }
+    // Second derivatives are linear in a piece: the midpoints of its edges integrate their squares.
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      for (int part = 0; part < 3; ++part)
+      {
+        const double weight = (part == 1 ? 2.0 : 1.0) * area / 9.0 * 0.25;
+        double middle[9];
+        for (int n = 0; n < 9; ++n)
+        {
+          middle[n] = hessians[corner][part][n] + hessians[NextCorner(corner)][part][n];
+        }
+        for (int m = 0; m < 9; ++m)
+        {
+          for (int n = 0; n <= m; ++n)
+          {
+            matrix[m][n] += weight * middle[m] * middle[n];
+          }
+        }
+      }
+    }
+  }
+  for (int m = 0; m < 9; ++m)
+  {
+    for (int n = m + 1; n < 9; ++n)
+    {
+      matrix[m][n] = matrix[n][m];
+    }
+  }
+  return matrix;
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file CubicElement.h
+/// The reduced Hsieh-Clough-Tocher triangle as a map of the plane, and the certificate that its
+/// Jacobian determinant is positive.
+
+#ifndef homeomorphism_CubicElement_h
+#define homeomorphism_CubicElement_h
+
+#include "Kernel/CoordinateSystem.h"
+#include "Kernel/Geometry.h"
+
+#include <array>
+
+namespace homeomorphism
+{
+
+inline Vector2 operator*(const Matrix2& m, const Vector2& v)
+{
+  return { m.ImageOfX.x * v.x + m.ImageOfY.x * v.y, m.ImageOfX.y * v.x + m.ImageOfY.y * v.y };
+}
+
+inline Matrix2 operator+(const Matrix2& a, const Matrix2& b)
+{
+  return { a.ImageOfX + b.ImageOfX, a.ImageOfY + b.ImageOfY };
+}
+
+inline Matrix2 operator-(const Matrix2& a, const Matrix2& b)
+{
+  return { a.ImageOfX - b.ImageOfX, a.ImageOfY - b.ImageOfY };
+}
+
+inline Matrix2 operator*(double s, const Matrix2& m)
+{
+  return { s * m.ImageOfX, s * m.ImageOfY };
+}
+
+/// The matrix w v^T.
+inline Matrix2 OuterProduct(const Vector2& w, const Vector2& v)
+{
+  return { v.x * w, v.y * w };
+}
+
+inline double SquaredNorm(const Matrix2& m)
+{
+  return Dot(m.ImageOfX, m.ImageOfX) + Dot(m.ImageOfY, m.ImageOfY);
+}
+
+/// The derivative of the affine map that takes one triangle to another: accurate to a few ulp of
+/// every entry if the differences of the corners are exact.
+Matrix2 AffineDerivative(const std::array<Vector2, 3>& from, const std::array<Vector2, 3>& to);
+
+/// The map f(x) = Affine x + D(x) on a triangle. D is the reduced Hsieh-Clough-Tocher interpolant
+/// of the Values and Gradients at the corners: C1, cubic in each of the three pieces about the
+/// centroid, cubic along each edge with a normal derivative that is linear there (Clough, Tocher
+/// 1965; Percell 1976). Two elements that agree in f and its derivative at the ends of a shared
+/// edge therefore agree in both along the whole edge.
+struct CubicElement
+{
+  /// Corners, anticlockwise, relative to an origin nearby.
+  std::array<Vector2, 3> Points;
+  Matrix2 Affine;
+  /// D at the corners.
+  std::array<Vector2, 3> Values = {};
+  /// The derivative of D at the corners.
+  std::array<Matrix2, 3> Gradients = {};
+};
+
+/// Bernstein ordinates of D. The piece opposite corner k has the corners i = NextCorner(k),
+/// j = PreviousCorner(k) and the centroid O.
+template <typename Vector>
+struct CubicOrdinates
+{
+  std::array<Vector, 3> Corner;
+  /// On edge k beside its start i, and beside its end j.
+  std::array<Vector, 3> AfterStart;
+  std::array<Vector, 3> BeforeEnd;
+  /// On the segment from corner i to O, beside i.
+  std::array<Vector, 3> Inner;
+  /// The middle ordinate of piece k.
+  std::array<Vector, 3> Middle;
+  /// On the segment from corner i to O, beside O.
+  std::array<Vector, 3> Spoke;
+  Vector Center;
+};
+
+/// Barycentric coordinates of a point, by its components along the longest edge and at a right angle
+/// to it: rounding moves the point by a few ulp of that edge, even in a needle.
+Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point);
+
+/// Barycentric coordinates in the piece that contains a point of the triangle.
+struct CubicPiece
+{
+  int Opposite;
+  double Start;
+  double End;
+  double Centroid;
+};
+
+CubicPiece FindPiece(const Barycentric& l);
+
+CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element);
+
+/// D and its derivative at a point with barycentric coordinates @a l.
+void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& ordinates,
+  const Barycentric& l, Vector2& value, Matrix2& derivative);
+
+/// The weights of a quartic's Bernstein coefficients: start, end and centroid of its piece.
+struct QuarticIndex
+{
+  int Start;
+  int End;
+  int Centroid;
+};
+
+/// The order of the 15 Bernstein coefficients of a piece.
+const std::array<QuarticIndex, 15>& QuarticIndices();
+
+/// Bernstein coefficients of det f': the quartic on the piece opposite corner k starts at 15 k.
+using DeterminantCoefficients = std::array<double, 45>;
+
+DeterminantCoefficients GetDeterminantCoefficients(const CubicElement& element);
+
+/// A lower bound of det f' on the triangle, the least Bernstein coefficient less what rounding may
+/// have done to it. Positive means positive everywhere: for the map that these doubles define, with
+/// no rounding. Where the least coefficient is below @a enough, pieces are halved up to
+/// @a subdivisions times, which raises it towards the least determinant.
+double LeastDeterminant(const CubicElement& element, double enough = 0.0, int subdivisions = 6);
+
+/// The longest ordinate of D: |D| is at most that.
+double GreatestDisplacement(const CubicElement& element);
+
+/// The integral of the squared second derivatives |fxx|^2 + 2 |fxy|^2 + |fyy|^2 is the sum over
+/// both components of v^T E v; v = value, x derivative and y derivative at corners 0, 1, 2.
+using BendingMatrix = std::array<std::array<double, 9>, 9>;
+
+BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points);
+
+} // namespace homeomorphism
+
+#endif

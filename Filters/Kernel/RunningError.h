@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file RunningError.h
+/// Numbers that know how far rounding may have moved them.
+
+#ifndef homeomorphism_RunningError_h
+#define homeomorphism_RunningError_h
+
+#include <cmath>
+#include <limits>
+
+namespace homeomorphism
+{
+
+/// A double and a bound of its distance from the number that the same operations give without
+/// rounding (Wilkinson's running error analysis; Higham, "Accuracy and Stability of Numerical
+/// Algorithms", 3.3). The bound itself is rounded: after n operations it may be too small by a
+/// factor of 1 - n 2^-52, which LowerBound makes up for up to n = 2^20.
+struct RunningError
+{
+  double Value = 0.0;
+  double Error = 0.0;
+
+  RunningError() = default;
+  RunningError(double exact)
+    : Value(exact)
+  {
+  }
+  RunningError(double value, double error)
+    : Value(value)
+    , Error(error)
+  {
+  }
+
+  /// A number that the exact value does not fall below.
+  double LowerBound() const { return this->Value - 1.000001 * this->Error; }
+
+  static constexpr double Unit = 0x1p-53;
+};
+
+inline RunningError operator-(const RunningError& a)
+{
+  return { -a.Value, a.Error };
+}
+
+inline RunningError operator+(const RunningError& a, const RunningError& b)
+{
+  const double value = a.Value + b.Value;
+  return { value, a.Error + b.Error + RunningError::Unit * std::abs(value) };
+}
+
+inline RunningError operator-(const RunningError& a, const RunningError& b)
+{
+  const double value = a.Value - b.Value;
+  return { value, a.Error + b.Error + RunningError::Unit * std::abs(value) };
+}
+
+inline RunningError operator*(const RunningError& a, const RunningError& b)
+{
+  const double value = a.Value * b.Value;
+  // The last term is for products that underflow.
+  return { value,
+    a.Error * std::abs(b.Value) + (std::abs(a.Value) + a.Error) * b.Error +
+      RunningError::Unit * std::abs(value) + std::numeric_limits<double>::denorm_min() };
+}
+
+inline RunningError operator/(const RunningError& a, const RunningError& b)
+{
+  const double value = a.Value / b.Value;
+  const double least = std::abs(b.Value) - 1.000001 * b.Error;
+  if (!(least > 0.0))
+  {
+    return { value, std::numeric_limits<double>::infinity() };
+  }
+  return { value,
+    (a.Error + std::abs(value) * b.Error) / least + 2.0 * RunningError::Unit * std::abs(value) +
+      std::numeric_limits<double>::denorm_min() };
+}
+
+} // namespace homeomorphism
+
+#endif

@@ -1,0 +1,986 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Mesh/BendingSolve.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace homeomorphism
+{
+namespace
+{
+
+constexpr int MaximumRounds = 120;
+constexpr int MaximumProximalRounds = 8;
+/// Above this share of failing triangles everything is cut from the start, which bends less.
+constexpr double CutAllShare = 0.05;
+/// Failures after which a whole triangle, or the whole neighbors of a cut one, are cut.
+constexpr int PatientRounds = 3;
+/// Above this number of unknowns systems are solved by conjugate gradients.
+constexpr int DirectUnknowns = 200000;
+
+Vector2 Normal(const Vector2& along)
+{
+  return { -along.y, along.x };
+}
+
+double Length(const Vector2& v)
+{
+  return std::sqrt(Dot(v, v));
+}
+
+/// A number that depends linearly on the unknowns, for both components of the map at once: the
+/// coefficients are the same, the constants are not.
+struct LinearForm
+{
+  Vector2 Constant;
+  std::vector<std::pair<int, double>> Terms;
+
+  void Add(double factor, const LinearForm& other)
+  {
+    this->Constant = this->Constant + factor * other.Constant;
+    for (const std::pair<int, double>& term : other.Terms)
+    {
+      this->Terms.emplace_back(term.first, factor * term.second);
+    }
+  }
+};
+
+/// Value and derivatives by x and y at a node.
+struct NodeForms
+{
+  LinearForm Value;
+  LinearForm ByX;
+  LinearForm ByY;
+
+  LinearForm Along(const Vector2& direction) const
+  {
+    LinearForm form;
+    form.Add(direction.x, this->ByX);
+    form.Add(direction.y, this->ByY);
+    return form;
+  }
+
+  void SetGradient(
+    const Vector2& tangent, const LinearForm& alongTangent, const LinearForm& alongNormal)
+  {
+    const Vector2 normal = Normal(tangent);
+    this->ByX = {};
+    this->ByX.Add(tangent.x, alongTangent);
+    this->ByX.Add(normal.x, alongNormal);
+    this->ByY = {};
+    this->ByY.Add(tangent.y, alongTangent);
+    this->ByY.Add(normal.y, alongNormal);
+  }
+};
+
+LinearForm Constant(const Vector2& value)
+{
+  return { value, {} };
+}
+
+NodeForms Fixed(const BendingNode& node)
+{
+  return { Constant(node.Value), Constant(node.Gradient.ImageOfX),
+    Constant(node.Gradient.ImageOfY) };
+}
+
+/// One element of the minimization.
+struct Element
+{
+  int Triangle;
+  /// Of the cut, -1 for a whole triangle.
+  int Number;
+  std::array<int, 3> Nodes;
+  double Omega = 0.0;
+  /// The coefficient that is enough.
+  double Enough = 0.0;
+  double Reference = 0.0;
+  bool Failed = false;
+  BendingMatrix Bending;
+};
+
+/// What the boundary prescribes at a point.
+struct BoundaryPoint
+{
+  bool Straight = false;
+  Vector2 Tangent;
+  /// The derivative along the tangent, if the boundary is straight.
+  Vector2 Slope;
+  /// The whole derivative at a corner.
+  Matrix2 Derivative;
+};
+
+class Solver
+{
+public:
+  Solver(const CubicTemplate& cubicTemplate, const BendingOptions& options,
+    const std::vector<std::uint8_t>& isFree, const ParallelFor& parallelFor)
+    : Template(cubicTemplate)
+    , Pair(cubicTemplate.GetPair())
+    , Options(options)
+    , IsFree(isFree)
+    , Parallel(parallelFor)
+    , Affine(this->Pair.Triangles.size())
+    , IsCut(this->Pair.Triangles.size(), 0)
+    , Failures(this->Pair.Triangles.size(), 0)
+  {
+    this->Parallel(this->Pair.GetNumberOfTriangles(),
+      [this](std::int64_t begin, std::int64_t end)
+      {
+        for (int t = static_cast<int>(begin); t < end; ++t)
+        {
+          this->Affine[t] = this->Pair.GetAffine(t);
+        }
+      });
+  }
+
+  BendingSolution Run();
+
+private:
+  enum NodeKind : std::int8_t
+  {
+    PointNode,
+    EdgeNode,
+    InnerNode
+  };
+  struct Node
+  {
+    NodeKind Kind;
+    /// A point, or the triangle that made the node.
+    int Owner;
+    /// The node's number in the triangle's cut.
+    int Number;
+    /// On an edge beside a whole triangle.
+    bool Slave = false;
+    /// The map to which the solution is pulled, and the last solution.
+    BendingNode Aim;
+    BendingNode Now;
+    /// How hard the node is pulled, at most, by an element.
+    double Omega = 0.0;
+  };
+
+  bool IsSpecial(int point) const
+  {
+    return this->Template.GetKind(point) != VertexKind::Differentiable;
+  }
+  bool IsFreePoint(int point) const { return !this->IsFree.empty() && this->IsFree[point] != 0; }
+
+  void FindBoundary();
+  void Build();
+  void MakeForms();
+  NodeForms MakeEdgeForms(int number);
+  void Assemble();
+  void SolveSystem();
+  int Check();
+  void Aim();
+  double GetEnergy() const;
+  void CutTriangle(int triangle) { this->IsCut[triangle] = 1; }
+  BendingNode GetTemplateNode(int triangle, const TriangleCut& cut, int node) const;
+  CubicElement GetElement(const Element& element, bool aim) const;
+  void GetVector(const Element& element, bool aim, std::array<Vector2, 9>& v) const;
+  LinearForm Unknown() { return { {}, { { this->NumberOfUnknowns++, 1.0 } } }; }
+  BendingSolution Extract() const;
+
+  const CubicTemplate& Template;
+  const PlanarPair& Pair;
+  const BendingOptions& Options;
+  const std::vector<std::uint8_t>& IsFree;
+  const ParallelFor& Parallel;
+  std::vector<Matrix2> Affine;
+  std::vector<std::uint8_t> IsCut;
+  std::vector<int> Failures;
+  std::map<int, BoundaryPoint> Boundary;
+  std::vector<Node> Nodes;
+  std::vector<NodeForms> Forms;
+  std::vector<Element> Elements;
+  /// Of each cut triangle, its nodes.
+  std::map<int, std::array<int, TriangleCut::NumberOfNodes>> CutNodes;
+  int NumberOfUnknowns = 0;
+  bool PatternIsKnown = false;
+  Eigen::SparseMatrix<double> Matrix;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> Right;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> Solution;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> Cholesky;
+  BendingStatistics Statistics;
+  bool Proximal = false;
+};
+
+//------------------------------------------------------------------------------
+void Solver::FindBoundary()
+{
+  for (int t = 0; t < this->Pair.GetNumberOfTriangles(); ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      if (this->Pair.Neighbors[t][k] >= 0)
+      {
+        continue;
+      }
+      // The boundary runs anticlockwise: this edge leaves its start and arrives at its end.
+      const int ends[2] = { this->Pair.Triangles[t][NextCorner(k)],
+        this->Pair.Triangles[t][PreviousCorner(k)] };
+      for (int end = 0; end < 2; ++end)
+      {
+        if (!this->IsSpecial(ends[end]))
+        {
+          this->Boundary[ends[end]];
+        }
+      }
+    }
+  }
+  const PointFans fans(this->Pair);
+  for (auto& entry : this->Boundary)
+  {
+    const int point = entry.first;
+    BoundaryPoint& boundary = entry.second;
+    const PointFan fan = fans.Get(this->Pair, point);
+    const int first = fan.Triangles.front();
+    const int last = fan.Triangles.back();
+    const int next = this->Pair.Triangles[first][NextCorner(this->Pair.GetCorner(first, point))];
+    const int before = this->Pair.Triangles[last][PreviousCorner(this->Pair.GetCorner(last, point))];
+    const Vector2 out = this->Pair.Source[next] - this->Pair.Source[point];
+    const Vector2 in = this->Pair.Source[before] - this->Pair.Source[point];
+    const Vector2 imageOfOut = this->Pair.Target[next] - this->Pair.Target[point];
+    const Vector2 imageOfIn = this->Pair.Target[before] - this->Pair.Target[point];
+    const double outLength = Length(out);
+    const double inLength = Length(in);
+    boundary.Straight = this->Template.IsStraight(point);
+    boundary.Tangent = (1.0 / outLength) * out;
+    if (boundary.Straight)
+    {
+      // The weighted harmonic mean of the two edges' slopes keeps cubics along them monotone
+      // (Fritsch, Butland 1984).
+      const double first_ = Length(imageOfOut) / outLength;
+      const double second = Length(imageOfIn) / inLength;
+      const double w = 2.0 * inLength + outLength;
+      const double v = inLength + 2.0 * outLength;
+      const double slope = (w + v) / (w / first_ + v / second);
+      boundary.Slope = (slope / Length(imageOfOut)) * imageOfOut;
+    }
+    else
+    {
+      boundary.Derivative = AffineDerivative({ Vector2{}, out, in }, { Vector2{}, imageOfOut, imageOfIn });
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+BendingNode Solver::GetTemplateNode(int triangle, const TriangleCut& cut, int node) const
+{
+  return { {}, this->Affine[triangle] +
+      this->Template.GetGradient(cut, this->Affine[triangle], triangle, node) };
+}
+
+//------------------------------------------------------------------------------
+void Solver::Build()
+{
+  // Keeps what is known of nodes and elements that stay.
+  std::map<std::pair<int, int>, Node> oldNodes;
+  std::map<std::pair<int, int>, Element> oldElements;
+  const std::size_t points = this->Pair.Source.size();
+  std::vector<Node> oldPoints;
+  if (!this->Nodes.empty())
+  {
+    oldPoints.assign(this->Nodes.begin(), this->Nodes.begin() + static_cast<std::ptrdiff_t>(points));
+    for (std::size_t n = points; n < this->Nodes.size(); ++n)
+    {
+      oldNodes[{ this->Nodes[n].Owner, this->Nodes[n].Number }] = this->Nodes[n];
+    }
+    for (const Element& element : this->Elements)
+    {
+      oldElements[{ element.Triangle, element.Number }] = element;
+    }
+  }
+  this->Nodes.clear();
+  this->Elements.clear();
+  this->CutNodes.clear();
+  this->PatternIsKnown = false;
+  for (int point = 0; point < static_cast<int>(points); ++point)
+  {
+    Node node{ PointNode, point, 0, false, {}, {}, 0.0 };
+    if (oldPoints.empty())
+    {
+      node.Aim.Gradient = this->Template.GetDerivative(point);
+      node.Now = node.Aim;
+    }
+    else
+    {
+      node = oldPoints[point];
+    }
+    this->Nodes.push_back(node);
+  }
+  for (int t = 0; t < this->Pair.GetNumberOfTriangles(); ++t)
+  {
+    const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[t];
+    if (!this->IsCut[t])
+    {
+      Element element{ t, -1, { corners[0], corners[1], corners[2] }, 0.0, 0.0, 0.0, false, {} };
+      const auto old = oldElements.find({ t, -1 });
+      if (old != oldElements.end())
+      {
+        element = old->second;
+      }
+      else
+      {
+        element.Reference = this->Affine[t].Determinant();
+        element.Enough = this->Options.CertificateMargin * element.Reference;
+      }
+      this->Elements.push_back(element);
+      continue;
+    }
+    const TriangleCut cut = this->Template.GetCut(t);
+    std::array<int, TriangleCut::NumberOfNodes> nodes;
+    std::copy(corners.begin(), corners.end(), nodes.begin());
+    for (int n = 3; n < TriangleCut::NumberOfNodes; ++n)
+    {
+      const int k = (n < 9 ? n - 3 : n - 9) / 2;
+      const int neighbor = this->Pair.Neighbors[t][k];
+      if (n < 9 && neighbor >= 0 && neighbor < t && this->IsCut[neighbor])
+      {
+        // The neighbor runs through the edge in the other direction.
+        const int edge = this->Pair.GetSharedEdge(neighbor, t);
+        nodes[n] = this->CutNodes[neighbor][3 + 2 * edge + (n % 2 == 1 ? 1 : 0)];
+        continue;
+      }
+      Node node{ n < 9 ? EdgeNode : InnerNode, t, n, false, {}, {}, 0.0 };
+      const auto old = oldNodes.find({ t, n });
+      if (old != oldNodes.end())
+      {
+        node = old->second;
+      }
+      else
+      {
+        node.Aim = this->GetTemplateNode(t, cut, n);
+        node.Now = node.Aim;
+      }
+      node.Slave = n < 9 && neighbor >= 0 && !this->IsCut[neighbor];
+      nodes[n] = static_cast<int>(this->Nodes.size());
+      this->Nodes.push_back(node);
+    }
+    this->CutNodes[t] = nodes;
+    for (int e = 0; e < TriangleCut::NumberOfElements; ++e)
+    {
+      if (e < TriangleCut::FirstStrip && this->IsSpecial(corners[e / 3]))
+      {
+        continue;
+      }
+      const std::array<std::int8_t, 3>& numbers = TriangleCut::Elements[e];
+      Element element{ t, e, { nodes[numbers[0]], nodes[numbers[1]], nodes[numbers[2]] }, 0.0, 0.0,
+        0.0, false, {} };
+      const auto old = oldElements.find({ t, e });
+      if (old != oldElements.end())
+      {
+        const std::array<int, 3> renumbered = element.Nodes;
+        element = old->second;
+        element.Nodes = renumbered;
+      }
+      else
+      {
+        const CubicElement own = this->Template.GetElement(cut, this->Affine[t], t, e);
+        const DeterminantCoefficients c = GetDeterminantCoefficients(own);
+        element.Reference = *std::min_element(c.begin(), c.end());
+        element.Enough = this->Options.CertificateMargin * element.Reference;
+      }
+      this->Elements.push_back(element);
+    }
+  }
+  this->Parallel(static_cast<std::int64_t>(this->Elements.size()),
+    [this](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t e = begin; e < end; ++e)
+      {
+        Element& element = this->Elements[e];
+        element.Bending = GetBendingMatrix(this->GetElement(element, false).Points);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+CubicElement Solver::GetElement(const Element& element, bool aim) const
+{
+  const int t = element.Triangle;
+  CubicElement result;
+  result.Affine = this->Affine[t];
+  if (element.Number < 0)
+  {
+    result.Points = this->Pair.GetSourceCorners(t);
+  }
+  else
+  {
+    const TriangleCut cut = this->Template.GetCut(t);
+    for (int i = 0; i < 3; ++i)
+    {
+      result.Points[i] = cut.GetNode(
+        TriangleCut::Elements[element.Number][i], TriangleCut::GetOrigin(element.Number));
+    }
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    const Node& node = this->Nodes[element.Nodes[i]];
+    const BendingNode& data = aim ? node.Aim : node.Now;
+    result.Values[i] = data.Value;
+    result.Gradients[i] = data.Gradient - this->Affine[t];
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+// The forms of a node on an edge, from those of the edge's ends.
+NodeForms Solver::MakeEdgeForms(int number)
+{
+  const Node& node = this->Nodes[number];
+  const int t = node.Owner;
+  const int k = (node.Number - 3) / 2;
+  const int a = this->Pair.Triangles[t][NextCorner(k)];
+  const int b = this->Pair.Triangles[t][PreviousCorner(k)];
+  const bool atEnd = (node.Number - 3) % 2 == 1;
+  const bool boundary = this->Pair.Neighbors[t][k] < 0;
+  if (this->IsSpecial(atEnd ? b : a))
+  {
+    return Fixed(node.Aim);
+  }
+  if (!node.Slave && !boundary)
+  {
+    return { this->Unknown(), this->Unknown(), this->Unknown() };
+  }
+  const TriangleCut cut = this->Template.GetCut(t);
+  const double length = cut.Lengths[k];
+  const Vector2 along = cut.Along[k];
+  const Vector2 slope = this->Affine[t] * along;
+  // The span on which the map along the edge is one cubic: from end to end, or from the edge point
+  // of an end where the template stays.
+  double start = 0.0;
+  double end = length;
+  NodeForms first = this->Forms[a];
+  NodeForms last = this->Forms[b];
+  if (this->IsSpecial(a))
+  {
+    start = this->Template.GetRadius(a);
+    first = Fixed(this->Nodes[this->CutNodes[t][3 + 2 * k]].Aim);
+  }
+  if (this->IsSpecial(b))
+  {
+    end = length - this->Template.GetRadius(b);
+    last = Fixed(this->Nodes[this->CutNodes[t][4 + 2 * k]].Aim);
+  }
+  const double span = end - start;
+  const double at = atEnd ? length - this->Template.GetRadius(b) : this->Template.GetRadius(a);
+  const double s = (at - start) / span;
+  LinearForm firstSlope = first.Along(along);
+  LinearForm lastSlope = last.Along(along);
+  firstSlope.Add(-1.0, Constant(slope));
+  lastSlope.Add(-1.0, Constant(slope));
+  NodeForms forms;
+  forms.Value.Add((1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s), first.Value);
+  forms.Value.Add(s * (1.0 - s) * (1.0 - s) * span, firstSlope);
+  forms.Value.Add(s * s * (3.0 - 2.0 * s), last.Value);
+  forms.Value.Add(-s * s * (1.0 - s) * span, lastSlope);
+  LinearForm tangential = Constant(slope);
+  tangential.Add(-6.0 * s * (1.0 - s) / span, first.Value);
+  tangential.Add(6.0 * s * (1.0 - s) / span, last.Value);
+  tangential.Add((1.0 - s) * (1.0 - 3.0 * s), firstSlope);
+  tangential.Add(s * (3.0 * s - 2.0), lastSlope);
+  if (node.Slave)
+  {
+    LinearForm normal;
+    normal.Add(1.0 - s, first.Along(Normal(along)));
+    normal.Add(s, last.Along(Normal(along)));
+    forms.SetGradient(along, tangential, normal);
+    return forms;
+  }
+  // On the boundary the cubic is prescribed; the harder the node is pulled, the closer to its aim.
+  const double share = 1.0 / (1.0 + node.Omega);
+  forms.Value = Constant(node.Aim.Value + share * (forms.Value.Constant - node.Aim.Value));
+  const Vector2 aim = node.Aim.Gradient * along;
+  forms.SetGradient(
+    along, Constant(aim + share * (tangential.Constant - aim)), this->Unknown());
+  return forms;
+}
+
+//------------------------------------------------------------------------------
+void Solver::MakeForms()
+{
+  for (Node& node : this->Nodes)
+  {
+    node.Omega = 0.0;
+  }
+  for (const Element& element : this->Elements)
+  {
+    // A whole triangle is pulled to its affine map, which is no aim for the boundary.
+    if (element.Number >= 0 || this->Proximal)
+    {
+      for (int node : element.Nodes)
+      {
+        this->Nodes[node].Omega = std::max(this->Nodes[node].Omega, element.Omega);
+      }
+    }
+  }
+  this->NumberOfUnknowns = 0;
+  this->Forms.assign(this->Nodes.size(), {});
+  const int points = this->Pair.GetNumberOfPoints();
+  for (int point = 0; point < points; ++point)
+  {
+    NodeForms& forms = this->Forms[point];
+    const Node& node = this->Nodes[point];
+    const auto boundary = this->Boundary.find(point);
+    if (this->IsSpecial(point))
+    {
+      continue;
+    }
+    if (boundary == this->Boundary.end())
+    {
+      if (this->IsFreePoint(point))
+      {
+        forms.Value = this->Unknown();
+      }
+      forms.ByX = this->Unknown();
+      forms.ByY = this->Unknown();
+      continue;
+    }
+    const double share = 1.0 / (1.0 + node.Omega);
+    if (boundary->second.Straight)
+    {
+      const Vector2 aim = node.Aim.Gradient * boundary->second.Tangent;
+      forms.SetGradient(boundary->second.Tangent,
+        Constant(aim + share * (boundary->second.Slope - aim)), this->Unknown());
+    }
+    else
+    {
+      const Matrix2 gradient =
+        node.Aim.Gradient + share * (boundary->second.Derivative - node.Aim.Gradient);
+      forms.ByX = Constant(gradient.ImageOfX);
+      forms.ByY = Constant(gradient.ImageOfY);
+    }
+  }
+  for (std::size_t n = static_cast<std::size_t>(points); n < this->Nodes.size(); ++n)
+  {
+    const Node& node = this->Nodes[n];
+    if (node.Kind == EdgeNode)
+    {
+      this->Forms[n] = this->MakeEdgeForms(static_cast<int>(n));
+      continue;
+    }
+    const int k = (node.Number - 9) / 2;
+    const int corner = (node.Number - 9) % 2 == 1 ? PreviousCorner(k) : NextCorner(k);
+    if (this->IsSpecial(this->Pair.Triangles[node.Owner][corner]))
+    {
+      this->Forms[n] = Fixed(node.Aim);
+    }
+    else
+    {
+      this->Forms[n] = { this->Unknown(), this->Unknown(), this->Unknown() };
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void Solver::GetVector(const Element& element, bool aim, std::array<Vector2, 9>& v) const
+{
+  const Matrix2& affine = this->Affine[element.Triangle];
+  for (int i = 0; i < 3; ++i)
+  {
+    const Node& node = this->Nodes[element.Nodes[i]];
+    const BendingNode& data = aim ? node.Aim : node.Now;
+    v[3 * i] = data.Value;
+    v[3 * i + 1] = data.Gradient.ImageOfX - affine.ImageOfX;
+    v[3 * i + 2] = data.Gradient.ImageOfY - affine.ImageOfY;
+  }
+}
+
+//------------------------------------------------------------------------------
+void Solver::Assemble()
+{
+  std::vector<Eigen::Triplet<double>> triplets;
+  this->Right.setZero(this->NumberOfUnknowns, 2);
+  for (const Element& element : this->Elements)
+  {
+    BendingMatrix matrix = element.Bending;
+    std::array<Vector2, 9> constants;
+    const LinearForm* forms[9];
+    const Matrix2& affine = this->Affine[element.Triangle];
+    for (int i = 0; i < 3; ++i)
+    {
+      const NodeForms& node = this->Forms[element.Nodes[i]];
+      forms[3 * i] = &node.Value;
+      forms[3 * i + 1] = &node.ByX;
+      forms[3 * i + 2] = &node.ByY;
+      constants[3 * i] = node.Value.Constant;
+      constants[3 * i + 1] = node.ByX.Constant - affine.ImageOfX;
+      constants[3 * i + 2] = node.ByY.Constant - affine.ImageOfY;
+    }
+    // Bending times the constants, then the pull times their distance from the aim.
+    std::array<Vector2, 9> force{};
+    for (int m = 0; m < 9; ++m)
+    {
+      for (int n = 0; n < 9; ++n)
+      {
+        force[m] = force[m] + matrix[m][n] * constants[n];
+      }
+    }
+    if (element.Omega > 0.0)
+    {
+      std::array<Vector2, 9> aim{};
+      if (element.Number >= 0 || this->Proximal)
+      {
+        this->GetVector(element, true, aim);
+      }
+      BendingMatrix pull{};
+      for (int i = 0; i < 3; ++i)
+      {
+        pull[3 * i + 1][3 * i + 1] = element.Omega;
+        pull[3 * i + 2][3 * i + 2] = element.Omega;
+      }
+      const CubicElement cubic = this->GetElement(element, true);
+      for (int k = 0; k < 3; ++k)
+      {
+        const int i = 3 * NextCorner(k);
+        const int j = 3 * PreviousCorner(k);
+        const Vector2 edge = cubic.Points[j / 3] - cubic.Points[i / 3];
+        const double weight = element.Omega / Dot(edge, edge);
+        pull[i][i] += weight;
+        pull[j][j] += weight;
+        pull[i][j] -= weight;
+        pull[j][i] -= weight;
+      }
+      for (int m = 0; m < 9; ++m)
+      {
+        for (int n = 0; n < 9; ++n)
+        {
+          matrix[m][n] += pull[m][n];
+          force[m] = force[m] + pull[m][n] * (constants[n] - aim[n]);
+        }
+      }
+    }
+    for (int m = 0; m < 9; ++m)
+    {
+      for (const std::pair<int, double>& row : forms[m]->Terms)
+      {
+        this->Right(row.first, 0) -= row.second * force[m].x;
+        this->Right(row.first, 1) -= row.second * force[m].y;
+        for (int n = 0; n < 9; ++n)
+        {
+          for (const std::pair<int, double>& column : forms[n]->Terms)
+          {
+            if (row.first >= column.first)
+            {
+              triplets.emplace_back(
+                row.first, column.first, row.second * column.second * matrix[m][n]);
+            }
+          }
+        }
+      }
+    }
+  }
+  this->Matrix.resize(this->NumberOfUnknowns, this->NumberOfUnknowns);
+  this->Matrix.setFromTriplets(triplets.begin(), triplets.end());
+}
+
+//------------------------------------------------------------------------------
+void Solver::SolveSystem()
+{
+  this->MakeForms();
+  if (this->NumberOfUnknowns > 0)
+  {
+    this->Assemble();
+    if (this->NumberOfUnknowns <= DirectUnknowns)
+    {
+      if (!this->PatternIsKnown)
+      {
+        this->Cholesky.analyzePattern(this->Matrix);
+        this->PatternIsKnown = true;
+      }
+      this->Cholesky.factorize(this->Matrix);
+      this->Solution = this->Cholesky.solve(this->Right);
+    }
+    else
+    {
+      Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower,
+        Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>>>
+        gradients;
+      gradients.setTolerance(1e-12);
+      gradients.compute(this->Matrix);
+      if (this->Solution.rows() != this->NumberOfUnknowns)
+      {
+        this->Solution.setZero(this->NumberOfUnknowns, 2);
+      }
+      for (int component = 0; component < 2; ++component)
+      {
+        const Eigen::VectorXd guess = this->Solution.col(component);
+        this->Solution.col(component) =
+          gradients.solveWithGuess(this->Right.col(component), guess);
+      }
+    }
+  }
+  ++this->Statistics.Rounds;
+  const auto evaluate = [this](const LinearForm& form)
+  {
+    Vector2 value = form.Constant;
+    for (const std::pair<int, double>& term : form.Terms)
+    {
+      value.x += term.second * this->Solution(term.first, 0);
+      value.y += term.second * this->Solution(term.first, 1);
+    }
+    return value;
+  };
+  for (std::size_t n = 0; n < this->Nodes.size(); ++n)
+  {
+    if (this->Nodes[n].Kind == PointNode && this->IsSpecial(this->Nodes[n].Owner))
+    {
+      continue;
+    }
+    this->Nodes[n].Now = { evaluate(this->Forms[n].Value),
+      { evaluate(this->Forms[n].ByX), evaluate(this->Forms[n].ByY) } };
+  }
+}
+
+//------------------------------------------------------------------------------
+// Marks the elements that fail and returns how many triangles have any.
+int Solver::Check()
+{
+  this->Parallel(static_cast<std::int64_t>(this->Elements.size()),
+    [this](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t e = begin; e < end; ++e)
+      {
+        Element& element = this->Elements[e];
+        const CubicElement cubic = this->GetElement(element, false);
+        element.Failed = !(LeastDeterminant(cubic, element.Enough, 4) >= element.Enough) ||
+          !(GreatestDisplacement(cubic) <= this->Options.MaximumDeviation);
+      }
+    });
+  int failed = 0;
+  int last = -1;
+  for (const Element& element : this->Elements)
+  {
+    if (element.Failed && element.Triangle != last)
+    {
+      last = element.Triangle;
+      ++failed;
+    }
+  }
+  return failed;
+}
+
+//------------------------------------------------------------------------------
+void Solver::Aim()
+{
+  for (Node& node : this->Nodes)
+  {
+    node.Aim = node.Now;
+  }
+  this->Proximal = true;
+}
+
+//------------------------------------------------------------------------------
+double Solver::GetEnergy() const
+{
+  double energy = 0.0;
+  for (const Element& element : this->Elements)
+  {
+    std::array<Vector2, 9> v;
+    this->GetVector(element, false, v);
+    for (int m = 0; m < 9; ++m)
+    {
+      for (int n = 0; n < 9; ++n)
+      {
+        energy += element.Bending[m][n] * Dot(v[m], v[n]);
+      }
+    }
+  }
+  return energy;
+}
+
+//------------------------------------------------------------------------------
+BendingSolution Solver::Extract() const
+{
+  BendingSolution solution;
+  solution.Cuts.assign(this->Pair.Triangles.size(), -1);
+  for (int point = 0; point < this->Pair.GetNumberOfPoints(); ++point)
+  {
+    solution.Points.push_back(this->Nodes[point].Now);
+  }
+  for (const auto& entry : this->CutNodes)
+  {
+    solution.Cuts[entry.first] = static_cast<std::int32_t>(solution.CutNodes.size());
+    solution.CutNodes.emplace_back();
+    const TriangleCut cut = this->Template.GetCut(entry.first);
+    bool same = true;
+    for (int n = 0; n < TriangleCut::NumberOfNodes; ++n)
+    {
+      const BendingNode& node = this->Nodes[entry.second[n]].Now;
+      if (n >= 3)
+      {
+        solution.CutNodes.back()[n - 3] = node;
+      }
+      const Matrix2 own = this->GetTemplateNode(entry.first, cut, n).Gradient;
+      same = same && SquaredNorm(node.Gradient - own) <= 1e-6 * SquaredNorm(own);
+    }
+    ++solution.Statistics.CutTriangles;
+    solution.Statistics.TemplateTriangles += same ? 1 : 0;
+  }
+  solution.Statistics.Energy = this->GetEnergy();
+  return solution;
+}
+
+//------------------------------------------------------------------------------
+BendingSolution Solver::Run()
+{
+  this->FindBoundary();
+  for (int t = 0; t < this->Pair.GetNumberOfTriangles(); ++t)
+  {
+    for (int point : this->Pair.Triangles[t])
+    {
+      if (this->IsSpecial(point))
+      {
+        this->CutTriangle(t);
+      }
+    }
+  }
+  this->Build();
+  BendingSolution best;
+  double bestEnergy = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < MaximumRounds; ++round)
+  {
+    this->SolveSystem();
+    const int failed = this->Check();
+    if (failed == 0)
+    {
+      const double energy = this->GetEnergy();
+      if (!(energy < 0.995 * bestEnergy))
+      {
+        break;
+      }
+      bestEnergy = energy;
+      best = this->Extract();
+      bool pulled = false;
+      for (Element& element : this->Elements)
+      {
+        pulled = pulled || element.Omega > 0.0;
+        element.Omega /= 16.0;
+      }
+      if (!pulled || this->Statistics.ProximalRounds == MaximumProximalRounds)
+      {
+        break;
+      }
+      ++this->Statistics.ProximalRounds;
+      this->Aim();
+      continue;
+    }
+    bool rebuild = false;
+    if (round == 0 && failed > CutAllShare * this->Pair.GetNumberOfTriangles())
+    {
+      for (int t = 0; t < this->Pair.GetNumberOfTriangles(); ++t)
+      {
+        this->CutTriangle(t);
+      }
+      rebuild = true;
+    }
+    else
+    {
+      int counted = -1;
+      for (Element& element : this->Elements)
+      {
+        if (!element.Failed)
+        {
+          continue;
+        }
+        const int t = element.Triangle;
+        const bool whole = element.Number < 0;
+        element.Omega = std::max(4.0 * element.Omega, whole && !this->Proximal ? 0.5 : 0.1);
+        if (counted == t || this->Proximal)
+        {
+          continue;
+        }
+        counted = t;
+        if (++this->Failures[t] < PatientRounds)
+        {
+          continue;
+        }
+        this->Failures[t] = 0;
+        if (whole)
+        {
+          this->CutTriangle(t);
+          rebuild = true;
+          continue;
+        }
+        for (int neighbor : this->Pair.Neighbors[t])
+        {
+          if (neighbor >= 0 && !this->IsCut[neighbor])
+          {
+            this->CutTriangle(neighbor);
+            rebuild = true;
+          }
+        }
+      }
+    }
+    if (rebuild)
+    {
+      this->Build();
+    }
+  }
+  if (!std::isfinite(bestEnergy))
+  {
+    // The limit of the rounds, taken at once.
+    std::fill(this->IsCut.begin(), this->IsCut.end(), std::uint8_t(1));
+    this->Nodes.clear();
+    this->Elements.clear();
+    this->Build();
+    best = this->Extract();
+    best.Statistics.TookTemplate = true;
+  }
+  best.Statistics.Rounds = this->Statistics.Rounds;
+  best.Statistics.ProximalRounds = this->Statistics.ProximalRounds;
+  return best;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+CubicElement BendingSolution::GetWhole(
+  const PlanarPair& pair, const Matrix2& affine, int triangle) const
+{
+  CubicElement element;
+  element.Points = pair.GetSourceCorners(triangle);
+  element.Affine = affine;
+  for (int i = 0; i < 3; ++i)
+  {
+    const BendingNode& node = this->Points[pair.Triangles[triangle][i]];
+    element.Values[i] = node.Value;
+    element.Gradients[i] = node.Gradient - affine;
+  }
+  return element;
+}
+
+//------------------------------------------------------------------------------
+CubicElement BendingSolution::GetElement(const PlanarPair& pair, const TriangleCut& cut,
+  const Matrix2& affine, int triangle, int element) const
+{
+  CubicElement result;
+  result.Affine = affine;
+  for (int i = 0; i < 3; ++i)
+  {
+    const int number = TriangleCut::Elements[element][i];
+    const BendingNode node = this->GetNode(pair, triangle, number);
+    result.Points[i] = cut.GetNode(number, TriangleCut::GetOrigin(element));
+    result.Values[i] = node.Value;
+    result.Gradients[i] = node.Gradient - affine;
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+BendingSolution SolveForLeastBending(const CubicTemplate& cubicTemplate,
+  const BendingOptions& options, const std::vector<std::uint8_t>& isFree,
+  const ParallelFor& parallelFor)
+{
+  return Solver(cubicTemplate, options, isFree, parallelFor).Run();
+}
+
+} // namespace homeomorphism

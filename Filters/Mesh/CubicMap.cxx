@@ -1,0 +1,555 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Mesh/CubicMap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <unordered_set>
+
+namespace homeomorphism
+{
+namespace
+{
+
+constexpr int NewtonSteps = 300;
+// Residuals of this many ulp of the target's coordinates are rounding.
+constexpr double ResidualUlps = 4.0;
+
+double MaxNorm(const Vector2& v)
+{
+  return std::max(std::abs(v.x), std::abs(v.y));
+}
+
+// A cubic map on a triangle: ten control points, by weights of the corners.
+struct CubicPatch
+{
+  std::array<Vector2, 3> Corners;
+  // Rows of equal weight of the third corner, from the first to the second.
+  std::array<Vector2, 10> Points;
+};
+
+constexpr int PatchNumber(int second, int third)
+{
+  return 4 * third - third * (third - 1) / 2 + second;
+}
+
+// Cuts a patch from the middle of its edge from first to second corner, as a quartic in
+// CubicElement is, and turns the halves so that a different edge is cut next.
+std::array<CubicPatch, 2> Bisect(const CubicPatch& patch)
+{
+  const Vector2 middle = 0.5 * (patch.Corners[0] + patch.Corners[1]);
+  std::array<CubicPatch, 2> halves;
+  halves[0].Corners = { patch.Corners[2], patch.Corners[0], middle };
+  halves[1].Corners = { patch.Corners[1], patch.Corners[2], middle };
+  for (int third = 0; third <= 3; ++third)
+  {
+    const int degree = 3 - third;
+    Vector2 row[4];
+    for (int n = 0; n <= degree; ++n)
+    {
+      row[n] = patch.Points[PatchNumber(n, third)];
+    }
+    for (int step = 0; step <= degree; ++step)
+    {
+      halves[0].Points[PatchNumber(degree - step, step)] = row[0];
+      halves[1].Points[PatchNumber(third, step)] = row[degree - step];
+      for (int n = 0; n + step < degree; ++n)
+      {
+        row[n] = 0.5 * (row[n] + row[n + 1]);
+      }
+    }
+  }
+  return halves;
+}
+
+std::array<CubicPatch, 3> GetPatches(const CubicElement& element)
+{
+  const CubicOrdinates<Vector2> b = GetOrdinates(element);
+  const std::array<Vector2, 3>& p = element.Points;
+  const Vector2 centroid = p[0] + (1.0 / 3.0) * ((p[1] - p[0]) + (p[2] - p[0]));
+  std::array<CubicPatch, 3> patches;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    CubicPatch& patch = patches[k];
+    patch.Corners = { p[i], p[j], centroid };
+    patch.Points = { b.Corner[i], b.AfterStart[k], b.BeforeEnd[k], b.Corner[j], b.Inner[i],
+      b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j], b.Center };
+    for (int third = 0; third <= 3; ++third)
+    {
+      for (int second = 0; second + third <= 3; ++second)
+      {
+        const Vector2 at = (1.0 / 3.0) *
+          ((3.0 - second - third) * patch.Corners[0] + double(second) * patch.Corners[1] +
+            double(third) * patch.Corners[2]);
+        Vector2& point = patch.Points[PatchNumber(second, third)];
+        point = point + element.Affine * at;
+      }
+    }
+  }
+  return patches;
+}
+
+// Whether the control points surround an image, and how far apart they are.
+bool Contains(const CubicPatch& patch, const Vector2& image, double tolerance, double& extent)
+{
+  Vector2 least = patch.Points[0];
+  Vector2 greatest = patch.Points[0];
+  for (const Vector2& point : patch.Points)
+  {
+    least = { std::min(least.x, point.x), std::min(least.y, point.y) };
+    greatest = { std::max(greatest.x, point.x), std::max(greatest.y, point.y) };
+  }
+  extent = MaxNorm(greatest - least);
+  return image.x >= least.x - tolerance && image.x <= greatest.x + tolerance &&
+    image.y >= least.y - tolerance && image.y <= greatest.y + tolerance;
+}
+
+// Bisections until a patch is as small as rounding allows, and between attempts to finish sooner.
+constexpr int Bisections = 110;
+constexpr int BisectionsPerAttempt = 6;
+
+// Halves a patch wherever its control points surround an image, and calls found with the middles
+// of small parts, and whether they are as small as they get; stops when that returns true.
+template <typename Found>
+bool Subdivide(
+  const CubicPatch& patch, const Vector2& image, double tolerance, int depth, Found&& found)
+{
+  double extent;
+  if (!Contains(patch, image, tolerance, extent))
+  {
+    return false;
+  }
+  const bool smallest = extent <= 4.0 * tolerance || depth == Bisections;
+  if ((smallest || depth % BisectionsPerAttempt == 0) &&
+    found((1.0 / 3.0) * (patch.Corners[0] + patch.Corners[1] + patch.Corners[2]), smallest))
+  {
+    return true;
+  }
+  for (const CubicPatch& half : Bisect(patch))
+  {
+    if (Subdivide(half, image, tolerance, depth + 1, found))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+Vector2 Solve(const Matrix2& m, const Vector2& v)
+{
+  const double d = m.Determinant();
+  return { Cross(v, m.ImageOfY) / d, Cross(m.ImageOfX, v) / d };
+}
+
+// The edge through which a point relative to corner 0 lies outside farthest, -1 if it is inside.
+int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
+{
+  int exit = -1;
+  double farthest = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector2 start = corners[NextCorner(k)];
+    const Vector2 edge = corners[PreviousCorner(k)] - start;
+    // Corner 0 is the origin, so a point on an edge is on it from both sides.
+    const double height = Cross(edge, point - start);
+    const double relative = height / Dot(edge, edge);
+    if (relative < farthest)
+    {
+      farthest = relative;
+      exit = k;
+    }
+  }
+  return exit;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+CubicMap::CubicMap(
+  PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor)
+  : Pair(std::move(pair))
+{
+  std::vector<std::uint8_t> isFree;
+  if (options.Bending == CubicBending::Least && options.FairnessRefinement > 0)
+  {
+    this->Levels = options.FairnessRefinement;
+    this->Fine = std::make_unique<PlanarPair>(this->Pair.Refine());
+    for (int level = 1; level < this->Levels; ++level)
+    {
+      *this->Fine = this->Fine->Refine();
+    }
+    isFree.assign(this->Fine->Source.size(), 1);
+    std::fill_n(isFree.begin(), this->Pair.Source.size(), std::uint8_t(0));
+  }
+  CubicTemplateOptions templateOptions;
+  templateOptions.MaximumDeviation = options.MaximumDeviation;
+  this->Template = std::make_unique<CubicTemplate>(this->GetFine(), templateOptions, parallelFor);
+  if (options.Bending == CubicBending::Least)
+  {
+    BendingOptions bending;
+    bending.MaximumDeviation = options.MaximumDeviation;
+    bending.CertificateMargin = options.CertificateMargin;
+    this->Bending = std::make_unique<BendingSolution>(
+      SolveForLeastBending(*this->Template, bending, isFree, parallelFor));
+    this->Statistics.Bending = this->Bending->Statistics;
+  }
+  double coordinates = 0.0;
+  for (const Vector2& target : this->Pair.Target)
+  {
+    coordinates = std::max(coordinates, MaxNorm(target));
+  }
+  this->ResidualTolerance = ResidualUlps * std::numeric_limits<double>::epsilon() * coordinates;
+  this->Certificates.assign(this->Pair.Triangles.size(), 0.0);
+  std::vector<std::int64_t> elements(this->Pair.Triangles.size(), 0);
+  parallelFor(this->Pair.GetNumberOfTriangles(),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (int t = static_cast<int>(begin); t < end; ++t)
+      {
+        if (!this->Bending)
+        {
+          this->Certificates[t] = this->Template->GetCertificate(t);
+          elements[t] = TriangleCut::NumberOfElements;
+          continue;
+        }
+        double least = std::numeric_limits<double>::infinity();
+        this->VisitElements(t,
+          [&](const CubicElement& element, const Vector2&, const Vector2&, double)
+          {
+            least = std::min(least, LeastDeterminant(element));
+            ++elements[t];
+          });
+        this->Certificates[t] = least / this->Pair.GetAffine(t).Determinant();
+      }
+    });
+  for (std::size_t t = 0; t < elements.size(); ++t)
+  {
+    this->Statistics.Elements += elements[t];
+    this->Statistics.UncertifiedTriangles += this->Certificates[t] > 0.0 ? 0 : 1;
+  }
+  for (int point = 0; point < this->Pair.GetNumberOfPoints(); ++point)
+  {
+    this->Statistics.Rings += this->Template->GetNumberOfRings(point);
+    if (this->Template->GetKind(point) == VertexKind::Exceptional)
+    {
+      (this->Template->IsBoundary(point) ? this->Statistics.ExceptionalBoundaryPoints
+                                         : this->Statistics.ExceptionalInteriorPoints)
+        .push_back(point);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+int CubicMap::FindChild(int triangle, const Vector2& point) const
+{
+  Barycentric l = ToBarycentric(
+    this->Pair.GetSourceCorners(triangle), point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
+  int child = triangle;
+  for (int level = 0; level < this->Levels; ++level)
+  {
+    int corner = 3;
+    for (int c = 0; c < 3; ++c)
+    {
+      corner = l[c] > 0.5 ? c : corner;
+    }
+    if (corner < 3)
+    {
+      // Corner c stays; the others become midpoints.
+      for (int c = 0; c < 3; ++c)
+      {
+        l[c] = c == corner ? 2.0 * l[c] - 1.0 : 2.0 * l[c];
+      }
+    }
+    else
+    {
+      l = { 1.0 - 2.0 * l[0], 1.0 - 2.0 * l[1], 1.0 - 2.0 * l[2] };
+    }
+    child = 4 * child + corner;
+  }
+  return child;
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::MapFine(
+  int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+{
+  if (!this->Bending)
+  {
+    this->Template->Evaluate(triangle, point, image, derivative);
+    return;
+  }
+  const PlanarPair& pair = this->GetFine();
+  const Matrix2 affine = pair.GetAffine(triangle);
+  const std::array<std::int32_t, 3>& corners = pair.Triangles[triangle];
+  CubicElement element;
+  Vector2 local = point;
+  int origin = 0;
+  if (this->Bending->Cuts[triangle] < 0)
+  {
+    element = this->Bending->GetWhole(pair, affine, triangle);
+  }
+  else
+  {
+    const TriangleCut cut = this->Template->GetCut(triangle);
+    const int number = cut.Find(point);
+    origin = TriangleCut::GetOrigin(number);
+    local = point - cut.Corners[origin];
+    if (number < TriangleCut::FirstStrip &&
+      this->Template->GetKind(corners[origin]) != VertexKind::Differentiable)
+    {
+      this->Template->EvaluateRings(triangle, origin, local, image, derivative);
+      image = image + (pair.Target[corners[origin]] - pair.Target[corners[0]]);
+      return;
+    }
+    element = this->Bending->GetElement(pair, cut, affine, triangle, number);
+  }
+  Vector2 value;
+  Matrix2 gradient;
+  Evaluate(element, GetOrdinates(element), ToBarycentric(element.Points, local), value, gradient);
+  image = affine * local + value + (pair.Target[corners[origin]] - pair.Target[corners[0]]);
+  derivative = affine + gradient;
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::MapPoint(
+  int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+{
+  const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
+  const PlanarPair& pair = this->GetFine();
+  const int first = pair.Triangles[child][0];
+  this->MapFine(child, point - pair.Source[first], image, derivative);
+  image = pair.Target[first] + image;
+}
+
+//------------------------------------------------------------------------------
+bool CubicMap::FindPreimage(const Vector2& image, int& triangle, Vector2& point) const
+{
+  // Newton's method from the piecewise linear preimage, walking over the triangles. All positions
+  // are relative to corner 0 of the current triangle.
+  const PlanarPair& pair = this->GetFine();
+  const Vector2 origin = pair.Target[this->Pair.Triangles[triangle][0]];
+  Vector2 x = Solve(this->Pair.GetAffine(triangle), image - origin);
+  int t = triangle;
+  if (this->Levels > 0)
+  {
+    const Vector2 absolute = this->Pair.Source[this->Pair.Triangles[triangle][0]] + x;
+    t = this->FindChild(triangle, absolute);
+    x = absolute - pair.Source[pair.Triangles[t][0]];
+  }
+  const auto walk = [&pair](int& at, Vector2& to)
+  {
+    for (int step = 0; step < 1000; ++step)
+    {
+      const std::array<Vector2, 3> corners = pair.GetSourceCorners(at);
+      const int exit = FindExit(corners, to);
+      if (exit < 0)
+      {
+        return;
+      }
+      const int neighbor = pair.Neighbors[at][exit];
+      if (neighbor < 0)
+      {
+        // The nearest point of the boundary edge.
+        const Vector2 start = corners[NextCorner(exit)];
+        const Vector2 edge = corners[PreviousCorner(exit)] - start;
+        const double s = std::clamp(Dot(to - start, edge) / Dot(edge, edge), 0.0, 1.0);
+        to = start + s * edge;
+        return;
+      }
+      to = to + (pair.Source[pair.Triangles[at][0]] - pair.Source[pair.Triangles[neighbor][0]]);
+      at = neighbor;
+    }
+  };
+  walk(t, x);
+  Vector2 value;
+  Matrix2 derivative;
+  const auto evaluate = [&](int at, const Vector2& from)
+  {
+    this->MapFine(at, from, value, derivative);
+    return (image - pair.Target[pair.Triangles[at][0]]) - value;
+  };
+  Vector2 residual = evaluate(t, x);
+  double size = MaxNorm(residual);
+  bool done = false;
+  for (int step = 0; step < NewtonSteps && !done && size > 0.0; ++step)
+  {
+    const Vector2 move = Solve(derivative, residual);
+    double share = 1.0;
+    bool better = false;
+    for (int half = 0; half < 30 && !better; ++half, share *= 0.5)
+    {
+      int next = t;
+      Vector2 to = x + share * move;
+      walk(next, to);
+      const Vector2 nextResidual = evaluate(next, to);
+      const double nextSize = MaxNorm(nextResidual);
+      if (nextSize < size)
+      {
+        better = true;
+        t = next;
+        x = to;
+        residual = nextResidual;
+        size = nextSize;
+      }
+      else if (size <= this->ResidualTolerance)
+      {
+        break;
+      }
+    }
+    done = !better;
+  }
+  if (!(size <= this->ResidualTolerance))
+  {
+    // Stuck, or outside the target's domain.
+    int found = t;
+    Vector2 better;
+    if (this->SearchPreimage(image, found, better))
+    {
+      triangle = found >> (2 * this->Levels);
+      point = better;
+      return true;
+    }
+    triangle = t >> (2 * this->Levels);
+    point = pair.Source[pair.Triangles[t][0]] + x;
+    return false;
+  }
+  triangle = t >> (2 * this->Levels);
+  point = pair.Source[pair.Triangles[t][0]] + x;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+// Looks for the preimage in all triangles, nearest neighbors first, by halving control nets.
+bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& point) const
+{
+  const PlanarPair& pair = this->GetFine();
+  std::deque<int> queue{ triangle };
+  std::unordered_set<int> seen{ triangle };
+  while (!queue.empty())
+  {
+    const int t = queue.front();
+    queue.pop_front();
+    bool found = false;
+    this->VisitFine(
+      t,
+      [&](const CubicElement& element, const Vector2& sourceOrigin, const Vector2& targetOrigin,
+        double factor)
+      {
+        if (found)
+        {
+          return;
+        }
+        const Vector2 local = (1.0 / factor) * (image - targetOrigin);
+        const double tolerance = this->ResidualTolerance / factor;
+        const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
+        for (const CubicPatch& patch : GetPatches(element))
+        {
+          found = found ||
+            Subdivide(patch, local, tolerance, 0,
+              [&](const Vector2& start, bool smallest)
+              {
+                // Newton's method from here, as long as it gains and stays in the element.
+                Vector2 x = start;
+                double last = std::numeric_limits<double>::infinity();
+                for (int step = 0; step < 12; ++step)
+                {
+                  const Barycentric l = ToBarycentric(element.Points, x);
+                  if (!(std::min({ l[0], l[1], l[2] }) >= -1e-14))
+                  {
+                    break;
+                  }
+                  Vector2 value;
+                  Matrix2 gradient;
+                  Evaluate(element, ordinates, l, value, gradient);
+                  const Vector2 residual = local - (element.Affine * x + value);
+                  const double size = MaxNorm(residual);
+                  if (!(size < last))
+                  {
+                    break;
+                  }
+                  last = size;
+                  point = sourceOrigin + factor * x;
+                  x = x + Solve(element.Affine + gradient, residual);
+                }
+                return last <= 4.0 * tolerance || smallest;
+              });
+        }
+      },
+      50);
+    if (found)
+    {
+      triangle = t;
+      return true;
+    }
+    for (int neighbor : pair.Neighbors[t])
+    {
+      if (neighbor >= 0 && seen.insert(neighbor).second)
+      {
+        queue.push_back(neighbor);
+      }
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::VisitFine(int triangle,
+  const std::function<void(const CubicElement& element, const Vector2& sourceOrigin,
+    const Vector2& targetOrigin, double factor)>& visit,
+  int endlessRings) const
+{
+  const PlanarPair& pair = this->GetFine();
+  const std::array<std::int32_t, 3>& corners = pair.Triangles[triangle];
+  const Matrix2 affine = pair.GetAffine(triangle);
+  if (this->Bending && this->Bending->Cuts[triangle] < 0)
+  {
+    visit(this->Bending->GetWhole(pair, affine, triangle), pair.Source[corners[0]],
+      pair.Target[corners[0]], 1.0);
+    return;
+  }
+  const TriangleCut cut = this->Template->GetCut(triangle);
+  for (int number = 0; number < TriangleCut::NumberOfElements; ++number)
+  {
+    const int origin = TriangleCut::GetOrigin(number);
+    const Vector2 sourceOrigin = pair.Source[corners[origin]];
+    const Vector2 targetOrigin = pair.Target[corners[origin]];
+    const VertexKind kind = this->Template->GetKind(corners[origin]);
+    if (number < TriangleCut::FirstStrip && kind != VertexKind::Differentiable)
+    {
+      if (number % 3 == 0)
+      {
+        const int repeats = kind == VertexKind::Exceptional ? endlessRings : 1;
+        double scale = 1.0;
+        for (int ring = 0; ring < repeats; ++ring, scale *= VertexRings::Ratio)
+        {
+          this->Template->VisitRings(triangle, origin,
+            [&](const CubicElement& element, double factor)
+            { visit(element, sourceOrigin, targetOrigin, scale * factor); });
+        }
+      }
+      continue;
+    }
+    visit(this->Bending ? this->Bending->GetElement(pair, cut, affine, triangle, number)
+                        : this->Template->GetElement(cut, affine, triangle, number),
+      sourceOrigin, targetOrigin, 1.0);
+  }
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::VisitElements(int triangle,
+  const std::function<void(const CubicElement& element, const Vector2& sourceOrigin,
+    const Vector2& targetOrigin, double factor)>& visit,
+  int endlessRings) const
+{
+  const int children = 1 << (2 * this->Levels);
+  for (int child = children * triangle; child < children * (triangle + 1); ++child)
+  {
+    this->VisitFine(child, visit, endlessRings);
+  }
+}
+
+} // namespace homeomorphism

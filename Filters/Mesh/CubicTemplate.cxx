@@ -1,0 +1,601 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Mesh/CubicTemplate.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace homeomorphism
+{
+namespace
+{
+
+// The edge points' distance from a vertex over the length of its shortest edge, the inner points'
+// height over that of the triangle, and the share of the bound that Theorem 1 leaves to the
+// variation of the determinant. Any with a convex middle and Slack < 1 will do; these bend least.
+constexpr double EdgeShare = 0.25;
+constexpr double HeightShare = 0.25;
+constexpr double Slack = 0.5;
+
+double Length(const Vector2& v)
+{
+  return std::sqrt(Dot(v, v));
+}
+
+Vector2 Normal(const Vector2& along)
+{
+  return { -along.y, along.x };
+}
+
+// The corner's two edges leave it along prev(corner) and arrive along next(corner).
+FanSector GetSector(const TriangleCut& cut, const Matrix2& affine, int corner)
+{
+  const int out = PreviousCorner(corner);
+  const int in = NextCorner(corner);
+  return { cut.GetNode(3 + 2 * out, corner), cut.GetNode(9 + 2 * out, corner),
+    cut.GetNode(10 + 2 * in, corner), cut.GetNode(4 + 2 * in, corner), affine };
+}
+
+// A direction relative to a sector's fan: beside the first ray (0), in the middle (1), beside the
+// last (2).
+int FindPart(const FanSector& s, const Vector2& point)
+{
+  return Cross(s.InnerStart, point) < 0.0 ? 0 : (Cross(point, s.InnerEnd) < 0.0 ? 2 : 1);
+}
+
+// The factor by which a sector's outline must be shrunk about the vertex to pass through a point.
+double GetGauge(const FanSector& s, int part, const Vector2& point)
+{
+  const Vector2 a = part == 0 ? s.Start : (part == 1 ? s.InnerStart : s.InnerEnd);
+  const Vector2 b = part == 0 ? s.InnerStart : (part == 1 ? s.InnerEnd : s.End);
+  return Cross(point - Vector2{}, b - a) / Cross(a, b - a);
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+void SerialFor(std::int64_t count, const std::function<void(std::int64_t, std::int64_t)>& body)
+{
+  body(0, count);
+}
+
+//------------------------------------------------------------------------------
+const std::array<std::array<std::int8_t, 3>, TriangleCut::NumberOfElements> TriangleCut::Elements =
+  [] {
+    std::array<std::array<std::int8_t, 3>, NumberOfElements> elements{};
+    const auto set = [&elements](int element, int a, int b, int c)
+    { elements[element] = { std::int8_t(a), std::int8_t(b), std::int8_t(c) }; };
+    for (int c = 0; c < 3; ++c)
+    {
+      const int out = PreviousCorner(c);
+      const int in = NextCorner(c);
+      set(3 * c, c, 3 + 2 * out, 9 + 2 * out);
+      set(3 * c + 1, c, 9 + 2 * out, 10 + 2 * in);
+      set(3 * c + 2, c, 10 + 2 * in, 4 + 2 * in);
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      set(FirstStrip + 2 * k, 3 + 2 * k, 4 + 2 * k, 10 + 2 * k);
+      set(FirstStrip + 2 * k + 1, 3 + 2 * k, 10 + 2 * k, 9 + 2 * k);
+    }
+    // The inner points in cyclic order, a fan and a triangle.
+    const int ring[6] = { 13, 14, 9, 10, 11, 12 };
+    set(FirstMiddle, ring[0], ring[1], ring[2]);
+    set(FirstMiddle + 1, ring[2], ring[3], ring[4]);
+    set(FirstMiddle + 2, ring[4], ring[5], ring[0]);
+    set(FirstMiddle + 3, ring[0], ring[2], ring[4]);
+    return elements;
+  }();
+
+//------------------------------------------------------------------------------
+Vector2 TriangleCut::GetNode(int node, int origin) const
+{
+  if (node < 3)
+  {
+    return this->Corners[node] - this->Corners[origin];
+  }
+  const int n = node < 9 ? node - 3 : node - 9;
+  const int k = n / 2;
+  const bool atEnd = n % 2 == 1;
+  const int corner = atEnd ? PreviousCorner(k) : NextCorner(k);
+  Vector2 point = (atEnd ? -this->Radii[corner] : this->Radii[corner]) * this->Along[k];
+  if (node >= 9)
+  {
+    point = point + this->Heights[k] * Normal(this->Along[k]);
+  }
+  return corner == origin ? point : point + (this->Corners[corner] - this->Corners[origin]);
+}
+
+//------------------------------------------------------------------------------
+int TriangleCut::Find(const Vector2& point) const
+{
+  std::array<Vector2, 3> from;
+  std::array<double, 3> height;
+  std::array<double, 3> along;
+  for (int k = 0; k < 3; ++k)
+  {
+    from[k] = point - this->Corners[k];
+  }
+  bool inside = true;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector2& d = from[NextCorner(k)];
+    height[k] = Cross(this->Along[k], d);
+    along[k] = Dot(this->Along[k], d);
+    inside = inside && height[k] > this->Heights[k];
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    const int out = PreviousCorner(c);
+    const int in = NextCorner(c);
+    const double radius = this->Radii[c];
+    const double reach = std::max(this->Heights[out], this->Heights[in]);
+    if (Dot(from[c], from[c]) > radius * radius + reach * reach)
+    {
+      continue;
+    }
+    const Vector2 first = radius * this->Along[out] + this->Heights[out] * Normal(this->Along[out]);
+    const Vector2 last = this->Heights[in] * Normal(this->Along[in]) - radius * this->Along[in];
+    if (Cross(first, from[c]) < 0.0)
+    {
+      if (along[out] <= radius)
+      {
+        return 3 * c;
+      }
+    }
+    else if (Cross(from[c], last) < 0.0)
+    {
+      if (this->Lengths[in] - along[in] <= radius)
+      {
+        return 3 * c + 2;
+      }
+    }
+    else if (Cross(last - first, from[c] - first) >= 0.0)
+    {
+      return 3 * c + 1;
+    }
+  }
+  if (!inside)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const double start = this->Radii[NextCorner(k)];
+      const double width = this->Lengths[k] - start - this->Radii[PreviousCorner(k)];
+      if (height[k] <= this->Heights[k] && along[k] >= start && along[k] <= start + width)
+      {
+        const bool upper =
+          height[k] * width > (along[k] - start) * this->Heights[k];
+        return FirstStrip + 2 * k + (upper ? 1 : 0);
+      }
+    }
+  }
+  for (int n = 0; n < 3; ++n)
+  {
+    const std::array<std::int8_t, 3>& nodes = Elements[FirstMiddle + n];
+    const Vector2 a = this->GetNode(nodes[0], 0);
+    const Vector2 b = this->GetNode(nodes[2], 0);
+    if (Cross(b - a, point - a) < 0.0)
+    {
+      return FirstMiddle + n;
+    }
+  }
+  return FirstMiddle + 3;
+}
+
+//------------------------------------------------------------------------------
+CubicTemplate::CubicTemplate(
+  const PlanarPair& pair, const CubicTemplateOptions& options, const ParallelFor& parallelFor)
+  : Pair(pair)
+  , Radii(pair.Source.size(), 0.0)
+  , Derivatives(pair.Source.size())
+  , Kinds(pair.Source.size(), VertexKind::Differentiable)
+  , Boundary(pair.Source.size(), 0)
+  , Heights(pair.Triangles.size())
+{
+  const PointFans fans(pair);
+  const std::int64_t points = pair.GetNumberOfPoints();
+  parallelFor(points,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (int point = static_cast<int>(begin); point < end; ++point)
+      {
+        if (fans.First[point] < 0)
+        {
+          continue;
+        }
+        const PointFan fan = fans.Get(pair, point);
+        this->Boundary[point] = fan.Closed ? 0 : 1;
+        double shortest = std::numeric_limits<double>::infinity();
+        double norm = 0.0;
+        for (int t : fan.Triangles)
+        {
+          const int c = pair.GetCorner(t, point);
+          const std::array<Vector2, 3> corners = pair.GetSourceCorners(t, c);
+          shortest = std::min({ shortest, Length(corners[NextCorner(c)]),
+            Length(corners[PreviousCorner(c)]) });
+          norm = std::max(norm, std::sqrt(SquaredNorm(pair.GetAffine(t))));
+        }
+        this->Radii[point] = EdgeShare * shortest;
+        // Half of what may be strayed; the other half belongs to the edges.
+        this->Radii[point] = std::min(this->Radii[point], 0.5 * options.MaximumDeviation / norm);
+      }
+    });
+  parallelFor(pair.GetNumberOfTriangles(),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (int t = static_cast<int>(begin); t < end; ++t)
+      {
+        this->SetHeights(t, options.MaximumDeviation);
+      }
+    });
+  std::vector<std::int32_t> exceptions;
+  parallelFor(points,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Exception unused;
+      for (int point = static_cast<int>(begin); point < end; ++point)
+      {
+        if (fans.First[point] >= 0)
+        {
+          this->SetDerivative(point, fans, unused);
+        }
+      }
+    });
+  for (int point = 0; point < points; ++point)
+  {
+    if (this->Kinds[point] != VertexKind::Differentiable)
+    {
+      Exception exception;
+      this->SetDerivative(point, fans, exception);
+      this->Exceptions.push_back(std::move(exception));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::SetHeights(int triangle, double maximumDeviation)
+{
+  const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(triangle);
+  const Matrix2 affine = this->Pair.GetAffine(triangle);
+  const double d = affine.Determinant();
+  std::array<double, 3> lengths;
+  double share = 1.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    lengths[k] = Length(corners[PreviousCorner(k)] - corners[NextCorner(k)]);
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    for (int corner : { NextCorner(k), PreviousCorner(k) })
+    {
+      share = std::min(share, this->Radii[this->Pair.Triangles[triangle][corner]] / lengths[k]);
+    }
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector2 edge = corners[PreviousCorner(k)] - corners[NextCorner(k)];
+    const Vector2 apex = corners[k] - corners[NextCorner(k)];
+    const double length = lengths[k];
+    const double height = DifferenceOfProducts(edge.x, apex.y, edge.y, apex.x) / length;
+    const double foot = Dot(apex, edge) / length / length;
+    double m =
+      HeightShare * share * height / std::max({ 1.0, std::abs(foot), std::abs(1.0 - foot) });
+    const int neighbor = this->Pair.Neighbors[triangle][k];
+    if (neighbor >= 0)
+    {
+      const Matrix2 across = this->Pair.GetAffine(neighbor);
+      const double e = across.Determinant();
+      const Vector2 normal = (1.0 / length) * Normal(edge);
+      const Vector2 turn = (across - affine) * normal;
+      const double start = this->Radii[this->Pair.Triangles[triangle][NextCorner(k)]];
+      const double end = this->Radii[this->Pair.Triangles[triangle][PreviousCorner(k)]];
+      const double leg =
+        std::min(4.0 / 3.0 * (length - start - end), 3.0 * std::min(start, end));
+      const double slope = std::abs(Cross(turn, affine * normal));
+      m = std::min(m, Slack * leg * std::min(d, e) / slope);
+      m = std::min(m, 1.5 * maximumDeviation * (d + e) / (d * Length(turn)));
+    }
+    this->Heights[triangle][k] = m;
+  }
+}
+
+//------------------------------------------------------------------------------
+VertexFan CubicTemplate::GetFan(int point, const PointFan& fan) const
+{
+  VertexFan result;
+  result.Closed = fan.Closed;
+  for (int t : fan.Triangles)
+  {
+    result.Sectors.push_back(
+      GetSector(this->GetCut(t), this->Pair.GetAffine(t), this->Pair.GetCorner(t, point)));
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::SetDerivative(int point, const PointFans& fans, Exception& exception)
+{
+  const PointFan triangles = fans.Get(this->Pair, point);
+  VertexFan fan = this->GetFan(point, triangles);
+  bool possible = fans.Touching[point] == 0;
+  if (possible && !fan.Closed)
+  {
+    // On a boundary that is straight up to the rounding of its points, or turns to the same side of
+    // straight in both meshes.
+    const int first = triangles.Triangles.front();
+    const int last = triangles.Triangles.back();
+    const int ends[2] = {
+      this->Pair.Triangles[first][NextCorner(this->Pair.GetCorner(first, point))],
+      this->Pair.Triangles[last][PreviousCorner(this->Pair.GetCorner(last, point))]
+    };
+    int turns[2];
+    for (int domain = 0; domain < 2; ++domain)
+    {
+      const std::vector<Vector2>& points = domain == 0 ? this->Pair.Source : this->Pair.Target;
+      const Vector2 here = points[point];
+      const Vector2 start = points[ends[0]] - here;
+      const Vector2 end = points[ends[1]] - here;
+      const double cross = Cross(start, end);
+      const double coordinates = std::max(std::abs(here.x), std::abs(here.y));
+      const double rounding = 0x1p-50 * coordinates * (Length(start) + Length(end));
+      turns[domain] =
+        std::abs(cross) <= rounding && Dot(start, end) < 0.0 ? 0 : (cross > 0.0 ? 1 : -1);
+    }
+    possible = turns[0] == turns[1];
+    fan.Straight = possible && turns[0] == 0;
+    this->Boundary[point] = fan.Straight ? 2 : 1;
+  }
+  VertexDerivative derivative;
+  if (possible)
+  {
+    derivative = FindVertexDerivative(fan);
+  }
+  this->Derivatives[point] = derivative.Derivative;
+  if (derivative.Margin > 0.0)
+  {
+    return;
+  }
+  exception.Point = point;
+  if (possible && FindVertexRings(fan, exception.Rings))
+  {
+    this->Kinds[point] = VertexKind::Rings;
+    this->Derivatives[point] = exception.Rings.Center.Derivative;
+  }
+  else
+  {
+    this->Kinds[point] = VertexKind::Exceptional;
+    exception.Rings.Outlines = { GetHomogeneousOutline(fan) };
+  }
+  exception.Fan = std::move(fan);
+  exception.Triangles = triangles.Triangles;
+}
+
+//------------------------------------------------------------------------------
+const CubicTemplate::Exception& CubicTemplate::GetException(int point) const
+{
+  return *std::lower_bound(this->Exceptions.begin(), this->Exceptions.end(), point,
+    [](const Exception& exception, int id) { return exception.Point < id; });
+}
+
+//------------------------------------------------------------------------------
+const VertexRings& CubicTemplate::GetRings(int point) const
+{
+  return this->GetException(point).Rings;
+}
+
+//------------------------------------------------------------------------------
+int CubicTemplate::GetNumberOfRings(int point) const
+{
+  return this->Kinds[point] == VertexKind::Rings ? this->GetRings(point).GetNumberOfRings() : 0;
+}
+
+//------------------------------------------------------------------------------
+TriangleCut CubicTemplate::GetCut(int triangle) const
+{
+  TriangleCut cut;
+  cut.Corners = this->Pair.GetSourceCorners(triangle);
+  cut.Heights = this->Heights[triangle];
+  const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[triangle];
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector2 edge =
+      this->Pair.Source[corners[PreviousCorner(k)]] - this->Pair.Source[corners[NextCorner(k)]];
+    cut.Lengths[k] = Length(edge);
+    cut.Along[k] = (1.0 / cut.Lengths[k]) * edge;
+    cut.Radii[k] = this->Radii[corners[k]];
+  }
+  return cut;
+}
+
+//------------------------------------------------------------------------------
+Matrix2 CubicTemplate::GetGradient(
+  const TriangleCut&, const Matrix2& affine, int triangle, int node) const
+{
+  if (node < 3)
+  {
+    return this->Derivatives[this->Pair.Triangles[triangle][node]] - affine;
+  }
+  if (node >= 9)
+  {
+    return {};
+  }
+  const int neighbor = this->Pair.Neighbors[triangle][(node - 3) / 2];
+  return neighbor < 0 ? Matrix2{} : HarmonicMean(affine, this->Pair.GetAffine(neighbor)) - affine;
+}
+
+//------------------------------------------------------------------------------
+CubicElement CubicTemplate::GetElement(
+  const TriangleCut& cut, const Matrix2& affine, int triangle, int element) const
+{
+  const int origin = TriangleCut::GetOrigin(element);
+  CubicElement result;
+  result.Affine = affine;
+  for (int i = 0; i < 3; ++i)
+  {
+    const int node = TriangleCut::Elements[element][i];
+    result.Points[i] = cut.GetNode(node, origin);
+    result.Gradients[i] = this->GetGradient(cut, affine, triangle, node);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::EvaluateRings(
+  int triangle, int corner, const Vector2& point, Vector2& image, Matrix2& derivative) const
+{
+  const int id = this->Pair.Triangles[triangle][corner];
+  const Exception& exception = this->GetException(id);
+  const bool endless = this->Kinds[id] == VertexKind::Exceptional;
+  const int sector =
+    static_cast<int>(std::find(exception.Triangles.begin(), exception.Triangles.end(), triangle) -
+      exception.Triangles.begin());
+  const FanSector& s = exception.Fan.Sectors[sector];
+  const std::vector<VertexRings::Outline>& outlines = exception.Rings.Outlines;
+  const int part = FindPart(s, point);
+  const double gauge = GetGauge(s, part, point);
+  if (!(gauge > 0.0))
+  {
+    image = outlines.back().Affine[sector] * point;
+    derivative = endless ? outlines.back().Affine[sector] : exception.Rings.Center.Derivative;
+    return;
+  }
+  int ring = std::max(0, static_cast<int>(std::floor(std::log(gauge) / std::log(VertexRings::Ratio))));
+  const bool center = !endless && ring >= exception.Rings.GetNumberOfRings();
+  ring = center ? exception.Rings.GetNumberOfRings() : ring;
+  const double scale = std::pow(VertexRings::Ratio, ring);
+  // Powers of two: nothing is rounded.
+  const Vector2 scaled = (1.0 / scale) * point;
+  CubicElement element;
+  if (center)
+  {
+    FanSector star = s;
+    const VertexRings::Outline& outline = outlines.back();
+    star.Affine = outline.Affine[sector];
+    const std::size_t next =
+      static_cast<std::size_t>(sector) + 1 == outline.Rays.size() && exception.Fan.Closed
+      ? 0
+      : static_cast<std::size_t>(sector) + 1;
+    element = GetCornerElements(star, exception.Rings.Center.Derivative, outline.Rays[sector],
+      outline.Rays[next])[part];
+  }
+  else
+  {
+    const std::array<CubicElement, 6> elements =
+      GetRingElements(exception.Fan, outlines[endless ? 0 : ring],
+        outlines[endless ? 0 : static_cast<std::size_t>(ring) + 1], sector);
+    // Of the two, the one in which the point is less outside.
+    const Barycentric first = ToBarycentric(elements[2 * part].Points, scaled);
+    const Barycentric second = ToBarycentric(elements[2 * part + 1].Points, scaled);
+    const bool takeFirst = *std::min_element(first.begin(), first.end()) >=
+      *std::min_element(second.begin(), second.end());
+    element = elements[2 * part + (takeFirst ? 0 : 1)];
+  }
+  Vector2 value;
+  Matrix2 gradient;
+  homeomorphism::Evaluate(
+    element, GetOrdinates(element), ToBarycentric(element.Points, scaled), value, gradient);
+  image = scale * (element.Affine * scaled + value);
+  derivative = element.Affine + gradient;
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::Evaluate(
+  int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+{
+  const TriangleCut cut = this->GetCut(triangle);
+  const Matrix2 affine = this->Pair.GetAffine(triangle);
+  const int number = cut.Find(point);
+  if (number >= TriangleCut::FirstMiddle)
+  {
+    image = affine * point;
+    derivative = affine;
+    return;
+  }
+  const int origin = TriangleCut::GetOrigin(number);
+  const Vector2 local = point - cut.Corners[origin];
+  const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[triangle];
+  if (number < TriangleCut::FirstStrip &&
+    this->Kinds[corners[origin]] != VertexKind::Differentiable)
+  {
+    this->EvaluateRings(triangle, origin, local, image, derivative);
+  }
+  else
+  {
+    const CubicElement element = this->GetElement(cut, affine, triangle, number);
+    Vector2 value;
+    Matrix2 gradient;
+    homeomorphism::Evaluate(
+      element, GetOrdinates(element), ToBarycentric(element.Points, local), value, gradient);
+    image = affine * local + value;
+    derivative = affine + gradient;
+  }
+  image = image + (this->Pair.Target[corners[origin]] - this->Pair.Target[corners[0]]);
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::VisitRings(int triangle, int corner,
+  const std::function<void(const CubicElement&, double factor)>& visit) const
+{
+  const int id = this->Pair.Triangles[triangle][corner];
+  const Exception& exception = this->GetException(id);
+  const int sector =
+    static_cast<int>(std::find(exception.Triangles.begin(), exception.Triangles.end(), triangle) -
+      exception.Triangles.begin());
+  const std::vector<VertexRings::Outline>& outlines = exception.Rings.Outlines;
+  const bool endless = this->Kinds[id] == VertexKind::Exceptional;
+  // One ring stands for all of an endless sequence.
+  const std::size_t rings = endless ? 1 : outlines.size() - 1;
+  for (std::size_t j = 0; j < rings; ++j)
+  {
+    for (const CubicElement& element :
+      GetRingElements(exception.Fan, outlines[j], outlines[endless ? j : j + 1], sector))
+    {
+      visit(element, std::pow(VertexRings::Ratio, static_cast<double>(j)));
+    }
+  }
+  if (!endless)
+  {
+    const VertexRings::Outline& outline = outlines.back();
+    FanSector star = exception.Fan.Sectors[sector];
+    star.Affine = outline.Affine[sector];
+    const std::size_t next = static_cast<std::size_t>(sector) + 1;
+    for (const CubicElement& element :
+      GetCornerElements(star, exception.Rings.Center.Derivative, outline.Rays[sector],
+        outline.Rays[next == outline.Rays.size() && exception.Fan.Closed ? 0 : next]))
+    {
+      visit(element, std::pow(VertexRings::Ratio, static_cast<double>(rings)));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+double CubicTemplate::GetCertificate(int triangle) const
+{
+  const TriangleCut cut = this->GetCut(triangle);
+  const Matrix2 affine = this->Pair.GetAffine(triangle);
+  const double determinant = affine.Determinant();
+  // The middle is affine.
+  double least = determinant;
+  for (int number = 0; number < TriangleCut::FirstMiddle; ++number)
+  {
+    const int origin = TriangleCut::GetOrigin(number);
+    if (number < TriangleCut::FirstStrip &&
+      this->Kinds[this->Pair.Triangles[triangle][origin]] != VertexKind::Differentiable)
+    {
+      if (number % 3 == 0)
+      {
+        this->VisitRings(triangle, origin,
+          [&least](const CubicElement& element, double)
+          { least = std::min(least, LeastDeterminant(element)); });
+      }
+      continue;
+    }
+    least =
+      std::min(least, LeastDeterminant(this->GetElement(cut, affine, triangle, number)));
+  }
+  return least / determinant;
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file CubicTemplate.h
+/// A certified C1 homeomorphism of any pair of plane triangulations, in closed form: each triangle
+/// is cut into 19 elements whose derivatives are written down.
+
+#ifndef homeomorphism_CubicTemplate_h
+#define homeomorphism_CubicTemplate_h
+
+#include "Mesh/PlanarPair.h"
+#include "Mesh/VertexGradient.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Calls a function for ranges [begin, end) that cover 0 to a count, maybe in several threads.
+using ParallelFor =
+  std::function<void(std::int64_t count, const std::function<void(std::int64_t, std::int64_t)>&)>;
+
+void SerialFor(std::int64_t count, const std::function<void(std::int64_t, std::int64_t)>& body);
+
+/// The cut of one triangle, relative to its corner 0.
+///
+/// Nodes: corners 0 to 2; on edge k the edge points 3 + 2k near its start and 4 + 2k near its end;
+/// above them the inner points 9 + 2k and 10 + 2k. Elements: 3c to 3c + 2 around corner c, 9 + 2k
+/// and 10 + 2k along edge k, 15 to 18 in the middle.
+struct TriangleCut
+{
+  static constexpr int NumberOfNodes = 15;
+  static constexpr int NumberOfElements = 19;
+  static constexpr int FirstStrip = 9;
+  static constexpr int FirstMiddle = 15;
+
+  static const std::array<std::array<std::int8_t, 3>, NumberOfElements> Elements;
+
+  std::array<Vector2, 3> Corners;
+  /// Unit vectors along the edges.
+  std::array<Vector2, 3> Along;
+  std::array<double, 3> Lengths;
+  /// The distance of the edge points from each corner.
+  std::array<double, 3> Radii;
+  /// The heights of the inner points above each edge.
+  std::array<double, 3> Heights;
+
+  /// The corner to which an element's coordinates are relative: the nearest one.
+  static int GetOrigin(int element)
+  {
+    return element < FirstStrip ? element / 3
+                                : (element < FirstMiddle ? NextCorner((element - FirstStrip) / 2) : 0);
+  }
+
+  /// A node relative to the corner @a origin.
+  Vector2 GetNode(int node, int origin) const;
+
+  /// The element that contains a point of the triangle, relative to corner 0.
+  int Find(const Vector2& point) const;
+};
+
+/// What a vertex is for the template.
+enum class VertexKind : std::int8_t
+{
+  /// The map has a certified derivative.
+  Differentiable,
+  /// It has one inside rings.
+  Rings,
+  /// It has none: the map is homogeneous beside the vertex, which is C1 around it.
+  Exceptional
+};
+
+struct CubicTemplateOptions
+{
+  /// The greatest distance from the piecewise linear map, in the units of the target.
+  double MaximumDeviation = std::numeric_limits<double>::infinity();
+};
+
+/// The map. Of a point, a radius and a derivative are stored, of a triangle three heights; elements
+/// are made when they are needed.
+class CubicTemplate
+{
+public:
+  /// @a pair must outlive the template.
+  CubicTemplate(const PlanarPair& pair, const CubicTemplateOptions& options,
+    const ParallelFor& parallelFor = SerialFor);
+
+  const PlanarPair& GetPair() const { return this->Pair; }
+
+  VertexKind GetKind(int point) const { return this->Kinds[point]; }
+  bool IsBoundary(int point) const { return this->Boundary[point] != 0; }
+  /// Whether a point lies on a boundary that is straight there in both meshes, to the rounding of
+  /// their coordinates.
+  bool IsStraight(int point) const { return this->Boundary[point] == 2; }
+  double GetRadius(int point) const { return this->Radii[point]; }
+  /// The derivative at a point that is differentiable.
+  const Matrix2& GetDerivative(int point) const { return this->Derivatives[point]; }
+  const VertexRings& GetRings(int point) const;
+  int GetNumberOfRings(int point) const;
+  /// The corners at a point, relative to it.
+  VertexFan GetFan(int point, const PointFan& fan) const;
+
+  TriangleCut GetCut(int triangle) const;
+
+  /// The derivative at a node of a cut less the triangle's own affine one. Not for a corner that is
+  /// not differentiable.
+  Matrix2 GetGradient(const TriangleCut& cut, const Matrix2& affine, int triangle, int node) const;
+
+  /// The element, relative to the cut's GetOrigin(element) in the source and in the target. Not for
+  /// those at a corner that is not differentiable.
+  CubicElement GetElement(
+    const TriangleCut& cut, const Matrix2& affine, int triangle, int element) const;
+
+  /// The image relative to that of corner @a corner of a point relative to it, beside a corner that
+  /// is not differentiable.
+  void EvaluateRings(int triangle, int corner, const Vector2& point, Vector2& image,
+    Matrix2& derivative) const;
+
+  /// The image of a point relative to that of corner 0, both relative to it, and the derivative.
+  void Evaluate(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
+
+  /// Calls @a visit with every element of a triangle's corner that is not differentiable, relative
+  /// to the corner, and with the factor by which it is shrunk.
+  void VisitRings(int triangle, int corner,
+    const std::function<void(const CubicElement&, double factor)>& visit) const;
+
+  /// The least Bernstein coefficient of the determinant in a triangle over the affine determinant;
+  /// the triangle is certified if it is positive.
+  double GetCertificate(int triangle) const;
+
+private:
+  struct Exception
+  {
+    int Point;
+    VertexFan Fan;
+    std::vector<int> Triangles;
+    VertexRings Rings;
+  };
+
+  const Exception& GetException(int point) const;
+  void SetHeights(int triangle, double maximumDeviation);
+  void SetDerivative(int point, const PointFans& fans, Exception& exception);
+
+  const PlanarPair& Pair;
+  std::vector<double> Radii;
+  std::vector<Matrix2> Derivatives;
+  std::vector<VertexKind> Kinds;
+  /// 1 on the boundary, 2 where it is straight.
+  std::vector<std::uint8_t> Boundary;
+  std::vector<std::array<double, 3>> Heights;
+  /// Ascending by point.
+  std::vector<Exception> Exceptions;
+};
+
+} // namespace homeomorphism
+
+#endif

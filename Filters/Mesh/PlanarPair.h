@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file PlanarPair.h
+/// Two isomorphic triangulations of the plane as plain arrays, anticlockwise in both.
+
+#ifndef homeomorphism_PlanarPair_h
+#define homeomorphism_PlanarPair_h
+
+#include "Kernel/CubicElement.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Corner numbers are 0 to 2; edge k is opposite corner k and runs from NextCorner(k) to
+/// PreviousCorner(k). All triangles have positive area in Source and in Target, and neighbors run
+/// through their edge in opposite directions.
+struct PlanarPair
+{
+  std::vector<Vector2> Source;
+  std::vector<Vector2> Target;
+  std::vector<std::array<std::int32_t, 3>> Triangles;
+  /// Element k: the triangle across edge k, -1 on the boundary.
+  std::vector<std::array<std::int32_t, 3>> Neighbors;
+
+  int GetNumberOfTriangles() const { return static_cast<int>(this->Triangles.size()); }
+  int GetNumberOfPoints() const { return static_cast<int>(this->Source.size()); }
+
+  /// Fills Neighbors from Triangles. Edges of more than two triangles count as boundary.
+  void FindNeighbors();
+
+  /// The edge of @a neighbor that it shares with @a triangle.
+  int GetSharedEdge(int neighbor, int triangle) const
+  {
+    const std::array<std::int32_t, 3>& across = this->Neighbors[neighbor];
+    return across[0] == triangle ? 0 : (across[1] == triangle ? 1 : 2);
+  }
+
+  int GetCorner(int triangle, int point) const
+  {
+    const std::array<std::int32_t, 3>& corners = this->Triangles[triangle];
+    return corners[0] == point ? 0 : (corners[1] == point ? 1 : 2);
+  }
+
+  /// Corners of a triangle relative to one of them: differences of nearby coordinates are exact.
+  static std::array<Vector2, 3> GetCorners(const std::vector<Vector2>& points,
+    const std::array<std::int32_t, 3>& corners, int origin = 0)
+  {
+    const Vector2 o = points[corners[origin]];
+    return { points[corners[0]] - o, points[corners[1]] - o, points[corners[2]] - o };
+  }
+
+  std::array<Vector2, 3> GetSourceCorners(int triangle, int origin = 0) const
+  {
+    return GetCorners(this->Source, this->Triangles[triangle], origin);
+  }
+
+  std::array<Vector2, 3> GetTargetCorners(int triangle, int origin = 0) const
+  {
+    return GetCorners(this->Target, this->Triangles[triangle], origin);
+  }
+
+  /// The derivative of the piecewise linear map.
+  Matrix2 GetAffine(int triangle) const
+  {
+    return AffineDerivative(this->GetSourceCorners(triangle), this->GetTargetCorners(triangle));
+  }
+
+  /// Each triangle cut into four at the midpoints of its edges: triangle 4 t + c has corner c of
+  /// triangle t, 4 t + 3 is the middle one.
+  PlanarPair Refine() const;
+};
+
+/// The triangles around a point, anticlockwise, beginning at the boundary if the point is on it.
+struct PointFan
+{
+  std::vector<int> Triangles;
+  bool Closed = true;
+};
+
+/// Of each point, the triangle with which its fan begins, -1 for a point without triangles; and
+/// whether the triangles at the point are more than its fan (boundaries touch there).
+struct PointFans
+{
+  explicit PointFans(const PlanarPair& pair);
+
+  PointFan Get(const PlanarPair& pair, int point) const;
+
+  std::vector<std::int32_t> First;
+  std::vector<std::uint8_t> Touching;
+};
+
+} // namespace homeomorphism
+
+#endif
