@@ -338,7 +338,11 @@ void CubicTemplate::SetDerivative(int point, const PointFans& fans, Exception& e
       const Vector2 start = points[ends[0]] - here;
       const Vector2 end = points[ends[1]] - here;
       const double cross = Cross(start, end);
-      const double coordinates = std::max(std::abs(here.x), std::abs(here.y));
+      double coordinates = 0.0;
+      for (const Vector2& p : { here, points[ends[0]], points[ends[1]] })
+      {
+        coordinates = std::max({ coordinates, std::abs(p.x), std::abs(p.y) });
+      }
       const double rounding = 0x1p-50 * coordinates * (Length(start) + Length(end));
       turns[domain] =
         std::abs(cross) <= rounding && Dot(start, end) < 0.0 ? 0 : (cross > 0.0 ? 1 : -1);

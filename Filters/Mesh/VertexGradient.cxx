@@ -133,6 +133,43 @@ Matrix2 FitLogarithm(const VertexFan& fan)
   return { { x.real(), x.imag() }, { y.real(), y.imag() } };
 }
 
+Matrix2 Multiply(const Matrix2& a, const Matrix2& b)
+{
+  return { a * b.ImageOfX, a * b.ImageOfY };
+}
+
+// The fit, of what remains after the mean of the sectors' derivatives if that is close to them all:
+// affine pairs are then reproduced to rounding.
+Matrix2 FitLinear(const VertexFan& fan)
+{
+  Matrix2 mean{};
+  double total = 0.0;
+  for (const FanSector& sector : fan.Sectors)
+  {
+    const double area = Cross(sector.Start, sector.End);
+    mean = mean + area * sector.Affine;
+    total += area;
+  }
+  mean = (1.0 / total) * mean;
+  const double determinant = mean.Determinant();
+  if (!(determinant > 0.0))
+  {
+    return FitLogarithm(fan);
+  }
+  const Matrix2 inverse = (1.0 / determinant) *
+    Matrix2{ { mean.ImageOfY.y, -mean.ImageOfX.y }, { -mean.ImageOfY.x, mean.ImageOfX.x } };
+  VertexFan rest = fan;
+  for (FanSector& sector : rest.Sectors)
+  {
+    sector.Affine = Multiply(inverse, sector.Affine);
+    if (SquaredNorm(sector.Affine - Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } }) > 0.25)
+    {
+      return FitLogarithm(fan);
+    }
+  }
+  return Multiply(mean, FitLogarithm(rest));
+}
+
 // The linear maps among which the derivative at a vertex is looked for.
 std::vector<Matrix2> GetBasis(const VertexFan& fan)
 {
@@ -599,7 +636,7 @@ VertexDerivative FindVertexDerivative(const VertexFan& fan)
 {
   const std::vector<Matrix2> rayGradients = GetRayGradients(fan);
   const double greatestNorm = GreatestNorm(fan);
-  const Matrix2 fit = fan.Closed ? FitLogarithm(fan) : FitBoundary(fan);
+  const Matrix2 fit = fan.Closed ? FitLinear(fan) : FitBoundary(fan);
   VertexDerivative best;
   best.Derivative = fit;
   best.Margin = 0.0;
@@ -687,7 +724,7 @@ VertexRings::Outline GetHomogeneousOutline(const VertexFan& fan)
 //------------------------------------------------------------------------------
 bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
 {
-  const Matrix2 derivative = fan.Closed ? FitLogarithm(fan) : FitBoundary(fan);
+  const Matrix2 derivative = fan.Closed ? FitLinear(fan) : FitBoundary(fan);
   const StarHomotopy homotopy(fan, derivative);
   const double ratioLogarithm = std::log(VertexRings::Ratio);
   // The innermost outline must stay well above what coordinates beside the vertex can represent.

@@ -1,0 +1,412 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The cubic element and its certificate: against exact rational numbers computed from the element's
+// definition by Testing/Reference/cubic_element.py, and by what must hold of any element.
+
+#include "Kernel/CubicElement.h"
+#include "Kernel/LinearProgram.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace homeomorphism;
+
+CubicElement ToElement(const std::vector<double>& n)
+{
+  CubicElement element;
+  for (int i = 0; i < 3; ++i)
+  {
+    const std::size_t k = static_cast<std::size_t>(i);
+    element.Points[k] = { n[2 * k], n[2 * k + 1] };
+    element.Values[k] = { n[10 + 2 * k], n[11 + 2 * k] };
+    element.Gradients[k] = { { n[16 + 4 * k], n[17 + 4 * k] }, { n[18 + 4 * k], n[19 + 4 * k] } };
+  }
+  element.Affine = { { n[6], n[7] }, { n[8], n[9] } };
+  return element;
+}
+
+std::vector<std::vector<double>> ReadReference()
+{
+  std::ifstream file(REFERENCE_DATA_DIR "/cubic_element.csv");
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line))
+  {
+    std::vector<double> row;
+    std::istringstream cells(line);
+    std::string cell;
+    while (std::getline(cells, cell, ','))
+    {
+      row.push_back(std::stod(cell));
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class Random
+{
+public:
+  explicit Random(std::uint64_t seed)
+    : Generator(seed)
+  {
+  }
+  double operator()(double low, double high)
+  {
+    return std::uniform_real_distribution<double>(low, high)(this->Generator);
+  }
+  Vector2 Vector(double size) { return { (*this)(-size, size), (*this)(-size, size) }; }
+  Matrix2 Matrix(double size) { return { this->Vector(size), this->Vector(size) }; }
+  Barycentric Point()
+  {
+    Barycentric l{ (*this)(0.0, 1.0), (*this)(0.0, 1.0), (*this)(0.0, 1.0) };
+    const double sum = l[0] + l[1] + l[2];
+    return { l[0] / sum, l[1] / sum, l[2] / sum };
+  }
+  std::array<Vector2, 3> Triangle()
+  {
+    while (true)
+    {
+      const std::array<Vector2, 3> p{ this->Vector(1.0), this->Vector(1.0), this->Vector(1.0) };
+      if (Cross(p[1] - p[0], p[2] - p[0]) > 0.1)
+      {
+        return p;
+      }
+    }
+  }
+
+private:
+  std::mt19937_64 Generator;
+};
+
+Vector2 PointAt(const std::array<Vector2, 3>& p, const Barycentric& l)
+{
+  return l[0] * p[0] + l[1] * p[1] + l[2] * p[2];
+}
+
+double Norm(const Vector2& v)
+{
+  return std::hypot(v.x, v.y);
+}
+
+} // anonymous namespace
+
+TEST(CubicElement, AgreesWithRationalNumbers)
+{
+  const std::vector<std::vector<double>> rows = ReadReference();
+  ASSERT_EQ(rows.size(), 45u);
+  for (const std::vector<double>& row : rows)
+  {
+    const CubicElement element = ToElement(row);
+    double size = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      size = std::max(
+        size, Norm(element.Points[NextCorner(i)] - element.Points[PreviousCorner(i)]));
+    }
+    // The point of piece k with these coordinates, in the triangle.
+    const int k = static_cast<int>(row[28]);
+    Barycentric l;
+    l[k] = row[31] / 3.0;
+    l[NextCorner(k)] = row[29] + row[31] / 3.0;
+    l[PreviousCorner(k)] = row[30] + row[31] / 3.0;
+    Vector2 value;
+    Matrix2 derivative;
+    Evaluate(element, GetOrdinates(element), l, value, derivative);
+    EXPECT_NEAR(value.x, row[32], 1e-13 * size);
+    EXPECT_NEAR(value.y, row[33], 1e-13 * size);
+    const DeterminantCoefficients c = GetDeterminantCoefficients(element);
+    double greatest = 0.0;
+    double least = row[34];
+    for (std::size_t n = 0; n < 45; ++n)
+    {
+      greatest = std::max(greatest, std::abs(row[34 + n]));
+      least = std::min(least, row[34 + n]);
+    }
+    for (std::size_t n = 0; n < 45; ++n)
+    {
+      EXPECT_NEAR(c[n], row[34 + n], 1e-12 * greatest);
+    }
+    // Never above the exact coefficient, and close to it.
+    const double bound = LeastDeterminant(element, 0.0, 0);
+    EXPECT_LE(bound, least);
+    EXPECT_GE(bound, least - 1e-9 * greatest);
+  }
+}
+
+TEST(CubicElement, CertifiesNoneThatIsNotPositive)
+{
+  // Elements all of whose coefficients are zero to rounding: the map x -> (L x) + u g(x) with L
+  // singular in the direction of u, and a change by a few parts in 10^14.
+  Random random(1);
+  int positive = 0;
+  int certified = 0;
+  for (int n = 0; n < 100000; ++n)
+  {
+    CubicElement element;
+    element.Points = random.Triangle();
+    const Vector2 u = random.Vector(1.0);
+    // Multiples of u by integers up to 2^20 over 2^20: exact in doubles.
+    const auto multiple = [&]
+    {
+      const double s = std::floor(random(-1048576.0, 1048576.0)) / 1048576.0;
+      return Vector2{ s * std::ldexp(std::round(std::ldexp(u.x, 20)), -20),
+        s * std::ldexp(std::round(std::ldexp(u.y, 20)), -20) };
+    };
+    element.Affine = { multiple(), multiple() };
+    for (int i = 0; i < 3; ++i)
+    {
+      element.Values[i] = multiple();
+      element.Gradients[i] = { multiple(), multiple() };
+    }
+    // det f' is exactly zero everywhere.
+    EXPECT_FALSE(LeastDeterminant(element, 0.0, 2) > 0.0);
+    // An affine map next to it, whose determinant is known exactly.
+    CubicElement affine;
+    affine.Points = element.Points;
+    const double excess = (n % 2 == 0 ? 1.0 : -1.0) * std::exp2(random(-46.0, -33.0));
+    affine.Affine = { { 1.0, 1.0 }, { 1.0, 1.0 + excess } };
+    const double exact = affine.Affine.ImageOfY.y - 1.0;
+    const bool is = LeastDeterminant(affine, 0.0, 2) > 0.0;
+    EXPECT_FALSE(is && exact <= 0.0);
+    if (exact > 1e-12)
+    {
+      ++positive;
+      certified += is ? 1 : 0;
+    }
+  }
+  EXPECT_GE(certified, 0.99 * positive);
+}
+
+TEST(CubicElement, TakesItsData)
+{
+  Random random(2);
+  for (int n = 0; n < 200; ++n)
+  {
+    CubicElement element{ random.Triangle(), random.Matrix(1.0), {}, {} };
+    for (int i = 0; i < 3; ++i)
+    {
+      element.Values[i] = random.Vector(1.0);
+      element.Gradients[i] = random.Matrix(1.0);
+    }
+    const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
+    for (int i = 0; i < 3; ++i)
+    {
+      Barycentric corner{};
+      corner[i] = 1.0;
+      Vector2 value;
+      Matrix2 derivative;
+      Evaluate(element, ordinates, corner, value, derivative);
+      EXPECT_LT(Norm(value - element.Values[i]), 1e-14);
+      EXPECT_LT(SquaredNorm(derivative - element.Gradients[i]), 1e-24);
+    }
+  }
+}
+
+TEST(CubicElement, ReproducesQuadraticMaps)
+{
+  Random random(3);
+  for (int n = 0; n < 200; ++n)
+  {
+    const Vector2 xx = random.Vector(1.0);
+    const Vector2 xy = random.Vector(1.0);
+    const Vector2 yy = random.Vector(1.0);
+    const auto value = [&](const Vector2& p)
+    { return p.x * p.x * xx + p.x * p.y * xy + p.y * p.y * yy; };
+    const auto derivative = [&](const Vector2& p)
+    { return Matrix2{ 2.0 * p.x * xx + p.y * xy, p.x * xy + 2.0 * p.y * yy }; };
+    CubicElement element{ random.Triangle(), {}, {}, {} };
+    for (int i = 0; i < 3; ++i)
+    {
+      element.Values[i] = value(element.Points[i]);
+      element.Gradients[i] = derivative(element.Points[i]);
+    }
+    const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
+    const Barycentric l = random.Point();
+    const Vector2 p = PointAt(element.Points, l);
+    Vector2 v;
+    Matrix2 j;
+    Evaluate(element, ordinates, l, v, j);
+    EXPECT_LT(Norm(v - value(p)), 1e-13);
+    EXPECT_LT(SquaredNorm(j - derivative(p)), 1e-22);
+    // Its second derivatives are constant: so is what is integrated.
+    const BendingMatrix bending = GetBendingMatrix(element.Points);
+    double energy = 0.0;
+    std::array<Vector2, 9> data;
+    for (int i = 0; i < 3; ++i)
+    {
+      const std::size_t k = static_cast<std::size_t>(3 * i);
+      data[k] = element.Values[i];
+      data[k + 1] = element.Gradients[i].ImageOfX;
+      data[k + 2] = element.Gradients[i].ImageOfY;
+    }
+    for (std::size_t a = 0; a < 9; ++a)
+    {
+      for (std::size_t b = 0; b < 9; ++b)
+      {
+        energy += bending[a][b] * Dot(data[a], data[b]);
+      }
+    }
+    const double area =
+      0.5 * Cross(element.Points[1] - element.Points[0], element.Points[2] - element.Points[0]);
+    const double expected = area * (4.0 * Dot(xx, xx) + 2.0 * Dot(xy, xy) + 4.0 * Dot(yy, yy));
+    EXPECT_NEAR(energy, expected, 1e-8 * expected);
+  }
+}
+
+TEST(CubicElement, DeterminantLiesAboveItsBound)
+{
+  Random random(4);
+  int positive = 0;
+  for (int n = 0; n < 2000; ++n)
+  {
+    CubicElement element{ random.Triangle(), { { 1.0, 0.0 }, { 0.0, 1.0 } }, {}, {} };
+    for (int i = 0; i < 3; ++i)
+    {
+      element.Gradients[i] = random.Matrix(0.4);
+    }
+    const double bound = LeastDeterminant(element);
+    positive += bound > 0.0 ? 1 : 0;
+    const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
+    const double displacement = GreatestDisplacement(element);
+    for (int sample = 0; sample < 50; ++sample)
+    {
+      const Barycentric l = random.Point();
+      Vector2 value;
+      Matrix2 derivative;
+      Evaluate(element, ordinates, l, value, derivative);
+      EXPECT_GE((element.Affine + derivative).Determinant(), bound - 1e-13);
+      EXPECT_LE(Norm(value), displacement * (1.0 + 1e-13));
+    }
+  }
+  EXPECT_GT(positive, 500);
+}
+
+TEST(CubicElement, NeighborsAgreeAlongTheirEdge)
+{
+  Random random(5);
+  for (int n = 0; n < 500; ++n)
+  {
+    const std::array<Vector2, 3> p = random.Triangle();
+    // Across the edge from corner 1 to corner 2.
+    const Vector2 across = p[1] + p[2] - p[0] + random.Vector(0.2);
+    if (!(Cross(p[1] - p[2], across - p[2]) > 0.05))
+    {
+      continue;
+    }
+    std::array<Vector2, 4> values;
+    std::array<Matrix2, 4> gradients;
+    for (int i = 0; i < 4; ++i)
+    {
+      values[static_cast<std::size_t>(i)] = random.Vector(1.0);
+      gradients[static_cast<std::size_t>(i)] = random.Matrix(1.0);
+    }
+    const CubicElement first{ p, {}, { values[0], values[1], values[2] },
+      { gradients[0], gradients[1], gradients[2] } };
+    const CubicElement second{ { across, p[2], p[1] }, {}, { values[3], values[2], values[1] },
+      { gradients[3], gradients[2], gradients[1] } };
+    const double s = random(0.0, 1.0);
+    Vector2 v[2];
+    Matrix2 j[2];
+    Evaluate(first, GetOrdinates(first), { 0.0, 1.0 - s, s }, v[0], j[0]);
+    Evaluate(second, GetOrdinates(second), { 0.0, s, 1.0 - s }, v[1], j[1]);
+    EXPECT_LT(Norm(v[0] - v[1]), 1e-13);
+    EXPECT_LT(SquaredNorm(j[0] - j[1]), 1e-20);
+  }
+}
+
+TEST(LinearProgram, FindsTheBestCorner)
+{
+  // Against all intersections of three planes.
+  Random random(6);
+  int solved = 0;
+  for (int n = 0; n < 300; ++n)
+  {
+    std::vector<HalfSpace<3>> halfSpaces;
+    for (int i = 0; i < 12; ++i)
+    {
+      const bool through = n % 3 == 0;
+      halfSpaces.push_back(
+        { { random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0) },
+          through ? random(-0.3, 0.3) : random(0.0, 0.5) });
+    }
+    const std::array<double, 3> objective{ random(-1.0, 1.0), random(-1.0, 1.0),
+      random(-1.0, 1.0) };
+    std::vector<HalfSpace<3>> all = halfSpaces;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      for (double sign : { -1.0, 1.0 })
+      {
+        HalfSpace<3> side{ {}, 1.0 };
+        side.Normal[i] = sign;
+        all.push_back(side);
+      }
+    }
+    double best = -1e300;
+    for (std::size_t a = 0; a < all.size(); ++a)
+    {
+      for (std::size_t b = a + 1; b < all.size(); ++b)
+      {
+        for (std::size_t c = b + 1; c < all.size(); ++c)
+        {
+          const auto& p = all[a].Normal;
+          const auto& q = all[b].Normal;
+          const auto& r = all[c].Normal;
+          const auto det = [](const auto& x, const auto& y, const auto& z)
+          {
+            return x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) +
+              x[2] * (y[0] * z[1] - y[1] * z[0]);
+          };
+          const double d = det(p, q, r);
+          if (std::abs(d) < 1e-9)
+          {
+            continue;
+          }
+          std::array<double, 3> x;
+          for (std::size_t i = 0; i < 3; ++i)
+          {
+            auto pp = p;
+            auto qq = q;
+            auto rr = r;
+            pp[i] = all[a].Limit;
+            qq[i] = all[b].Limit;
+            rr[i] = all[c].Limit;
+            x[i] = det(pp, qq, rr) / d;
+          }
+          bool feasible = true;
+          for (const HalfSpace<3>& h : all)
+          {
+            feasible = feasible &&
+              h.Normal[0] * x[0] + h.Normal[1] * x[1] + h.Normal[2] * x[2] <= h.Limit + 1e-9;
+          }
+          if (feasible)
+          {
+            best = std::max(
+              best, objective[0] * x[0] + objective[1] * x[1] + objective[2] * x[2]);
+          }
+        }
+      }
+    }
+    std::array<double, 3> x;
+    const bool found = MaximizeLinear<3>(objective, halfSpaces, { 1.0, 1.0, 1.0 }, x);
+    EXPECT_EQ(found, best > -1e300) << n;
+    if (found && best > -1e300)
+    {
+      ++solved;
+      EXPECT_NEAR(objective[0] * x[0] + objective[1] * x[1] + objective[2] * x[2], best, 1e-6);
+    }
+  }
+  EXPECT_GT(solved, 200);
+}

@@ -1,0 +1,522 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The Cubic map: certified, C1, one to one, within its deviation, with both kinds of bending, on
+// random pairs as uneven as convex combinations make them, needles, and boundaries of all kinds.
+
+#include "CubicPairs.h"
+
+#include "Mesh/CubicMap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace
+{
+
+using namespace homeomorphism;
+using namespace cubic_test;
+
+double Norm(const Vector2& v)
+{
+  return std::hypot(v.x, v.y);
+}
+
+struct Sample
+{
+  int Triangle;
+  Barycentric At;
+};
+
+/// Points of triangles, a third of them close to a corner and a third close to an edge.
+class Sampler
+{
+public:
+  Sampler(const PlanarPair& pair, std::uint64_t seed)
+    : Pair(pair)
+    , Random(seed)
+  {
+  }
+
+  Sample operator()()
+  {
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    Sample sample;
+    sample.Triangle = static_cast<int>(
+      this->Random() % static_cast<std::uint64_t>(this->Pair.GetNumberOfTriangles()));
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const double power = this->Count % 3 == 0 ? 1.0
+        : this->Count % 3 == 1                  ? (i == 0 ? 1.0 : 12.0)
+                                                : (i == 0 ? 12.0 : 1.0);
+      sample.At[i] = std::pow(uniform(this->Random), power) + 1e-30;
+      sum += sample.At[i];
+    }
+    std::rotate(sample.At.begin(), sample.At.begin() + this->Count / 3 % 3, sample.At.end());
+    for (double& l : sample.At)
+    {
+      l /= sum;
+    }
+    ++this->Count;
+    return sample;
+  }
+
+private:
+  const PlanarPair& Pair;
+  std::mt19937_64 Random;
+  int Count = 0;
+};
+
+Vector2 PointAt(const PlanarPair& pair, const std::vector<Vector2>& points, const Sample& s)
+{
+  const std::array<Vector2, 3> c = PlanarPair::GetCorners(points, pair.Triangles[s.Triangle]);
+  return points[pair.Triangles[s.Triangle][0]] + (s.At[1] * c[1] + s.At[2] * c[2]);
+}
+
+/// The triangle in which the piecewise linear map has an image.
+int LocateImage(const PlanarPair& pair, const Vector2& image, int hint)
+{
+  int nearest = hint;
+  double best = -1e300;
+  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+  {
+    const Barycentric l = ToBarycentric(
+      pair.GetTargetCorners(t), image - pair.Target[pair.Triangles[t][0]]);
+    const double least = std::min({ l[0], l[1], l[2] });
+    if (least > best)
+    {
+      best = least;
+      nearest = t;
+    }
+  }
+  return nearest;
+}
+
+double Scale(const PlanarPair& pair, int t)
+{
+  double scale = std::sqrt(SquaredNorm(pair.GetAffine(t)));
+  for (int neighbor : pair.Neighbors[t])
+  {
+    if (neighbor >= 0)
+    {
+      scale = std::max(scale, std::sqrt(SquaredNorm(pair.GetAffine(neighbor))));
+    }
+  }
+  return scale;
+}
+
+/// Certified, and the elements' areas add up to the target's.
+void ExpectCertified(const CubicMap& map)
+{
+  EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+  EXPECT_TRUE(map.GetStatistics().ExceptionalInteriorPoints.empty());
+  const PlanarPair& pair = map.GetPair();
+  double area = 0.0;
+  double expected = 0.0;
+  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+  {
+    EXPECT_GT(map.GetCertificates()[static_cast<std::size_t>(t)], 0.0);
+    const std::array<Vector2, 3> target = pair.GetTargetCorners(t);
+    expected += 0.5 * Cross(target[1], target[2]);
+    map.VisitElements(
+      t,
+      [&area](const CubicElement& element, const Vector2&, const Vector2&, double factor)
+      {
+        // The mean of its Bernstein coefficients is the mean of the determinant.
+        double sum = 0.0;
+        for (double coefficient : GetDeterminantCoefficients(element))
+        {
+          sum += coefficient;
+        }
+        area += factor * factor * 0.5 *
+          Cross(element.Points[1] - element.Points[0], element.Points[2] - element.Points[0]) *
+          sum / 45.0;
+      },
+      60);
+  }
+  EXPECT_NEAR(area, expected, 1e-12 * expected);
+}
+
+/// Values and derivatives from both sides of each inner edge agree, vertices included.
+void ExpectContinuouslyDifferentiable(const CubicMap& map, double tolerance)
+{
+  const PlanarPair& pair = map.GetPair();
+  std::vector<std::uint8_t> exceptional(pair.Source.size(), 0);
+  for (int point : map.GetStatistics().ExceptionalBoundaryPoints)
+  {
+    exceptional[static_cast<std::size_t>(point)] = 1;
+  }
+  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const int neighbor = pair.Neighbors[t][k];
+      if (neighbor < t)
+      {
+        continue;
+      }
+      const int ends[2] = { pair.Triangles[t][NextCorner(k)], pair.Triangles[t][PreviousCorner(k)] };
+      const Vector2 a = pair.Source[ends[0]];
+      const Vector2 b = pair.Source[ends[1]];
+      const double scale = std::max(Scale(pair, t), Scale(pair, neighbor));
+      for (double s : { 0.0, 1e-6, 0.03, 0.2, 0.31, 0.5, 0.7, 0.88, 1.0 })
+      {
+        if ((s == 0.0 && exceptional[ends[0]]) || (s == 1.0 && exceptional[ends[1]]))
+        {
+          continue;
+        }
+        const Vector2 point = s == 1.0 ? b : a + s * (b - a);
+        Vector2 image[2];
+        Matrix2 derivative[2];
+        map.MapPoint(t, point, image[0], derivative[0]);
+        map.MapPoint(neighbor, point, image[1], derivative[1]);
+        EXPECT_LT(Norm(image[0] - image[1]), 1e-14);
+        EXPECT_LT(std::sqrt(SquaredNorm(derivative[0] - derivative[1])), tolerance * scale)
+          << t << " " << k << " " << s;
+      }
+    }
+  }
+}
+
+void ExpectRoundTrip(const CubicMap& map, int count, double deviation = 1e300)
+{
+  const PlanarPair& pair = map.GetPair();
+  Sampler sampler(pair, 3);
+  for (int n = 0; n < count; ++n)
+  {
+    const Sample sample = sampler();
+    const Vector2 point = PointAt(pair, pair.Source, sample);
+    Vector2 image;
+    Matrix2 derivative;
+    map.MapPoint(sample.Triangle, point, image, derivative);
+    EXPECT_GT(derivative.Determinant(), 0.0);
+    EXPECT_LE(Norm(image - PointAt(pair, pair.Target, sample)), deviation + 1e-14);
+    int triangle = LocateImage(pair, image, sample.Triangle);
+    Vector2 back;
+    ASSERT_TRUE(map.FindPreimage(image, triangle, back));
+    // Of the problem: both domains have a size of about 1.
+    const double size = std::sqrt(SquaredNorm(derivative));
+    const double condition = std::max(1.0, size) * size / derivative.Determinant();
+    EXPECT_LE(Norm(back - point), 1e-13 * condition);
+    Vector2 again;
+    map.MapPoint(triangle, back, again, derivative);
+    EXPECT_LE(Norm(again - image), 1e-13);
+  }
+}
+
+CubicMapOptions Options(CubicBending bending)
+{
+  CubicMapOptions options;
+  options.Bending = bending;
+  return options;
+}
+
+double GetBending(const CubicMap& map)
+{
+  return map.GetStatistics().Bending.Energy;
+}
+
+/// A polygon with a vertex in its middle.
+PlanarPair Wheel(const std::vector<Vector2>& source, const std::vector<Vector2>& target)
+{
+  PlanarPair pair;
+  pair.Source = source;
+  pair.Target = target;
+  const int n = static_cast<int>(source.size());
+  pair.Source.push_back({ 0.03, -0.02 });
+  pair.Target.push_back({ -0.05, 0.04 });
+  for (int i = 0; i < n; ++i)
+  {
+    pair.Triangles.push_back({ n, i, (i + 1) % n });
+  }
+  pair.FindNeighbors();
+  return pair;
+}
+
+} // anonymous namespace
+
+TEST(CubicMap, LocalIsCertifiedAndC1)
+{
+  int seed = 0;
+  for (double strength : { 0.0, 0.5, 1.2, 2.0, 3.0 })
+  {
+    const CubicMap map(RandomPair(++seed, strength, 8), Options(CubicBending::Local));
+    ExpectCertified(map);
+    EXPECT_TRUE(map.GetStatistics().ExceptionalBoundaryPoints.empty());
+    // Heights above the edges fall with the ratio of areas, and J turns within them.
+    ExpectContinuouslyDifferentiable(map, strength < 1.5 ? 1e-10 : 1e-7);
+    ExpectRoundTrip(map, 300);
+  }
+}
+
+TEST(CubicMap, LeastIsCertifiedAndC1)
+{
+  int seed = 10;
+  for (double strength : { 0.0, 0.5, 1.2, 2.0 })
+  {
+    const CubicMap map(RandomPair(++seed, strength, 6), Options(CubicBending::Least));
+    ExpectCertified(map);
+    ExpectContinuouslyDifferentiable(map, strength < 1.5 ? 1e-10 : 1e-7);
+    ExpectRoundTrip(map, 300);
+  }
+}
+
+TEST(CubicMap, CutsOnlySomeTriangles)
+{
+  // One vertex moves far, all others stay: slaves between cut and whole triangles.
+  std::mt19937_64 random(5);
+  PlanarPair pair = JitteredGrid(random, 10, 0.2);
+  pair.Target = pair.Source;
+  const int middle = 5 * 11 + 5;
+  pair.Target[middle] = pair.Target[middle] + Vector2{ 0.076, 0.02 };
+  const CubicMap map(pair, Options(CubicBending::Least));
+  ExpectCertified(map);
+  EXPECT_GT(map.GetStatistics().Bending.CutTriangles, 0);
+  EXPECT_LT(map.GetStatistics().Bending.CutTriangles, 100);
+  ExpectContinuouslyDifferentiable(map, 1e-10);
+  ExpectRoundTrip(map, 1000);
+}
+
+TEST(CubicMap, RefinementBendsLess)
+{
+  const PlanarPair pair = RandomPair(21, 0.3, 5);
+  CubicMapOptions options;
+  const CubicMap coarse(pair, options);
+  options.FairnessRefinement = 1;
+  const CubicMap fine(pair, options);
+  ExpectCertified(fine);
+  ExpectContinuouslyDifferentiable(fine, 1e-10);
+  ExpectRoundTrip(fine, 500);
+  EXPECT_LT(GetBending(fine), GetBending(coarse));
+  // Vertices stay on vertices.
+  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+  {
+    Vector2 image;
+    Matrix2 derivative;
+    fine.MapPoint(t, pair.Source[pair.Triangles[t][1]], image, derivative);
+    EXPECT_LT(Norm(image - pair.Target[pair.Triangles[t][1]]), 1e-15);
+  }
+}
+
+TEST(CubicMap, AffinePairsAreReproduced)
+{
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (bool identity : { true, false })
+    {
+      PlanarPair pair = RandomPair(31, 0.0, 6);
+      const Matrix2 affine = identity ? Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } }
+                                      : Matrix2{ { 1.5, 0.25 }, { -0.75, 2.0 } };
+      for (std::size_t i = 0; i < pair.Source.size(); ++i)
+      {
+        pair.Target[i] = affine * pair.Source[i];
+      }
+      const CubicMap map(pair, Options(bending));
+      Sampler sampler(pair, 1);
+      for (int n = 0; n < 1000; ++n)
+      {
+        const Sample sample = sampler();
+        const Vector2 point = PointAt(pair, pair.Source, sample);
+        Vector2 image;
+        Matrix2 derivative;
+        map.MapPoint(sample.Triangle, point, image, derivative);
+        EXPECT_LT(Norm(image - affine * point), 4e-16 * (identity ? 1.0 : 4.0));
+        EXPECT_LT(std::sqrt(SquaredNorm(derivative - affine)), 1e-11);
+      }
+    }
+  }
+}
+
+TEST(CubicMap, KeepsItsDeviation)
+{
+  const PlanarPair pair = RandomPair(41, 1.0, 6);
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (double deviation : { 1e-2, 1e-4, 1e-6 })
+    {
+      CubicMapOptions options = Options(bending);
+      options.MaximumDeviation = deviation;
+      const CubicMap map(pair, options);
+      ExpectCertified(map);
+      ExpectRoundTrip(map, 300, deviation);
+    }
+  }
+}
+
+TEST(CubicMap, NeedlesAreCertified)
+{
+  // Two triangles on either side of an edge, heights from 1e-3 to 1e3, apexes sheared.
+  std::mt19937_64 random(51);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto apex = [&](double sign)
+  { return Vector2{ 3.0 * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) }; };
+  for (int n = 0; n < 200; ++n)
+  {
+    PlanarPair pair;
+    pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
+    pair.Target = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
+    pair.Triangles = { { 0, 1, 2 }, { 1, 0, 3 } };
+    pair.FindNeighbors();
+    const CubicMap map(pair, Options(CubicBending::Local));
+    EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+  }
+}
+
+TEST(CubicMap, FarFromTheOrigin)
+{
+  PlanarPair pair = RandomPair(61, 1.0, 6);
+  const PlanarPair near = pair;
+  // Steps of 2^-28 there: the same differences.
+  for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+  {
+    for (Vector2& point : *points)
+    {
+      point = { std::round(point.x * 0x1p20) * 0x1p-20 + 0x1p24,
+        std::round(point.y * 0x1p20) * 0x1p-20 + 0x1p24 };
+    }
+  }
+  const CubicMap map(pair, Options(CubicBending::Local));
+  EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+  EXPECT_TRUE(map.GetStatistics().ExceptionalInteriorPoints.empty());
+}
+
+TEST(CubicMap, BoundaryCornersAreDifferentiableWhereTheyCanBe)
+{
+  // A square with points on its sides, against itself with the points moved along the sides.
+  const std::vector<Vector2> square{ { -1.0, -1.0 }, { 0.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 0.0 },
+    { 1.0, 1.0 }, { 0.0, 1.0 }, { -1.0, 1.0 }, { -1.0, 0.0 } };
+  std::vector<Vector2> moved = square;
+  moved[1].x = 0.5;
+  moved[3].y = -0.4;
+  moved[5].x = 0.3;
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    const CubicMap map(Wheel(square, moved), Options(bending));
+    ExpectCertified(map);
+    EXPECT_TRUE(map.GetStatistics().ExceptionalBoundaryPoints.empty());
+    ExpectContinuouslyDifferentiable(map, 1e-11);
+    // Sides stay on sides.
+    for (int i = 0; i < 8; ++i)
+    {
+      for (double s : { 0.1, 0.2, 0.5, 0.77 })
+      {
+        const Vector2 next = square[static_cast<std::size_t>((i + 1) % 8)];
+        const Vector2 here = square[static_cast<std::size_t>(i)];
+        Vector2 image;
+        Matrix2 derivative;
+        map.MapPoint(i, here + s * (next - here), image, derivative);
+        EXPECT_LT(std::abs(std::max(std::abs(image.x), std::abs(image.y)) - 1.0), 1e-14);
+      }
+    }
+  }
+}
+
+TEST(CubicMap, BoundaryCornersStraightOnOneSideAreListed)
+{
+  const std::vector<Vector2> square{ { -1.0, -1.0 }, { 0.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 1.0 },
+    { -1.0, 1.0 } };
+  std::vector<Vector2> bent = square;
+  bent[1].y = -1.5;
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    const CubicMap map(Wheel(square, bent), Options(bending));
+    ExpectCertified(map);
+    EXPECT_EQ(map.GetStatistics().ExceptionalBoundaryPoints, std::vector<std::int32_t>{ 1 });
+    // C1 all the way to it.
+    ExpectContinuouslyDifferentiable(map, 1e-9);
+    ExpectRoundTrip(map, 1000);
+  }
+}
+
+TEST(CubicMap, StarsBeyondTheProgramHaveRings)
+{
+  // The rays of a star turn by very different angles.
+  int rings = 0;
+  int exceptional = 0;
+  std::mt19937_64 random(71);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int n = 0; n < 60; ++n)
+  {
+    const int valence = 3 + n % 6;
+    std::array<std::vector<Vector2>, 2> stars;
+    for (std::vector<Vector2>& star : stars)
+    {
+      std::vector<double> steps(static_cast<std::size_t>(valence));
+      double greatest = 4.0;
+      while (greatest > 3.0)
+      {
+        double sum = 0.0;
+        for (double& step : steps)
+        {
+          step = 0.02 + std::pow(uniform(random), 2.0);
+          sum += step;
+        }
+        greatest = 0.0;
+        for (double& step : steps)
+        {
+          step *= 2.0 * 3.141592653589793 / sum;
+          greatest = std::max(greatest, step);
+        }
+      }
+      double angle = 0.0;
+      for (double step : steps)
+      {
+        const double radius = std::exp(uniform(random));
+        star.push_back({ radius * std::cos(angle), radius * std::sin(angle) });
+        angle += step;
+      }
+    }
+    PlanarPair pair;
+    pair.Source = stars[0];
+    pair.Target = stars[1];
+    pair.Source.push_back({});
+    pair.Target.push_back({});
+    for (int i = 0; i < valence; ++i)
+    {
+      pair.Triangles.push_back({ valence, i, (i + 1) % valence });
+    }
+    pair.FindNeighbors();
+    const CubicMap map(pair, Options(CubicBending::Local));
+    EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+    rings += map.GetStatistics().Rings > 0 ? 1 : 0;
+    exceptional += static_cast<int>(map.GetStatistics().ExceptionalInteriorPoints.size());
+    if (map.GetStatistics().Rings > 0)
+    {
+      ExpectContinuouslyDifferentiable(map, 1e-7);
+      ExpectRoundTrip(map, 100);
+    }
+  }
+  EXPECT_GT(rings, 0);
+  EXPECT_LE(exceptional, 2);
+}
+
+TEST(CubicMap, DoesNotDependOnThreads)
+{
+  const PlanarPair pair = RandomPair(81, 1.0, 6);
+  const ParallelFor pieces = [](std::int64_t count, const auto& body)
+  {
+    for (std::int64_t begin = count - 1; begin >= 0; --begin)
+    {
+      body(begin, begin + 1);
+    }
+  };
+  const CubicMap first(pair, CubicMapOptions());
+  const CubicMap second(pair, CubicMapOptions(), pieces);
+  Sampler sampler(pair, 1);
+  for (int n = 0; n < 500; ++n)
+  {
+    const Sample sample = sampler();
+    const Vector2 point = PointAt(pair, pair.Source, sample);
+    Vector2 image[2];
+    Matrix2 derivative[2];
+    first.MapPoint(sample.Triangle, point, image[0], derivative[0]);
+    second.MapPoint(sample.Triangle, point, image[1], derivative[1]);
+    EXPECT_EQ(image[0].x, image[1].x);
+    EXPECT_EQ(image[0].y, image[1].y);
+  }
+}
