@@ -7,19 +7,37 @@
 # Pure mathematics: nothing of VTK may be included here.
 set(kernel_sources
   Kernel/ContourChart.cxx
+  Kernel/CubicElement.cxx
   Kernel/ExactSign.cxx
   Kernel/Simd/EdgeBatch.cxx
   Kernel/SmoothChart.cxx)
 set(kernel_headers
   Kernel/ContourChart.h
   Kernel/CoordinateSystem.h
+  Kernel/CubicElement.h
   Kernel/ExactSign.h
   Kernel/Geometry.h
   Kernel/LinearChart.h
+  Kernel/LinearProgram.h
   Kernel/RootFinding.h
+  Kernel/RunningError.h
   Kernel/Simd/EdgeBatch.h
   Kernel/Simd/Vectorize.h
   Kernel/SmoothChart.h)
+
+# The cubic map of a planar pair given as plain arrays: nothing of VTK either.
+set(cubic_sources
+  Mesh/BendingSolve.cxx
+  Mesh/CubicMap.cxx
+  Mesh/CubicTemplate.cxx
+  Mesh/PlanarPair.cxx
+  Mesh/VertexGradient.cxx)
+set(cubic_headers
+  Mesh/BendingSolve.h
+  Mesh/CubicMap.h
+  Mesh/CubicTemplate.h
+  Mesh/PlanarPair.h
+  Mesh/VertexGradient.h)
 
 # Meshes, read and validated once, and the map between two of them.
 set(mesh_sources

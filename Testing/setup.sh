@@ -9,7 +9,7 @@
 export PATH="/usr/bin:/bin:$PATH" CC=/usr/bin/gcc CXX=/usr/bin/g++
 
 # What the program dhm is built with.
-program_packages=(g++ cmake ninja-build libvtk9-dev libcli11-dev nlohmann-json3-dev libcairo2-dev libpng-dev libtiff-dev
+program_packages=(g++ cmake ninja-build libvtk9-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libcairo2-dev libpng-dev libtiff-dev
   pkg-config)
 
 # install_missing PACKAGE...: installs those Debian packages that are not installed yet.

@@ -101,12 +101,12 @@ CubicOrdinates<Vector<T>> MakeOrdinates(
     const int i = NextCorner(k);
     const int j = PreviousCorner(k);
     const Vector<T> edge = Vector<T>(element.Points[j]) - Vector<T>(element.Points[i]);
-    const Vector<T> slopes =
-      Apply(element.Gradients[i], edge) + Apply(element.Gradients[j], edge);
+    const Vector<T> slopes = Apply(element.Gradients[i], edge) + Apply(element.Gradients[j], edge);
     b.AfterStart[k] = b.Corner[i] + third * Apply(element.Gradients[i], edge);
     b.BeforeEnd[k] = b.Corner[j] - third * Apply(element.Gradients[j], edge);
     // From the edge's midpoint to the centroid. In this direction the derivative at the midpoint is
-    // the mean of the normal derivatives at the ends plus the cubic's own derivative along the edge.
+    // the mean of the normal derivatives at the ends plus the cubic's own derivative along the
+    // edge.
     const Vector<T> toMiddle = toCentroid[i] - half * edge;
     const T along = Dot(toMiddle, edge) / Dot(edge, edge);
     b.Middle[k] = half * (b.AfterStart[k] + b.BeforeEnd[k]) +
@@ -210,8 +210,7 @@ void MakeDeterminant(const CubicElement& element, std::array<T, 45>& coefficient
         const int centroid = QuadraticWeights[m][2] + QuadraticWeights[n][2];
         T& sum = sums[QuarticNumber(end, centroid)];
         sum = sum +
-          T(QuadraticMultiplicity[m] * QuadraticMultiplicity[n]) *
-            Cross(d.ToStart[m], d.ToEnd[n]);
+          T(QuadraticMultiplicity[m] * QuadraticMultiplicity[n]) * Cross(d.ToStart[m], d.ToEnd[n]);
       }
     }
     for (int n = 0; n < 15; ++n)
@@ -479,14 +478,13 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
         const int c = corner == 1 ? 1 : 0;
         const Vector2 aa = 6.0 * (net[r][c] + net[r][c + 2] - 2.0 * net[r][c + 1]);
         const Vector2 bb = 6.0 * (net[r][c] + net[r + 2][c] - 2.0 * net[r + 1][c]);
-        const Vector2 ab =
-          6.0 * (net[r][c] + net[r + 1][c + 1] - net[r][c + 1] - net[r + 1][c]);
-        const Vector2 xx = alongX.x * alongX.x * aa + 2.0 * alongX.x * alongX.y * ab +
-          alongX.y * alongX.y * bb;
+        const Vector2 ab = 6.0 * (net[r][c] + net[r + 1][c + 1] - net[r][c + 1] - net[r + 1][c]);
+        const Vector2 xx =
+          alongX.x * alongX.x * aa + 2.0 * alongX.x * alongX.y * ab + alongX.y * alongX.y * bb;
         const Vector2 xy = alongX.x * alongY.x * aa +
           (alongX.x * alongY.y + alongX.y * alongY.x) * ab + alongX.y * alongY.y * bb;
-        const Vector2 yy = alongY.x * alongY.x * aa + 2.0 * alongY.x * alongY.y * ab +
-          alongY.y * alongY.y * bb;
+        const Vector2 yy =
+          alongY.x * alongY.x * aa + 2.0 * alongY.x * alongY.y * ab + alongY.y * alongY.y * bb;
         hessians[corner][0][2 * pair] = xx.x;
         hessians[corner][1][2 * pair] = xy.x;
         hessians[corner][2][2 * pair] = yy.x;

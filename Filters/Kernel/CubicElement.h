@@ -85,8 +85,8 @@ struct CubicOrdinates
   Vector Center;
 };
 
-/// Barycentric coordinates of a point, by its components along the longest edge and at a right angle
-/// to it: rounding moves the point by a few ulp of that edge, even in a needle.
+/// Barycentric coordinates of a point, by its components along the longest edge and at a right
+/// angle to it: rounding moves the point by a few ulp of that edge, even in a needle.
 Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point);
 
 /// Barycentric coordinates in the piece that contains a point of the triangle.

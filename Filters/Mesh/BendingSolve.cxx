@@ -131,14 +131,12 @@ public:
     , IsCut(this->Pair.Triangles.size(), 0)
     , Failures(this->Pair.Triangles.size(), 0)
   {
-    this->Parallel(this->Pair.GetNumberOfTriangles(),
-      [this](std::int64_t begin, std::int64_t end)
+    this->Parallel(this->Pair.GetNumberOfTriangles(), [this](std::int64_t begin, std::int64_t end) {
+      for (int t = static_cast<int>(begin); t < end; ++t)
       {
-        for (int t = static_cast<int>(begin); t < end; ++t)
-        {
-          this->Affine[t] = this->Pair.GetAffine(t);
-        }
-      });
+        this->Affine[t] = this->Pair.GetAffine(t);
+      }
+    });
   }
 
   BendingSolution Run();
@@ -244,7 +242,8 @@ void Solver::FindBoundary()
     const int first = fan.Triangles.front();
     const int last = fan.Triangles.back();
     const int next = this->Pair.Triangles[first][NextCorner(this->Pair.GetCorner(first, point))];
-    const int before = this->Pair.Triangles[last][PreviousCorner(this->Pair.GetCorner(last, point))];
+    const int before =
+      this->Pair.Triangles[last][PreviousCorner(this->Pair.GetCorner(last, point))];
     const Vector2 out = this->Pair.Source[next] - this->Pair.Source[point];
     const Vector2 in = this->Pair.Source[before] - this->Pair.Source[point];
     const Vector2 imageOfOut = this->Pair.Target[next] - this->Pair.Target[point];
@@ -266,7 +265,8 @@ void Solver::FindBoundary()
     }
     else
     {
-      boundary.Derivative = AffineDerivative({ Vector2{}, out, in }, { Vector2{}, imageOfOut, imageOfIn });
+      boundary.Derivative =
+        AffineDerivative({ Vector2{}, out, in }, { Vector2{}, imageOfOut, imageOfIn });
     }
   }
 }
@@ -274,7 +274,8 @@ void Solver::FindBoundary()
 //------------------------------------------------------------------------------
 BendingNode Solver::GetTemplateNode(int triangle, const TriangleCut& cut, int node) const
 {
-  return { {}, this->Affine[triangle] +
+  return { {},
+    this->Affine[triangle] +
       this->Template.GetGradient(cut, this->Affine[triangle], triangle, node) };
 }
 
@@ -288,7 +289,8 @@ void Solver::Build()
   std::vector<Node> oldPoints;
   if (!this->Nodes.empty())
   {
-    oldPoints.assign(this->Nodes.begin(), this->Nodes.begin() + static_cast<std::ptrdiff_t>(points));
+    oldPoints.assign(
+      this->Nodes.begin(), this->Nodes.begin() + static_cast<std::ptrdiff_t>(points));
     for (std::size_t n = points; n < this->Nodes.size(); ++n)
     {
       oldNodes[{ this->Nodes[n].Owner, this->Nodes[n].Number }] = this->Nodes[n];
@@ -391,9 +393,8 @@ void Solver::Build()
       this->Elements.push_back(element);
     }
   }
-  this->Parallel(static_cast<std::int64_t>(this->Elements.size()),
-    [this](std::int64_t begin, std::int64_t end)
-    {
+  this->Parallel(
+    static_cast<std::int64_t>(this->Elements.size()), [this](std::int64_t begin, std::int64_t end) {
       for (std::int64_t e = begin; e < end; ++e)
       {
         Element& element = this->Elements[e];
@@ -499,8 +500,7 @@ NodeForms Solver::MakeEdgeForms(int number)
   const double share = 1.0 / (1.0 + node.Omega);
   forms.Value = Constant(node.Aim.Value + share * (forms.Value.Constant - node.Aim.Value));
   const Vector2 aim = node.Aim.Gradient * along;
-  forms.SetGradient(
-    along, Constant(aim + share * (tangential.Constant - aim)), this->Unknown());
+  forms.SetGradient(along, Constant(aim + share * (tangential.Constant - aim)), this->Unknown());
   return forms;
 }
 
@@ -713,14 +713,12 @@ void Solver::SolveSystem()
       for (int component = 0; component < 2; ++component)
       {
         const Eigen::VectorXd guess = this->Solution.col(component);
-        this->Solution.col(component) =
-          gradients.solveWithGuess(this->Right.col(component), guess);
+        this->Solution.col(component) = gradients.solveWithGuess(this->Right.col(component), guess);
       }
     }
   }
   ++this->Statistics.Rounds;
-  const auto evaluate = [this](const LinearForm& form)
-  {
+  const auto evaluate = [this](const LinearForm& form) {
     Vector2 value = form.Constant;
     for (const std::pair<int, double>& term : form.Terms)
     {
@@ -744,9 +742,8 @@ void Solver::SolveSystem()
 // Marks the elements that fail and returns how many triangles have any.
 int Solver::Check()
 {
-  this->Parallel(static_cast<std::int64_t>(this->Elements.size()),
-    [this](std::int64_t begin, std::int64_t end)
-    {
+  this->Parallel(
+    static_cast<std::int64_t>(this->Elements.size()), [this](std::int64_t begin, std::int64_t end) {
       for (std::int64_t e = begin; e < end; ++e)
       {
         Element& element = this->Elements[e];

@@ -169,8 +169,7 @@ int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
-CubicMap::CubicMap(
-  PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor)
+CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor)
   : Pair(std::move(pair))
 {
   std::vector<std::uint8_t> isFree;
@@ -205,27 +204,24 @@ CubicMap::CubicMap(
   this->ResidualTolerance = ResidualUlps * std::numeric_limits<double>::epsilon() * coordinates;
   this->Certificates.assign(this->Pair.Triangles.size(), 0.0);
   std::vector<std::int64_t> elements(this->Pair.Triangles.size(), 0);
-  parallelFor(this->Pair.GetNumberOfTriangles(),
-    [&](std::int64_t begin, std::int64_t end)
+  parallelFor(this->Pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+    for (int t = static_cast<int>(begin); t < end; ++t)
     {
-      for (int t = static_cast<int>(begin); t < end; ++t)
+      if (!this->Bending)
       {
-        if (!this->Bending)
-        {
-          this->Certificates[t] = this->Template->GetCertificate(t);
-          elements[t] = TriangleCut::NumberOfElements;
-          continue;
-        }
-        double least = std::numeric_limits<double>::infinity();
-        this->VisitElements(t,
-          [&](const CubicElement& element, const Vector2&, const Vector2&, double)
-          {
-            least = std::min(least, LeastDeterminant(element));
-            ++elements[t];
-          });
-        this->Certificates[t] = least / this->Pair.GetAffine(t).Determinant();
+        this->Certificates[t] = this->Template->GetCertificate(t);
+        elements[t] = TriangleCut::NumberOfElements;
+        continue;
       }
-    });
+      double least = std::numeric_limits<double>::infinity();
+      this->VisitElements(
+        t, [&](const CubicElement& element, const Vector2&, const Vector2&, double) {
+          least = std::min(least, LeastDeterminant(element));
+          ++elements[t];
+        });
+      this->Certificates[t] = least / this->Pair.GetAffine(t).Determinant();
+    }
+  });
   for (std::size_t t = 0; t < elements.size(); ++t)
   {
     this->Statistics.Elements += elements[t];
@@ -246,8 +242,8 @@ CubicMap::CubicMap(
 //------------------------------------------------------------------------------
 int CubicMap::FindChild(int triangle, const Vector2& point) const
 {
-  Barycentric l = ToBarycentric(
-    this->Pair.GetSourceCorners(triangle), point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
+  Barycentric l = ToBarycentric(this->Pair.GetSourceCorners(triangle),
+    point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
   int child = triangle;
   for (int level = 0; level < this->Levels; ++level)
   {
@@ -340,8 +336,7 @@ bool CubicMap::FindPreimage(const Vector2& image, int& triangle, Vector2& point)
     t = this->FindChild(triangle, absolute);
     x = absolute - pair.Source[pair.Triangles[t][0]];
   }
-  const auto walk = [&pair](int& at, Vector2& to)
-  {
+  const auto walk = [&pair](int& at, Vector2& to) {
     for (int step = 0; step < 1000; ++step)
     {
       const std::array<Vector2, 3> corners = pair.GetSourceCorners(at);
@@ -367,8 +362,7 @@ bool CubicMap::FindPreimage(const Vector2& image, int& triangle, Vector2& point)
   walk(t, x);
   Vector2 value;
   Matrix2 derivative;
-  const auto evaluate = [&](int at, const Vector2& from)
-  {
+  const auto evaluate = [&](int at, const Vector2& from) {
     this->MapFine(at, from, value, derivative);
     return (image - pair.Target[pair.Triangles[at][0]]) - value;
   };
@@ -437,8 +431,7 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
     this->VisitFine(
       t,
       [&](const CubicElement& element, const Vector2& sourceOrigin, const Vector2& targetOrigin,
-        double factor)
-      {
+        double factor) {
         if (found)
         {
           return;
@@ -449,34 +442,32 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
         for (const CubicPatch& patch : GetPatches(element))
         {
           found = found ||
-            Subdivide(patch, local, tolerance, 0,
-              [&](const Vector2& start, bool smallest)
+            Subdivide(patch, local, tolerance, 0, [&](const Vector2& start, bool smallest) {
+              // Newton's method from here, as long as it gains and stays in the element.
+              Vector2 x = start;
+              double last = std::numeric_limits<double>::infinity();
+              for (int step = 0; step < 12; ++step)
               {
-                // Newton's method from here, as long as it gains and stays in the element.
-                Vector2 x = start;
-                double last = std::numeric_limits<double>::infinity();
-                for (int step = 0; step < 12; ++step)
+                const Barycentric l = ToBarycentric(element.Points, x);
+                if (!(std::min({ l[0], l[1], l[2] }) >= -1e-14))
                 {
-                  const Barycentric l = ToBarycentric(element.Points, x);
-                  if (!(std::min({ l[0], l[1], l[2] }) >= -1e-14))
-                  {
-                    break;
-                  }
-                  Vector2 value;
-                  Matrix2 gradient;
-                  Evaluate(element, ordinates, l, value, gradient);
-                  const Vector2 residual = local - (element.Affine * x + value);
-                  const double size = MaxNorm(residual);
-                  if (!(size < last))
-                  {
-                    break;
-                  }
-                  last = size;
-                  point = sourceOrigin + factor * x;
-                  x = x + Solve(element.Affine + gradient, residual);
+                  break;
                 }
-                return last <= 4.0 * tolerance || smallest;
-              });
+                Vector2 value;
+                Matrix2 gradient;
+                Evaluate(element, ordinates, l, value, gradient);
+                const Vector2 residual = local - (element.Affine * x + value);
+                const double size = MaxNorm(residual);
+                if (!(size < last))
+                {
+                  break;
+                }
+                last = size;
+                point = sourceOrigin + factor * x;
+                x = x + Solve(element.Affine + gradient, residual);
+              }
+              return last <= 4.0 * tolerance || smallest;
+            });
         }
       },
       50);
@@ -526,9 +517,10 @@ void CubicMap::VisitFine(int triangle,
         double scale = 1.0;
         for (int ring = 0; ring < repeats; ++ring, scale *= VertexRings::Ratio)
         {
-          this->Template->VisitRings(triangle, origin,
-            [&](const CubicElement& element, double factor)
-            { visit(element, sourceOrigin, targetOrigin, scale * factor); });
+          this->Template->VisitRings(
+            triangle, origin, [&](const CubicElement& element, double factor) {
+              visit(element, sourceOrigin, targetOrigin, scale * factor);
+            });
         }
       }
       continue;

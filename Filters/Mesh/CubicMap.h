@@ -57,8 +57,8 @@ struct CubicMapStatistics
 class CubicMap
 {
 public:
-  CubicMap(PlanarPair pair, const CubicMapOptions& options,
-    const ParallelFor& parallelFor = SerialFor);
+  CubicMap(
+    PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor = SerialFor);
   CubicMap(const CubicMap&) = delete;
   void operator=(const CubicMap&) = delete;
 

@@ -65,8 +65,9 @@ void SerialFor(std::int64_t count, const std::function<void(std::int64_t, std::i
 const std::array<std::array<std::int8_t, 3>, TriangleCut::NumberOfElements> TriangleCut::Elements =
   [] {
     std::array<std::array<std::int8_t, 3>, NumberOfElements> elements{};
-    const auto set = [&elements](int element, int a, int b, int c)
-    { elements[element] = { std::int8_t(a), std::int8_t(b), std::int8_t(c) }; };
+    const auto set = [&elements](int element, int a, int b, int c) {
+      elements[element] = { std::int8_t(a), std::int8_t(b), std::int8_t(c) };
+    };
     for (int c = 0; c < 3; ++c)
     {
       const int out = PreviousCorner(c);
@@ -165,8 +166,7 @@ int TriangleCut::Find(const Vector2& point) const
       const double width = this->Lengths[k] - start - this->Radii[PreviousCorner(k)];
       if (height[k] <= this->Heights[k] && along[k] >= start && along[k] <= start + width)
       {
-        const bool upper =
-          height[k] * width > (along[k] - start) * this->Heights[k];
+        const bool upper = height[k] * width > (along[k] - start) * this->Heights[k];
         return FirstStrip + 2 * k + (upper ? 1 : 0);
       }
     }
@@ -196,53 +196,47 @@ CubicTemplate::CubicTemplate(
 {
   const PointFans fans(pair);
   const std::int64_t points = pair.GetNumberOfPoints();
-  parallelFor(points,
-    [&](std::int64_t begin, std::int64_t end)
+  parallelFor(points, [&](std::int64_t begin, std::int64_t end) {
+    for (int point = static_cast<int>(begin); point < end; ++point)
     {
-      for (int point = static_cast<int>(begin); point < end; ++point)
+      if (fans.First[point] < 0)
       {
-        if (fans.First[point] < 0)
-        {
-          continue;
-        }
-        const PointFan fan = fans.Get(pair, point);
-        this->Boundary[point] = fan.Closed ? 0 : 1;
-        double shortest = std::numeric_limits<double>::infinity();
-        double norm = 0.0;
-        for (int t : fan.Triangles)
-        {
-          const int c = pair.GetCorner(t, point);
-          const std::array<Vector2, 3> corners = pair.GetSourceCorners(t, c);
-          shortest = std::min({ shortest, Length(corners[NextCorner(c)]),
-            Length(corners[PreviousCorner(c)]) });
-          norm = std::max(norm, std::sqrt(SquaredNorm(pair.GetAffine(t))));
-        }
-        this->Radii[point] = EdgeShare * shortest;
-        // Half of what may be strayed; the other half belongs to the edges.
-        this->Radii[point] = std::min(this->Radii[point], 0.5 * options.MaximumDeviation / norm);
+        continue;
       }
-    });
-  parallelFor(pair.GetNumberOfTriangles(),
-    [&](std::int64_t begin, std::int64_t end)
+      const PointFan fan = fans.Get(pair, point);
+      this->Boundary[point] = fan.Closed ? 0 : 1;
+      double shortest = std::numeric_limits<double>::infinity();
+      double norm = 0.0;
+      for (int t : fan.Triangles)
+      {
+        const int c = pair.GetCorner(t, point);
+        const std::array<Vector2, 3> corners = pair.GetSourceCorners(t, c);
+        shortest = std::min(
+          { shortest, Length(corners[NextCorner(c)]), Length(corners[PreviousCorner(c)]) });
+        norm = std::max(norm, std::sqrt(SquaredNorm(pair.GetAffine(t))));
+      }
+      this->Radii[point] = EdgeShare * shortest;
+      // Half of what may be strayed; the other half belongs to the edges.
+      this->Radii[point] = std::min(this->Radii[point], 0.5 * options.MaximumDeviation / norm);
+    }
+  });
+  parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+    for (int t = static_cast<int>(begin); t < end; ++t)
     {
-      for (int t = static_cast<int>(begin); t < end; ++t)
-      {
-        this->SetHeights(t, options.MaximumDeviation);
-      }
-    });
+      this->SetHeights(t, options.MaximumDeviation);
+    }
+  });
   std::vector<std::int32_t> exceptions;
-  parallelFor(points,
-    [&](std::int64_t begin, std::int64_t end)
+  parallelFor(points, [&](std::int64_t begin, std::int64_t end) {
+    Exception unused;
+    for (int point = static_cast<int>(begin); point < end; ++point)
     {
-      Exception unused;
-      for (int point = static_cast<int>(begin); point < end; ++point)
+      if (fans.First[point] >= 0)
       {
-        if (fans.First[point] >= 0)
-        {
-          this->SetDerivative(point, fans, unused);
-        }
+        this->SetDerivative(point, fans, unused);
       }
-    });
+    }
+  });
   for (int point = 0; point < points; ++point)
   {
     if (this->Kinds[point] != VertexKind::Differentiable)
@@ -291,8 +285,7 @@ void CubicTemplate::SetHeights(int triangle, double maximumDeviation)
       const Vector2 turn = (across - affine) * normal;
       const double start = this->Radii[this->Pair.Triangles[triangle][NextCorner(k)]];
       const double end = this->Radii[this->Pair.Triangles[triangle][PreviousCorner(k)]];
-      const double leg =
-        std::min(4.0 / 3.0 * (length - start - end), 3.0 * std::min(start, end));
+      const double leg = std::min(4.0 / 3.0 * (length - start - end), 3.0 * std::min(start, end));
       const double slope = std::abs(Cross(turn, affine * normal));
       m = std::min(m, Slack * leg * std::min(d, e) / slope);
       m = std::min(m, 1.5 * maximumDeviation * (d + e) / (d * Length(turn)));
@@ -465,7 +458,8 @@ void CubicTemplate::EvaluateRings(
     derivative = endless ? outlines.back().Affine[sector] : exception.Rings.Center.Derivative;
     return;
   }
-  int ring = std::max(0, static_cast<int>(std::floor(std::log(gauge) / std::log(VertexRings::Ratio))));
+  int ring =
+    std::max(0, static_cast<int>(std::floor(std::log(gauge) / std::log(VertexRings::Ratio))));
   const bool center = !endless && ring >= exception.Rings.GetNumberOfRings();
   ring = center ? exception.Rings.GetNumberOfRings() : ring;
   const double scale = std::pow(VertexRings::Ratio, ring);
@@ -481,8 +475,8 @@ void CubicTemplate::EvaluateRings(
       static_cast<std::size_t>(sector) + 1 == outline.Rays.size() && exception.Fan.Closed
       ? 0
       : static_cast<std::size_t>(sector) + 1;
-    element = GetCornerElements(star, exception.Rings.Center.Derivative, outline.Rays[sector],
-      outline.Rays[next])[part];
+    element = GetCornerElements(
+      star, exception.Rings.Center.Derivative, outline.Rays[sector], outline.Rays[next])[part];
   }
   else
   {
@@ -590,14 +584,13 @@ double CubicTemplate::GetCertificate(int triangle) const
     {
       if (number % 3 == 0)
       {
-        this->VisitRings(triangle, origin,
-          [&least](const CubicElement& element, double)
-          { least = std::min(least, LeastDeterminant(element)); });
+        this->VisitRings(triangle, origin, [&least](const CubicElement& element, double) {
+          least = std::min(least, LeastDeterminant(element));
+        });
       }
       continue;
     }
-    least =
-      std::min(least, LeastDeterminant(this->GetElement(cut, affine, triangle, number)));
+    least = std::min(least, LeastDeterminant(this->GetElement(cut, affine, triangle, number)));
   }
   return least / determinant;
 }

@@ -52,8 +52,9 @@ struct TriangleCut
   /// The corner to which an element's coordinates are relative: the nearest one.
   static int GetOrigin(int element)
   {
-    return element < FirstStrip ? element / 3
-                                : (element < FirstMiddle ? NextCorner((element - FirstStrip) / 2) : 0);
+    return element < FirstStrip
+      ? element / 3
+      : (element < FirstMiddle ? NextCorner((element - FirstStrip) / 2) : 0);
   }
 
   /// A node relative to the corner @a origin.
@@ -117,8 +118,8 @@ public:
 
   /// The image relative to that of corner @a corner of a point relative to it, beside a corner that
   /// is not differentiable.
-  void EvaluateRings(int triangle, int corner, const Vector2& point, Vector2& image,
-    Matrix2& derivative) const;
+  void EvaluateRings(
+    int triangle, int corner, const Vector2& point, Vector2& image, Matrix2& derivative) const;
 
   /// The image of a point relative to that of corner 0, both relative to it, and the derivative.
   void Evaluate(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;

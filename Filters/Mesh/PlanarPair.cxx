@@ -29,12 +29,10 @@ void PlanarPair::FindNeighbors()
       halfEdges.push_back({ std::min(a, b), std::max(a, b), t, k });
     }
   }
-  std::sort(halfEdges.begin(), halfEdges.end(),
-    [](const HalfEdge& a, const HalfEdge& b)
-    {
-      return a.Low != b.Low ? a.Low < b.Low
-                            : (a.High != b.High ? a.High < b.High : a.Triangle < b.Triangle);
-    });
+  std::sort(halfEdges.begin(), halfEdges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return a.Low != b.Low ? a.Low < b.Low
+                          : (a.High != b.High ? a.High < b.High : a.Triangle < b.Triangle);
+  });
   this->Neighbors.assign(this->Triangles.size(), { -1, -1, -1 });
   for (std::size_t begin = 0; begin < halfEdges.size();)
   {

@@ -48,8 +48,8 @@ struct PlanarPair
   }
 
   /// Corners of a triangle relative to one of them: differences of nearby coordinates are exact.
-  static std::array<Vector2, 3> GetCorners(const std::vector<Vector2>& points,
-    const std::array<std::int32_t, 3>& corners, int origin = 0)
+  static std::array<Vector2, 3> GetCorners(
+    const std::vector<Vector2>& points, const std::array<std::int32_t, 3>& corners, int origin = 0)
   {
     const Vector2 o = points[corners[origin]];
     return { points[corners[0]] - o, points[corners[1]] - o, points[corners[2]] - o };

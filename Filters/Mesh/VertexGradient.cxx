@@ -113,8 +113,7 @@ Matrix2 FitLogarithm(const VertexFan& fan)
     {
       const double angle = start + nodes[n] * width;
       const Vector2 direction{ std::cos(angle), std::sin(angle) };
-      Complex value =
-        std::log(ToComplex(fan.Sectors[i].Affine * direction) / ToComplex(direction));
+      Complex value = std::log(ToComplex(fan.Sectors[i].Affine * direction) / ToComplex(direction));
       // Turns of neighboring directions differ by less than half a turn.
       value.imag(Near(value.imag(), turn));
       turn = value.imag();
@@ -277,8 +276,7 @@ bool SolveProgram(const std::vector<std::array<double, 4>>& rows, std::array<dou
   // A fixed shuffle: Seidel's algorithm is linear on average over the orders.
   const std::size_t count = rows.size();
   std::size_t step = count / 2 + 1;
-  const auto divides = [count](std::size_t s)
-  {
+  const auto divides = [count](std::size_t s) {
     std::size_t a = count;
     while (s != 0)
     {
@@ -369,10 +367,10 @@ bool SolveForDirection(
     rows.resize(first + 3 * vertexWeights.Three.size());
     for (std::size_t i = 0; i < basis.size(); ++i)
     {
-      const std::array<CubicElement, 3> plus = GetCornerElements(
-        fan.Sectors[s], stretch * basis[i], rayGradients[s], rayGradients[next]);
-      const std::array<CubicElement, 3> minus = GetCornerElements(
-        fan.Sectors[s], -stretch * basis[i], rayGradients[s], rayGradients[next]);
+      const std::array<CubicElement, 3> plus =
+        GetCornerElements(fan.Sectors[s], stretch * basis[i], rayGradients[s], rayGradients[next]);
+      const std::array<CubicElement, 3> minus =
+        GetCornerElements(fan.Sectors[s], -stretch * basis[i], rayGradients[s], rayGradients[next]);
       for (int e = 0; e < 3; ++e)
       {
         const DeterminantCoefficients a = GetDeterminantCoefficients(plus[e]);
@@ -396,8 +394,7 @@ bool SolveForDirection(
   direction = Combine(basis, weights);
   // Raise the determinant inside the cone of the constraints, by steps along its gradient that keep
   // part of the slack.
-  const auto normalizedDeterminant = [&basis](const std::array<double, 4>& w)
-  {
+  const auto normalizedDeterminant = [&basis](const std::array<double, 4>& w) {
     const Matrix2 m = Combine(basis, w);
     return m.Determinant() / SquaredNorm(m);
   };
@@ -469,8 +466,7 @@ struct StarHomotopy
       mean += end.imag() - this->Logarithms.Image[i].imag();
     }
     // The end that turns least.
-    const double turns =
-      2.0 * Pi * std::round(mean / static_cast<double>(n + 1) / (2.0 * Pi));
+    const double turns = 2.0 * Pi * std::round(mean / static_cast<double>(n + 1) / (2.0 * Pi));
     for (Complex& end : this->Ends)
     {
       end.imag(end.imag() - turns);
@@ -504,8 +500,9 @@ struct StarHomotopy
     {
       const FanSector& sector = this->Fan.Sectors[i];
       const std::array<Vector2, 3> from{ Vector2{}, sector.Start, sector.End };
-      star.Sectors[i].Affine =
-        share == 0.0 ? sector.Affine : AffineDerivative(from, { Vector2{}, images[i], images[i + 1] });
+      star.Sectors[i].Affine = share == 0.0
+        ? sector.Affine
+        : AffineDerivative(from, { Vector2{}, images[i], images[i + 1] });
       drift[i] = AffineDerivative(from, { Vector2{}, changes[i], changes[i + 1] });
       outline.Affine.push_back(star.Sectors[i].Affine);
     }
@@ -521,8 +518,8 @@ struct StarHomotopy
       for (int end = 0; end < 2; ++end)
       {
         const Vector2 point = end == 0 ? sector.InnerStart : sector.InnerEnd;
-        const Matrix2 gradient = outline.Affine[i] +
-          OuterProduct(drift[i] * point, (1.0 / Dot(point, point)) * point);
+        const Matrix2 gradient =
+          outline.Affine[i] + OuterProduct(drift[i] * point, (1.0 / Dot(point, point)) * point);
         (end == 0 ? outline.InnerStart : outline.InnerEnd).push_back(gradient);
       }
     }
@@ -666,8 +663,8 @@ VertexDerivative FindVertexDerivative(const VertexFan& fan)
 }
 
 //------------------------------------------------------------------------------
-std::array<CubicElement, 6> GetRingElements(const VertexFan& fan,
-  const VertexRings::Outline& outer, const VertexRings::Outline& inner, int sector)
+std::array<CubicElement, 6> GetRingElements(const VertexFan& fan, const VertexRings::Outline& outer,
+  const VertexRings::Outline& inner, int sector)
 {
   constexpr double ratio = VertexRings::Ratio;
   const FanSector& s = fan.Sectors[sector];
@@ -693,8 +690,7 @@ std::array<CubicElement, 6> GetRingElements(const VertexFan& fan,
     node.Point = ratio * node.Point;
     node.Value = change * node.Point;
   }
-  const auto make = [&affine](const Node& a, const Node& b, const Node& c)
-  {
+  const auto make = [&affine](const Node& a, const Node& b, const Node& c) {
     return CubicElement{ { a.Point, b.Point, c.Point }, affine, { a.Value, b.Value, c.Value },
       { a.Gradient, b.Gradient, c.Gradient } };
   };
@@ -742,7 +738,8 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
         const double rate = end * 6.0 * x * (1.0 - x) / count / ratioLogarithm;
         rings.Outlines.push_back(homotopy.GetOutline(share, rate));
         certified = j == 0 ||
-          IsRingCertified(fan, rings.Outlines[static_cast<std::size_t>(j) - 1], rings.Outlines.back());
+          IsRingCertified(
+            fan, rings.Outlines[static_cast<std::size_t>(j) - 1], rings.Outlines.back());
       }
       if (!certified)
       {

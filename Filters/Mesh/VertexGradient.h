@@ -65,8 +65,9 @@ double GetFanMargin(const VertexFan& fan, const std::vector<Matrix2>& rayGradien
   const Matrix2& derivative, double least = -1.0);
 
 /// The derivative with the greatest margin that is found: a fit of the piecewise linear map by a
-/// linear one, as it is and scaled down, or else the solution of a linear program. Its operator norm
-/// is at most that of the sectors' derivatives. Unless the margin is positive, rings are needed.
+/// linear one, as it is and scaled down, or else the solution of a linear program. Its operator
+/// norm is at most that of the sectors' derivatives. Unless the margin is positive, rings are
+/// needed.
 VertexDerivative FindVertexDerivative(const VertexFan& fan);
 
 /// Concentric rings that lead from the piecewise linear star to one that has a certified
@@ -92,8 +93,8 @@ struct VertexRings
 
 /// The six elements of a sector between two outlines, in the scale of the outer one: two beside the
 /// sector's first ray, two in the middle, two beside its last ray.
-std::array<CubicElement, 6> GetRingElements(
-  const VertexFan& fan, const VertexRings::Outline& outer, const VertexRings::Outline& inner, int sector);
+std::array<CubicElement, 6> GetRingElements(const VertexFan& fan, const VertexRings::Outline& outer,
+  const VertexRings::Outline& inner, int sector);
 
 /// Finds rings whose elements are all certified. Returns false if there are none that doubles can
 /// represent beside the vertex; then there are no outlines.

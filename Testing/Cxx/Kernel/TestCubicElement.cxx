@@ -113,8 +113,8 @@ TEST(CubicElement, AgreesWithRationalNumbers)
     double size = 0.0;
     for (int i = 0; i < 3; ++i)
     {
-      size = std::max(
-        size, Norm(element.Points[NextCorner(i)] - element.Points[PreviousCorner(i)]));
+      size =
+        std::max(size, Norm(element.Points[NextCorner(i)] - element.Points[PreviousCorner(i)]));
     }
     // The point of piece k with these coordinates, in the triangle.
     const int k = static_cast<int>(row[28]);
@@ -159,8 +159,7 @@ TEST(CubicElement, CertifiesNoneThatIsNotPositive)
     element.Points = random.Triangle();
     const Vector2 u = random.Vector(1.0);
     // Multiples of u by integers up to 2^20 over 2^20: exact in doubles.
-    const auto multiple = [&]
-    {
+    const auto multiple = [&] {
       const double s = std::floor(random(-1048576.0, 1048576.0)) / 1048576.0;
       return Vector2{ s * std::ldexp(std::round(std::ldexp(u.x, 20)), -20),
         s * std::ldexp(std::round(std::ldexp(u.y, 20)), -20) };
@@ -223,10 +222,12 @@ TEST(CubicElement, ReproducesQuadraticMaps)
     const Vector2 xx = random.Vector(1.0);
     const Vector2 xy = random.Vector(1.0);
     const Vector2 yy = random.Vector(1.0);
-    const auto value = [&](const Vector2& p)
-    { return p.x * p.x * xx + p.x * p.y * xy + p.y * p.y * yy; };
-    const auto derivative = [&](const Vector2& p)
-    { return Matrix2{ 2.0 * p.x * xx + p.y * xy, p.x * xy + 2.0 * p.y * yy }; };
+    const auto value = [&](const Vector2& p) {
+      return p.x * p.x * xx + p.x * p.y * xy + p.y * p.y * yy;
+    };
+    const auto derivative = [&](const Vector2& p) {
+      return Matrix2{ 2.0 * p.x * xx + p.y * xy, p.x * xy + 2.0 * p.y * yy };
+    };
     CubicElement element{ random.Triangle(), {}, {}, {} };
     for (int i = 0; i < 3; ++i)
     {
@@ -338,9 +339,8 @@ TEST(LinearProgram, FindsTheBestCorner)
     for (int i = 0; i < 12; ++i)
     {
       const bool through = n % 3 == 0;
-      halfSpaces.push_back(
-        { { random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0) },
-          through ? random(-0.3, 0.3) : random(0.0, 0.5) });
+      halfSpaces.push_back({ { random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0) },
+        through ? random(-0.3, 0.3) : random(0.0, 0.5) });
     }
     const std::array<double, 3> objective{ random(-1.0, 1.0), random(-1.0, 1.0),
       random(-1.0, 1.0) };
@@ -364,8 +364,7 @@ TEST(LinearProgram, FindsTheBestCorner)
           const auto& p = all[a].Normal;
           const auto& q = all[b].Normal;
           const auto& r = all[c].Normal;
-          const auto det = [](const auto& x, const auto& y, const auto& z)
-          {
+          const auto det = [](const auto& x, const auto& y, const auto& z) {
             return x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) +
               x[2] * (y[0] * z[1] - y[1] * z[0]);
           };
@@ -393,8 +392,7 @@ TEST(LinearProgram, FindsTheBestCorner)
           }
           if (feasible)
           {
-            best = std::max(
-              best, objective[0] * x[0] + objective[1] * x[1] + objective[2] * x[2]);
+            best = std::max(best, objective[0] * x[0] + objective[1] * x[1] + objective[2] * x[2]);
           }
         }
       }

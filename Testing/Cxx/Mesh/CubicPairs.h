@@ -86,8 +86,7 @@ inline void EmbedByConvexCombinations(std::mt19937_64& random, PlanarPair& pair,
     double sum = 0.0;
     for (int t : fan.Triangles)
     {
-      row.Neighbors.push_back(
-        pair.Triangles[t][homeomorphism::NextCorner(pair.GetCorner(t, p))]);
+      row.Neighbors.push_back(pair.Triangles[t][homeomorphism::NextCorner(pair.GetCorner(t, p))]);
       row.Weights.push_back(std::exp(strength * normal(random)));
       sum += row.Weights.back();
     }

@@ -85,8 +85,8 @@ int LocateImage(const PlanarPair& pair, const Vector2& image, int hint)
   double best = -1e300;
   for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
   {
-    const Barycentric l = ToBarycentric(
-      pair.GetTargetCorners(t), image - pair.Target[pair.Triangles[t][0]]);
+    const Barycentric l =
+      ToBarycentric(pair.GetTargetCorners(t), image - pair.Target[pair.Triangles[t][0]]);
     const double least = std::min({ l[0], l[1], l[2] });
     if (least > best)
     {
@@ -125,8 +125,7 @@ void ExpectCertified(const CubicMap& map)
     expected += 0.5 * Cross(target[1], target[2]);
     map.VisitElements(
       t,
-      [&area](const CubicElement& element, const Vector2&, const Vector2&, double factor)
-      {
+      [&area](const CubicElement& element, const Vector2&, const Vector2&, double factor) {
         // The mean of its Bernstein coefficients is the mean of the determinant.
         double sum = 0.0;
         for (double coefficient : GetDeterminantCoefficients(element))
@@ -160,7 +159,8 @@ void ExpectContinuouslyDifferentiable(const CubicMap& map, double tolerance)
       {
         continue;
       }
-      const int ends[2] = { pair.Triangles[t][NextCorner(k)], pair.Triangles[t][PreviousCorner(k)] };
+      const int ends[2] = { pair.Triangles[t][NextCorner(k)],
+        pair.Triangles[t][PreviousCorner(k)] };
       const Vector2 a = pair.Source[ends[0]];
       const Vector2 b = pair.Source[ends[1]];
       const double scale = std::max(Scale(pair, t), Scale(pair, neighbor));
@@ -310,8 +310,8 @@ TEST(CubicMap, AffinePairsAreReproduced)
     for (bool identity : { true, false })
     {
       PlanarPair pair = RandomPair(31, 0.0, 6);
-      const Matrix2 affine = identity ? Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } }
-                                      : Matrix2{ { 1.5, 0.25 }, { -0.75, 2.0 } };
+      const Matrix2 affine =
+        identity ? Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } } : Matrix2{ { 1.5, 0.25 }, { -0.75, 2.0 } };
       for (std::size_t i = 0; i < pair.Source.size(); ++i)
       {
         pair.Target[i] = affine * pair.Source[i];
@@ -353,8 +353,9 @@ TEST(CubicMap, NeedlesAreCertified)
   // Two triangles on either side of an edge, heights from 1e-3 to 1e3, apexes sheared.
   std::mt19937_64 random(51);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto apex = [&](double sign)
-  { return Vector2{ 3.0 * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) }; };
+  const auto apex = [&](double sign) {
+    return Vector2{ 3.0 * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) };
+  };
   for (int n = 0; n < 200; ++n)
   {
     PlanarPair pair;
@@ -498,8 +499,7 @@ TEST(CubicMap, StarsBeyondTheProgramHaveRings)
 TEST(CubicMap, DoesNotDependOnThreads)
 {
   const PlanarPair pair = RandomPair(81, 1.0, 6);
-  const ParallelFor pieces = [](std::int64_t count, const auto& body)
-  {
+  const ParallelFor pieces = [](std::int64_t count, const auto& body) {
     for (std::int64_t begin = count - 1; begin >= 0; --begin)
     {
       body(begin, begin + 1);
