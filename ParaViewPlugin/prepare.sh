@@ -15,7 +15,7 @@ paraview_prefix="$root/build/paraview-prefix"
 
 prepare_paraview()
 {
-  install_missing g++ cmake ninja-build paraview paraview-dev mpi-default-dev \
+  install_missing g++ cmake ninja-build paraview paraview-dev libeigen3-dev mpi-default-dev \
     libdouble-conversion-dev liblz4-dev liblzma-dev libutfcpp-dev python3-dev python3-numpy xvfb xauth
   local version done
   version="$(dpkg-query -W -f='${Version}' paraview)"
