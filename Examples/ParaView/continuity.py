@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where is the map between two triangulations differentiable? Three answers side by side, for the three
-coordinate systems: a grid that is carried from one triangulation onto another, over the edges' images in the
-colors of how much the map's Jacobian jumps there.
+"""Differentiability of the map between two triangulations, for the three coordinate systems side by side: a
+grid mapped from one triangulation to another, over the images of the edges, colored by the jump of the Jacobian.
 
 In ParaView: load the plugin, then File > Run Script... In a shell, with the plugin's folder in PV_PLUGIN_PATH
 or the plugin's file as the second argument:
@@ -41,13 +40,13 @@ def write(path, points, triangles=(), lines=()):
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(path)
     writer.SetInputData(data)
-    # VTK before 9.4 cannot read data at a file's end with every version of expat.
+    # VTK before 9.4 cannot read appended data with every version of expat.
     writer.SetDataModeToBinary()
     writer.Write()
 
 
 def mesh_points(seed):
-    """Of a square of triangles whose inner points are moved at random."""
+    """The points of a triangulated square, with interior points moved at random."""
     chance = random.Random(seed)
     points = []
     for j in range(INTERVALS + 1):
@@ -71,7 +70,7 @@ def mesh_triangles():
 
 
 def write_grid(path, lines=20, pieces=1000):
-    """Lines in both directions, of so many pieces that bends look like bends, and creases like creases."""
+    """Grid lines in both directions, subdivided finely enough to show curvature and creases."""
     points = []
     for k in range(lines + 1):
         points += [(k / lines, i / pieces) for i in range(pieces + 1)]
@@ -84,7 +83,7 @@ def color_by_jump(display):
     ColorBy(display, ("CELLS", "JacobianJump"))
     colors = GetColorTransferFunction("JacobianJump")
     colors.AutomaticRescaleRangeMode = "Never"
-    # On a logarithmic scale: rounding errors are at its one end, creases at the other.
+    # On a logarithmic scale: rounding errors at one end, creases at the other.
     colors.RGBPoints = [1e-9, 0.10, 0.35, 0.75,
                         1e-6, 0.45, 0.75, 0.85,
                         1e-3, 0.98, 0.80, 0.35,
@@ -96,7 +95,7 @@ def color_by_jump(display):
 
 
 def show_system(system, source, target, grid, view):
-    """Shows the carried grid over the images of the edges; returns what is to be saved."""
+    """Shows the mapped grid over the images of the edges; returns the proxies to be saved."""
     settings = {"Source": source, "Target": target, "CoordinateSystem": system,
                 "DiscordantTriangles": "Carry by Linear"}
     carried = DifferentiableHomeomorphism(registrationName="Grid " + system, Data=grid, **settings)
@@ -108,11 +107,11 @@ def show_system(system, source, target, grid, view):
     display.Position = [0.0, 0.0, 0.01]
 
     measured = JacobianContinuity(registrationName="Measured " + system, **settings)
-    # The edges are the source's; the map takes them to the target's.
+    # The edges are those of the source; the map moves them to the target.
     edges = DifferentiableHomeomorphism(registrationName="Edges " + system, Data=measured, **settings)
     display = Show(edges, view)
     display.LineWidth = 6.0
-    # Plain wide lines may have gaps and be thinner where they are oblique. Not shaded, as the scale.
+    # Plain wide lines may have gaps and be thinner where they are oblique. Unshaded, like the color scale.
     display.RenderLinesAsTubes = 1
     display.Ambient = 1.0
     display.Diffuse = 0.0
@@ -178,7 +177,7 @@ if __name__ == "__main__":
     bar.UseCustomLabels = 1
     bar.CustomLabels = [1e-9, 1e-6, 1e-3, 1.0]
 
-    # The first picture of a view moves its camera.
+    # The first screenshot of a view moves its camera.
     RenderAllViews()
     for view in left, middle, right:
         view.CameraParallelProjection = 1
@@ -189,7 +188,7 @@ if __name__ == "__main__":
     RenderAllViews()
     SaveScreenshot(os.path.join(folder, "continuity.png"), layout, ImageResolution=[1920, 800],
                    SeparatorWidth=0, FontScaling="Do not scale fonts")
-    # In a window, views have other shapes.
+    # Views in a window have other aspect ratios.
     for view in left, middle, right:
         ResetCamera(view)
         view.CameraParallelScale *= 0.75

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
-# A square of 300 x 300 pixels, cut into triangles by a grid of 6 x 6 points, of which the inner ones move.
+# A square of 300 x 300 pixels, triangulated by a grid of 6 x 6 points, of which the inner ones move.
 size, count = 300, 6
 random = numpy.random.default_rng(4)
 x, y = numpy.meshgrid(*2 * [numpy.linspace(0, size - 1, count)])
@@ -32,7 +32,7 @@ determinants = numpy.linalg.det(f.jacobian(points))
 print(f"{len(points)} points there and back: off by at most {error:.1e} pixels")
 print(f"areas change by factors from {determinants.min():.2f} to {determinants.max():.2f}")
 
-# Squares of two greys, with lines.
+# A checkerboard of two grays, with lines.
 row, column = numpy.mgrid[0:size, 0:size]
 image = numpy.where((row // 25 + column // 25) % 2, 225, 250).astype(numpy.uint8)
 image[(row % 25 < 2) | (column % 25 < 2)] = 90

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ContourChart.h
-/// The Contour coordinate system: the published construction ("Constructing Differentiable
-/// Homeomorphisms between Isomorphic Triangulations").
+/// The Contour coordinate system: the construction published in "Constructing Differentiable
+/// Homeomorphisms between Isomorphic Triangulations".
 ///
-/// From the triangle's center G the three *center segments* drop perpendicularly to the edges. Six
-/// *wing segments* join each corner to the midpoints of the two center segments beside it. A
-/// *contour* starts at G as a straight segment; where it meets a wing segment it turns tangentially
-/// into a circular arc, which meets the edge at a right angle. The triangle is covered once by its
-/// contours if the feet of the center segments lie strictly inside the edges (a *concordant*
+/// Three *center segments* drop from the center G of the triangle perpendicularly to the edges. Six
+/// *wing segments* join each corner to the midpoints of the two adjacent center segments. A
+/// *contour* starts at G as a straight segment. Where it meets a wing segment, it continues
+/// tangentially as a circular arc that meets the edge at a right angle. The contours cover the
+/// triangle once if the feet of the center segments lie strictly inside the edges (a *concordant*
 /// triangle, see IsConcordant).
 
 #ifndef homeomorphism_ContourChart_h
@@ -23,25 +23,25 @@
 namespace homeomorphism
 {
 
-/// From where the contours of a triangle start.
+/// The point from which the contours of a triangle start.
 enum class CenterPoint
 {
-  /// The publication's choice. Discordant triangles exist.
+  /// The centroid, as published. Triangles may be discordant.
   Centroid = 0,
-  /// The center of the inscribed circle: its feet are the circle's points of tangency, so every
-  /// triangle is concordant.
+  /// The center of the inscribed circle. Its feet are the points of tangency, so every triangle is
+  /// concordant.
   Incenter = 1
 };
 
-/// The chart of the Contour system. Its reference is (e, p, c) itself. The triangle should be
-/// concordant with respect to the center; if a foot lies outside its edge, the half edge on that
-/// side is taken as shrunk to (almost) nothing.
+/// The chart of the Contour system. Its reference is (e, p, c). The triangle should be concordant
+/// with respect to the center. If a foot lies outside its edge, the half edge on that side is
+/// replaced by one of almost zero length.
 class ContourChart
 {
 public:
   using Reference = TriangularCoordinates;
-  /// A tangent vector of the reference: x = change of c, y = c times change of p, which stays
-  /// finite at the center, where c = 0 and p has no meaning.
+  /// A tangent vector of the reference: x is the change of c, y is c times the change of p. It
+  /// stays finite at the center, where c = 0 and p is undefined.
   using Direction = Vector2;
 
   explicit ContourChart(
@@ -50,58 +50,58 @@ public:
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& coordinates) const;
 
-  /// At the center, where the map is not differentiable, the limits are those along the contour
-  /// that the reference names.
+  /// The derivatives of ToReference and ToPoint. At the center, where the map is not
+  /// differentiable, they are the limits along the contour given by the reference.
   Direction Pullback(const Reference& coordinates, const Vector2& vector) const;
   Vector2 Pushforward(const Reference& coordinates, const Direction& direction) const;
 
   TriangularCoordinates ToCoordinates(const Reference& coordinates) const { return coordinates; }
   Reference FromCoordinates(const TriangularCoordinates& coordinates) const { return coordinates; }
 
-  /// The images of points under the homeomorphism from triangles with charts @a from to those with
-  /// charts
-  /// @a to, at most 256 at once, in a fraction of the time of ToReference and ToPoint, to the same
-  /// bits.
+  /// Replaces at most 256 points by their images under the homeomorphism
+  /// from the triangles with charts @a from to those with charts @a to.
+  /// Gives the same bits as ToReference and ToPoint in a fraction of their
+  /// time.
   static void MapPoints(
     const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count);
 
-  /// Length of the contour that ends on an edge (1 to 3) at p, and its derivative with respect to p
-  /// (not the edge's length). The jump of the homeomorphism's Jacobian across an edge follows from
-  /// it in closed form.
+  /// The length of the contour that ends on an edge (1 to 3) at p, and its derivative with respect
+  /// to p (not to length along the edge). Both give the jump of the Jacobian across the edge in
+  /// closed form.
   double ContourLength(int edge, double p) const;
   double ContourLengthDerivative(int edge, double p) const;
 
-  /// The center from which the contours start.
+  /// The point at which the contours start.
   Vector2 Center() const;
   /// The foot of the center segment on an edge (1 to 3).
   Vector2 Foot(int edge) const;
 
-  /// The chart of the equilateral triangle with base 1, whose contours the Smooth system carries
-  /// over to all triangles.
+  /// The chart of the equilateral triangle with base 1. The Smooth system maps its contours to all
+  /// triangles.
   static const ContourChart& Equilateral();
   static const TriangleShape& EquilateralShape();
 
 private:
-  /// An edge as the center segment on it sees it.
+  /// An edge and its center segment.
   struct Edge
   {
     Vector2 Start;   ///< the next corner, where p = 0
-    Vector2 Tangent; ///< unit vector towards p = 1; the triangle is to its left
+    Vector2 Tangent; ///< unit vector towards p = 1; the triangle lies to its left
     double Length;
     double CenterHeight; ///< h
-    double FootDistance; ///< of the foot from Start
+    double FootDistance; ///< distance of the foot from Start
   };
 
-  /// One half of an edge, and the place in it of the contour that ends at p.
+  /// One half of an edge, and the end of a contour in it.
   struct Half
   {
-    double Side; ///< 1 if the half runs along the tangent, -1 if against it
+    double Side; ///< 1 if the half extends along the tangent, -1 if against it
     double Length;
-    double EdgePoint; ///< distance of the contour's end from the foot
+    double EdgePoint; ///< distance of the end of the contour from the foot
   };
 
-  /// A point in the frame of its half edge, and the number s of its contour, which takes an
-  /// equation to find unless the point is on the contour's straight piece.
+  /// A point in the frame of its half edge, and the parameter s of its contour. An equation gives s
+  /// unless the point lies on the straight piece of its contour.
   struct Search
   {
     int EdgeLabel; ///< 0 for the center
@@ -114,7 +114,7 @@ private:
     double S;
   };
 
-  /// The half edge at which a contour ends, and its equation: E(s) / b = Proportion.
+  /// The half edge at which a contour ends, and the equation of the contour: E(s) / b = Proportion.
   struct Ending
   {
     Half AtEdge;
@@ -129,8 +129,8 @@ private:
   Half HalfAt(const Edge& edge, double p) const;
   Matrix2 Columns(const Reference& coordinates) const;
 
-  /// A power of two near the triangle's size, in which all lengths below are measured, so that
-  /// their products neither underflow nor overflow.
+  /// The unit of length of all members below: a power of two near the size of the triangle, so that
+  /// products neither underflow nor overflow.
   double Unit;
   TriangleShape Shape;
   Barycentric CenterWeights;

@@ -2,25 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CoordinateSystem.h
-/// The interface of a coordinate system, and the homeomorphism that two of its charts make.
+/// The interface of a coordinate system, and the homeomorphism defined by two of its charts.
+/// A coordinate system gives every triangle a *chart*: a bijection between the points of the
+/// triangle and a reference set that is the same for all triangles. A chart is constructed from the
+/// shape of the triangle and provides
 ///
-/// A coordinate system gives every triangle a *chart*: a bijection between the triangle's points
-/// and a reference that is the same for all triangles. A chart is built from the triangle's shape
-/// and offers
-///
-///     using Reference = ...;   // a point of the reference
-///     using Direction = ...;   // a tangent vector of the reference
+///     using Reference = ...; // a point of the reference
+///     using Direction = ...; // a tangent vector of the reference
 ///     Reference ToReference(const Vector2& point) const;
 ///     Vector2 ToPoint(const Reference& reference) const;
-///     Direction Pullback(const Reference& reference, const Vector2& vector) const;   // D
-///     ToReference Vector2 Pushforward(const Reference& reference, const Direction& direction)
-///     const; // D ToPoint TriangularCoordinates ToCoordinates(const Reference& reference) const;
+///     // The derivatives of ToReference and ToPoint.
+///     Direction Pullback(const Reference& reference, const Vector2& vector) const;
+///     Vector2 Pushforward(const Reference& reference, const Direction& direction) const;
+///     TriangularCoordinates ToCoordinates(const Reference& reference) const;
 ///     Reference FromCoordinates(const TriangularCoordinates& coordinates) const;
 ///
-/// Points and vectors are in the triangle's own frame (TriangleShape). A point outside the closed
-/// triangle by rounding is taken for the nearest point of it. Derivatives are exact (closed form);
-/// on an edge they are the limits from this triangle's side. Charts are immutable: any number of
-/// threads may use one.
+/// Points and vectors are given in the frame of the triangle (TriangleShape). A point outside the
+/// closed triangle is replaced by the nearest point of the triangle. Derivatives are in closed
+/// form; on an edge they are the limits from inside the triangle. Charts are immutable and may be
+/// shared by any number of threads.
 
 #ifndef homeomorphism_CoordinateSystem_h
 #define homeomorphism_CoordinateSystem_h
@@ -32,11 +32,11 @@ namespace homeomorphism
 
 enum class CoordinateSystem
 {
-  /// Straight contours: the piecewise linear homeomorphism.
+  /// Straight contours. The homeomorphism is piecewise linear.
   Linear = 0,
-  /// The published construction: straight piece, then an arc that meets the edge at a right angle.
+  /// The published construction: a straight piece, then an arc perpendicular to the edge.
   Contour = 1,
-  /// The contours of the equilateral triangle, carried over by a chart that is twice continuously
+  /// The contours of the equilateral triangle, mapped by a chart that is twice continuously
   /// differentiable across edges.
   Smooth = 2
 };
@@ -44,16 +44,16 @@ enum class CoordinateSystem
 /// The triangular coordinates (e, p, c) of a point of a triangle.
 struct TriangularCoordinates
 {
-  /// e, 1 to 3: the edge at which the point's contour ends. Edge k is opposite the k-th corner.
+  /// e, 1 to 3: the edge at which the contour ends. Edge k is opposite the k-th corner.
   int Edge = 1;
-  /// p in [0, 1]: where on the edge it ends, as a proportion of the edge's length, counted from the
-  /// next corner in cyclic order towards the one after.
+  /// p in [0, 1]: the position of that end as a proportion of the length of the edge, from the next
+  /// corner in cyclic order to the one after it.
   double EdgeParameter = 0.5;
-  /// c in [0, 1]: how far along the contour the point is, 0 at the center, 1 on the edge.
+  /// c in [0, 1]: the position of the point on its contour, 0 at the center and 1 on the edge.
   double ContourParameter = 0.0;
 };
 
-/// A linear map of the plane: its columns are the images of the unit vectors.
+/// A linear map of the plane. Its columns are the images of the unit vectors.
 struct Matrix2
 {
   Vector2 ImageOfX;
@@ -62,14 +62,14 @@ struct Matrix2
   double Determinant() const { return Cross(this->ImageOfX, this->ImageOfY); }
 };
 
-/// The homeomorphism from one triangle to its counterpart: the point with the same coordinates.
+/// Maps a point of a triangle to the point of the corresponding triangle with the same reference.
 template <typename Chart>
 Vector2 MapPoint(const Chart& from, const Chart& to, const Vector2& point)
 {
   return to.ToPoint(from.ToReference(point));
 }
 
-/// The homeomorphism's derivative at the point that has this reference in both triangles.
+/// The derivative of the homeomorphism at the point with this reference in both triangles.
 template <typename Chart>
 Matrix2 MapDerivative(
   const Chart& from, const Chart& to, const typename Chart::Reference& reference)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Geometry.h
-/// Plain structs of plane geometry: vectors, and a triangle seen in its own frame.
+/// Plane geometry: vectors, and a triangle in its own frame.
 
 #ifndef homeomorphism_Geometry_h
 #define homeomorphism_Geometry_h
@@ -63,9 +63,9 @@ inline double Cross(const Vector2& a, const Vector2& b)
   return a.x * b.y - a.y * b.x;
 }
 
-/// a d - b c with a relative error of at most 1.5 ulp, however close the two products are (Kahan;
-/// Jeannerod, Louvet and Muller 2013). Slow where the processor has no fused multiply-add, so for
-/// construction rather than for every point.
+/// a d - b c with a relative error of at most 1.5 ulp, even under cancellation (Kahan; Jeannerod,
+/// Louvet and Muller 2013). Without a hardware fused multiply-add this is slow: use it in
+/// construction, not for every point.
 HOMEOMORPHISM_ALWAYS_INLINE double DifferenceOfProducts(double a, double d, double b, double c)
 {
   const double bc = b * c;
@@ -73,15 +73,15 @@ HOMEOMORPHISM_ALWAYS_INLINE double DifferenceOfProducts(double a, double d, doub
   return std::fma(a, d, -bc) + error;
 }
 
-/// The power of two next to a positive number, 1 for others; it and its reciprocal are normal
-/// numbers. Nothing branches, so that loops can become vector instructions.
+/// The greatest power of two not above a positive number, and 1 for all other values. The result
+/// and its reciprocal are normal numbers. Branch-free, so that loops vectorize.
 HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(double x)
 {
   constexpr double least = 0x1p-1021;
   constexpr double greatest = 0x1p1021;
   double power = x > least ? x : least;
   power = power < greatest ? power : greatest;
-  // The number without its fraction: in a double, the bits after the sign and the exponent.
+  // Clear the significand: keep the sign and the exponent.
   std::uint64_t bits;
   std::memcpy(&bits, &power, sizeof(bits));
   bits &= std::uint64_t(0xfff) << 52;
@@ -90,8 +90,8 @@ HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(double x)
   return x <= std::numeric_limits<double>::max() ? power : 1.0;
 }
 
-/// The greatest power of two by which both components of a vector are at least 1 or less, see
-/// PowerOfTwoNear.
+/// PowerOfTwoNear of the greater component in absolute
+/// value.
 HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(const Vector2& v)
 {
   const double x = std::abs(v.x);
@@ -99,17 +99,17 @@ HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(const Vector2& v)
   return PowerOfTwoNear(x > y ? x : y);
 }
 
-/// Barycentric coordinates of a point of a triangle (they sum to 1), or the components of a vector
-/// along the corners (they sum to 0).
+/// Barycentric coordinates of a point (they sum to 1), or barycentric components of a vector (they
+/// sum to 0).
 using Barycentric = std::array<double, 3>;
 
-/// A non-degenerate triangle in its own frame: the longest edge lies on the x axis, from the corner
-/// after the apex, at the origin, to the corner before the apex, at (Base, 0); the apex is at
-/// (ApexX, Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 therefore follow
-/// each other counterclockwise.
+/// A non-degenerate triangle in its own frame. The longest edge lies on the x axis, from the corner
+/// after the apex at the origin to the corner before the apex at (Base, 0). The apex is (ApexX,
+/// Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 are in counterclockwise
+/// order.
 ///
-/// In this frame a needle is as harmless as an equilateral triangle: converting a point to
-/// barycentric coordinates and back moves it by a few ulp of Base, never by ulp times aspect ratio.
+/// Needles are well-conditioned in this frame: converting a point to barycentric coordinates and
+/// back moves it by a few ulp of Base, independently of the aspect ratio.
 struct TriangleShape
 {
   double Base = 1.0;
@@ -127,7 +127,7 @@ struct TriangleShape
     return { corner == NextCorner(this->Apex) ? 0.0 : this->Base, 0.0 };
   }
 
-  /// Barycentric coordinates of a point of the closed triangle, or of the nearest point of it.
+  /// Barycentric coordinates of the point of the closed triangle nearest to a point.
   Barycentric ToBarycentric(const Vector2& point) const
   {
     const double apex = point.y / this->Height;
@@ -144,7 +144,7 @@ struct TriangleShape
     return l;
   }
 
-  /// Barycentric coordinates of the point of the triangle's boundary that is nearest to @a point.
+  /// Barycentric coordinates of the boundary point nearest to @a point.
   Barycentric NearestOnBoundary(const Vector2& point) const
   {
     Barycentric nearest{};
@@ -171,8 +171,8 @@ struct TriangleShape
     return nearest;
   }
 
-  /// The point with these barycentric coordinates. Linear, so it also takes a vector's components
-  /// to the vector.
+  /// The point with these barycentric coordinates. The function is linear, so it also maps the
+  /// components of a vector to the vector.
   Vector2 FromBarycentric(const Barycentric& l) const
   {
     const double apex = l[this->Apex];
@@ -180,7 +180,7 @@ struct TriangleShape
     return { this->Base * second + this->ApexX * apex, this->Height * apex };
   }
 
-  /// The components, summing to 0, of a vector of the plane: the derivative of ToBarycentric.
+  /// The components of a vector of the plane, which sum to 0: the derivative of ToBarycentric.
   Barycentric VectorToBarycentric(const Vector2& vector) const
   {
     const double apex = vector.y / this->Height;
@@ -193,26 +193,26 @@ struct TriangleShape
   }
 };
 
-/// What one edge of a triangle sees of the triangle's corner on the other side: all that has to be
-/// known of a triangle in order to unfold it about that edge.
+/// A triangle seen from one of its edges: the opposite corner relative to the edge. These numbers
+/// suffice to unfold the triangle about the edge.
 struct EdgeView
 {
   /// Length of the edge.
   double Length = 0.0;
-  /// Foot of the opposite corner on the edge, as a proportion of the edge's length counted from the
-  /// next corner in cyclic order towards the one after; outside [0, 1] beside an obtuse angle.
+  /// Foot of the opposite corner, as a proportion of the length of the edge, from the next corner
+  /// in cyclic order to the one after it. Outside [0, 1] beside an obtuse angle.
   double Foot = 0.0;
-  /// Distance of the opposite corner from the edge's line.
+  /// Distance of the opposite corner from the line of the edge.
   double Height = 0.0;
 };
 
-/// The view from an edge of the plane, from @a start to @a end, of the opposite corner. Differences
-/// of nearby coordinates being exact, this is accurate to a few ulp of each number, even for the
-/// short edge of a needle, where the triangle's own frame knows only the corners' places.
+/// The view from the edge of the plane from @a start to @a end. Differences of nearby coordinates
+/// are exact, so each number is accurate to a few ulp, even for the short edge of a needle, for
+/// which the frame of the triangle is too coarse.
 HOMEOMORPHISM_ALWAYS_INLINE EdgeView ViewFromEdge(
   const Vector2& start, const Vector2& end, const Vector2& opposite)
 {
-  // A power of two keeps the products from underflow without rounding anything.
+  // Scaling by a power of two is exact and avoids underflow of the products.
   const double scale = PowerOfTwoNear(end - start);
   const Vector2 edge = (1.0 / scale) * (end - start);
   const Vector2 other = (1.0 / scale) * (opposite - start);
@@ -222,7 +222,7 @@ HOMEOMORPHISM_ALWAYS_INLINE EdgeView ViewFromEdge(
     scale * std::abs(DifferenceOfProducts(edge.x, other.y, edge.y, other.x)) / length };
 }
 
-/// The Length of such a view, to the same bits.
+/// The Length of ViewFromEdge, to the same bits.
 HOMEOMORPHISM_ALWAYS_INLINE double EdgeLength(const Vector2& start, const Vector2& end)
 {
   const double scale = PowerOfTwoNear(end - start);
@@ -230,7 +230,7 @@ HOMEOMORPHISM_ALWAYS_INLINE double EdgeLength(const Vector2& start, const Vector
   return scale * std::sqrt(Dot(edge, edge));
 }
 
-/// The views from the three edges: element k from the edge opposite corner k.
+/// The views from the three edges. Element k belongs to the edge opposite corner k.
 using EdgeViews = std::array<EdgeView, 3>;
 
 inline EdgeViews ViewsFromEdges(const Vector2& a, const Vector2& b, const Vector2& c)
@@ -238,8 +238,8 @@ inline EdgeViews ViewsFromEdges(const Vector2& a, const Vector2& b, const Vector
   return { ViewFromEdge(b, c, a), ViewFromEdge(c, a, b), ViewFromEdge(a, b, c) };
 }
 
-/// The same view with the edge run through in the opposite direction, as a triangle on the other
-/// side of the edge sees it.
+/// The view from the edge in the opposite direction, as the twin triangle uses
+/// it.
 inline EdgeView Reversed(const EdgeView& view)
 {
   return { view.Length, 1.0 - view.Foot, view.Height };

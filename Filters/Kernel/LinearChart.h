@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file LinearChart.h
-/// The Linear coordinate system: contours are straight from the centroid to the edge, and the
-/// homeomorphism is the piecewise linear one.
+/// The Linear coordinate system. Contours are straight from the centroid to the edge, and the
+/// homeomorphism is piecewise linear.
 
 #ifndef homeomorphism_LinearChart_h
 #define homeomorphism_LinearChart_h
@@ -38,8 +38,8 @@ public:
     return this->Shape.FromBarycentric(direction);
   }
 
-  /// e is the smallest barycentric coordinate (the first of equals), c = 1 - 3 l_e, and p is where
-  /// the ray from the centroid through the point meets the edge.
+  /// e is the edge with the smallest barycentric coordinate (the first of equals), c = 1 - 3 l_e,
+  /// and p is the point at which the ray from the centroid through the point meets the edge.
   TriangularCoordinates ToCoordinates(const Reference& l) const
   {
     int edge = 0;

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMHomeomorphismProxy
- * @brief   a filter whose counts are those of all processes
+ * @brief   proxy of a filter with statistics of all processes
  *
- * The proxy of a filter of this project that has a method ReduceStatistics. Before its information
- * properties are fetched, from the server's first process, all processes of the server are told to
- * call that method. They wait for each other there and nowhere else: whether one has no data, has
- * not executed or had an error makes no difference. The information properties are fetched after
- * every update.
+ * Proxy of a filter with a method ReduceStatistics. Before the information properties are fetched
+ * from the first process of the server, all processes of the server call that method. This is the
+ * only point of synchronization, so a process without data, without an execution or with an error
+ * does not block the others. The information properties are fetched after every update.
  */
 
 #ifndef vtkSMHomeomorphismProxy_h

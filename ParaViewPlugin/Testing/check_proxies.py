@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Looks at what the plugin says about the filters: documentation, names of outputs, and defaults, which must
-be the classes' own: check_proxies.py MESHES."""
+"""Checks the proxies: documentation, names of outputs, and defaults, which must equal those of the classes:
+check_proxies.py MESHES."""
 
 import os
 import re
@@ -19,7 +19,7 @@ compared = 0
 
 
 def same(text, values):
-    """Whether what a class prints is what the proxy has."""
+    """Whether a class prints the value of the proxy."""
     return [float(x) for x in re.findall(r"[^ (),]+", text)] == [float(x) for x in values]
 
 
@@ -53,7 +53,7 @@ if compared < 40:
 if problems:
     sys.exit("\n".join(problems))
 
-# Colors come without being asked for.
+# Arrays for coloring are selected automatically.
 edges = simple.JacobianContinuity(Source=source, Target=target, CoordinateSystem="Contour",
                                   CenterPoint="Incenter")
 edges.UpdatePipeline()
@@ -62,7 +62,7 @@ for port, what in (0, "edges"), (1, "triangles"):
     if not scalars or scalars.GetName() != "JacobianJump":
         sys.exit("JacobianJump is not the active array of the " + what)
 
-# How arrays are carried can be said for each.
+# The transformation of each array can be chosen.
 wavelet = simple.Wavelet(WholeExtent=[-5, 5, -5, 5, 0, 0])
 data = simple.Calculator(Input=wavelet, ResultArrayName="Tangent", Function="coordsX*iHat+2*jHat")
 mapped = simple.DifferentiableHomeomorphism(Source=source, Target=target, Data=data)

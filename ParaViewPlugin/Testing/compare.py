@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says whether two folders of results are the same but for order: compare.py EXPECTED ACTUAL.
+"""Compares two folders of results up to order: compare.py EXPECTED ACTUAL.
 
-Points on the borders of the pieces are there more than once, which does not count."""
+Duplicates of points on the borders of pieces are ignored."""
 
 import glob
 import os
@@ -14,7 +14,7 @@ from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader
 
 
 def rows(columns):
-    """Each point's or cell's values as one string of bytes."""
+    """The values of each point or cell as one string of bytes."""
     table = numpy.concatenate(
         [c.reshape(len(c), -1).astype(numpy.float64) + 0.0 for c in columns], axis=1)
     table[numpy.isnan(table)] = numpy.nan
@@ -25,7 +25,7 @@ DUPLICATE = 1
 
 
 def read(path):
-    """Arrays of points and cells, points, and cells, without what belongs to another process's piece."""
+    """Point arrays, cell arrays, points and cells, without duplicates of other pieces."""
     reader = vtkXMLPUnstructuredGridReader()
     reader.SetFileName(path)
     reader.Update()
@@ -36,7 +36,7 @@ def read(path):
     points = rows([vtk_to_numpy(grid.GetPoints().GetData())] + points)
     cell_names, cells, foreign_cells = arrays(grid.GetCellData(), grid.GetNumberOfCells())
     values = rows(cells)
-    # A cell is its points, whatever their ids, and its values.
+    # Cells are compared by their points, independently of ids, and by their values.
     connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
     offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
     cells = [tuple(points[p] for p in connectivity[offsets[i]:offsets[i + 1]]) + (values[i],)
@@ -46,7 +46,7 @@ def read(path):
 
 
 def arrays(attributes, count):
-    """Names, arrays, and which tuples are there for another process."""
+    """Names, arrays, and flags of the tuples that are duplicates of other pieces."""
     found = {attributes.GetArrayName(i): vtk_to_numpy(attributes.GetArray(i))
              for i in range(attributes.GetNumberOfArrays())}
     ghosts = found.get("vtkGhostType", numpy.zeros(count, numpy.uint8))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Applies the filters to data of which each process has a part: run_filters.py MESHES RESULTS."""
+"""Applies the filters to distributed data: run_filters.py MESHES RESULTS."""
 
 import os
 import sys
@@ -18,36 +18,36 @@ pieces = {"Source": session.read(meshes, "source", in_pieces=True),
 
 
 def save(name, proxy, port=0):
-    """All results in files of one kind, in as many pieces as there are processes."""
+    """Saves a result with one piece per process."""
     merged = simple.MergeBlocks(Input=simple.OutputPort(proxy, port), MergePoints=0)
-    # Raw data at the files' end is more than VTK can read back with every version of expat.
+    # VTK cannot read appended data back with every version of expat.
     writer = simple.servermanager.writers.XMLPUnstructuredGridWriter(
         Input=merged, FileName=os.path.join(results, name + ".pvtu"), DataMode="Binary")
     writer.UpdatePipeline()
 
 
 def with_arrays(proxy):
-    """Where the points come from, and vectors, which the map carries."""
+    """Adds the original coordinates, and vectors that the map transforms."""
     origin = simple.Calculator(Input=proxy, ResultArrayName="Origin", Function="coords")
     return simple.Calculator(Input=origin, ResultArrayName="Velocity",
                              Function="(1 + coordsX*coordsY)*iHat + coordsX*jHat")
 
 
 def make_data():
-    """An image, a surface, both of which come in pieces, and what the first process has alone."""
+    """An image and a surface in pieces, and data of the first process alone."""
     image = with_arrays(simple.Wavelet(WholeExtent=[-10, 10, -9, 9, -1, 1]))
     surface = simple.Contour(Input=image, ContourBy=["POINTS", "RTData"], Isosurfaces=[180.0],
                              ComputeNormals=0)
     plane = with_arrays(simple.Plane(Origin=[-7, -7, 0], Point1=[7, -7, 0], Point2=[-7, 7, 0],
                                      XResolution=30, YResolution=30))
-    # Has outside points too, so that both blocks have vtkGhostType: only arrays of all blocks are saved.
+    # Has outside points, so that both blocks have vtkGhostType: only arrays of all blocks are saved.
     other_image = with_arrays(simple.Wavelet(WholeExtent=[-9, 5, -9, 9, 3, 6]))
     return image, surface, plane, simple.GroupDatasets(Input=[image, other_image])
 
 
 image, surface, plane, group = make_data()
-# Others for what reads its data whole: VTK's sources that cannot be read in pieces would go on giving the
-# whole to everybody.
+# Separate sources for filters that read their data whole: sources that cannot read pieces would continue to
+# give the whole to all processes.
 whole_image, whole_surface, whole_plane, whole_group = make_data()
 elevation = simple.Elevation(Input=source)
 

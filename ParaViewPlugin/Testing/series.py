@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Goes through time steps: series.py MESHES. The meshes are read and checked once if only the data changes,
-and once for each time step if they do."""
+"""Updates through time steps: series.py MESHES. The meshes are read and validated once if only the data
+changes, and once per time step if they change."""
 
 import os
 import sys
@@ -26,7 +26,7 @@ def expect(actual, expected, what):
         sys.exit("%s: %s, not %s" % (what, actual, expected))
 
 
-# In a function: ParaView runs the script above among the names of this module.
+# In a function, because ParaView runs the script above in the namespace of this module.
 def main(meshes):
     session.load_plugin()
     source = session.read(meshes, "source")
@@ -37,7 +37,7 @@ def main(meshes):
     if times != [0.0, 1.0, 2.0]:
         sys.exit("The series has the time steps %s" % times)
     image = simple.Wavelet(WholeExtent=[-6, 6, -6, 6, 0, 0])
-    # Data that changes: what it has at each point is the time, and its points move.
+    # Time-dependent data: the value at each point is the time, and the points move.
     changing = simple.ProgrammableFilter(
         Input=simple.PVDReader(FileName=os.path.join(meshes, "moving.pvd")), Script=SCRIPT)
 
@@ -54,7 +54,7 @@ def main(meshes):
                     expect(array.GetRange(0), (time, time), kind + "'s data")
                 expect(constant.NumberOfMeshBuilds, 1, kind + ", meshes that stand still")
 
-        # Only the target has times, and the data does not.
+        # Only the target has time steps.
         changed = make(Source=source, Target=moving, Data=image)
         seen = set()
         for count, time in enumerate(times + [1.0], 1):

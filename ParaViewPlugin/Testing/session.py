@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests' ParaView scripts begin with."""
+"""Common setup of the ParaView test scripts."""
 
 import os
 

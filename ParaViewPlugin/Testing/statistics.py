@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Counts what the filters count: statistics.py MESHES RESULT writes the counts that must not depend on how
-many processes there are to RESULT, each process that runs the script with its rank appended, and compares
-the others with the data."""
+"""Checks the statistics of the filters: statistics.py MESHES RESULT writes the counts that must not depend on
+the number of processes to RESULT (each process that runs the script appends its rank) and compares the other
+counts with the data."""
 
 import json
 import os
@@ -17,7 +17,7 @@ session.load_plugin()
 source = session.read(meshes, "source")
 target = session.read(meshes, "target")
 other = session.read(meshes, "other")
-# In pieces; and of the first process alone: the others have no points.
+# In pieces, and of the first process alone, so that the others have no points.
 image = simple.Wavelet(WholeExtent=[-10, 10, -9, 9, -1, 1])
 plane = simple.Plane(Origin=[-9, -9, 0], Point1=[9, -9, 0], Point2=[-9, 9, 0], XResolution=36,
                      YResolution=36)
@@ -32,7 +32,7 @@ def count(name, filter, *properties):
 
 
 def count_in_data(filter):
-    """Outside points of all processes, as ParaView itself finds them; of this one if each runs the script."""
+    """Outside points of all processes, counted by ParaView; of this process if each runs the script."""
     points = simple.MaskPoints(Input=filter, OnRatio=1, MaximumNumberofPoints=1000000,
                                GenerateVertices=1, SingleVertexPerCell=1)
     outside = simple.Threshold(Input=points, Scalars=["POINTS", "vtkValidPointMask"],
@@ -56,23 +56,23 @@ for system in "Contour", "Smooth":
     continuity = simple.JacobianContinuity(**settings)
     count("continuity " + system, continuity, "NumberOfCreases", "NumberOfDifferentiableEdges",
           "NumberOfUndecidedEdges", "LargestJump")
-    # Asked again, nothing is added again.
+    # Requesting the counts again does not add them again.
     first = dict(counts)
     count("mapped " + system, mapped, outside)
     count("continuity " + system, continuity, "NumberOfDifferentiableEdges")
     if counts != first:
         sys.exit("The counts change: %s, %s" % (first, counts))
 
-# What several processes have counts more than once.
+# Points of several processes are counted several times.
 mapped = simple.DifferentiableHomeomorphism(Source=source, Target=target, Data=image, BlankOutside=0)
 expected = count_in_data(mapped)
-# A later filter made it execute.
+# A downstream filter made it execute.
 actual = mapped.NumberOfOutsidePoints
 module = servermanager.vtkProcessModule.GetProcessModule()
 if actual != expected and not module.GetSymmetricMPIMode() or not 0 < expected <= actual:
     sys.exit("%d points of the image are outside, not %d" % (expected, actual))
 
-# An error leaves nobody waiting.
+# An error does not block other processes.
 mapped = simple.DifferentiableHomeomorphism(Source=source, Target=other, Data=image)
 if count("refused", mapped, outside) != -1:
     sys.exit("Points of refused meshes are counted")

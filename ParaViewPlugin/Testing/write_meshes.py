@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes what the tests map: source.vtp, target.vtp, the same in three pieces as source.pvtp, target.pvtp,
-other.vtp, which does not go with them, and moving.pvd, the target at three times."""
+"""Writes the meshes of the tests: source.vtp and target.vtp, the same in three pieces (source.pvtp, target.pvtp),
+other.vtp, which is not isomorphic to them, and moving.pvd, the target at three times."""
 
 import math
 import os
@@ -13,7 +13,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 
 def write_mesh(path, intervals, move, rows=None):
-    """A square of side 16 about the origin, of triangles whose inner points move, or rows of it."""
+    """A triangulated square of side 16 around the origin with moved interior points, or some of its rows."""
     rows = rows or range(intervals)
     points = vtkPoints()
     points.SetDataTypeToDouble()

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Map anything from one triangulated domain onto another with the same triangles.
+"""Homeomorphisms between the domains of isomorphic triangulations.
 
-Three ways to use it:
+The package provides
 
 - the class `Homeomorphism`, with numpy arrays in and out;
 - the VTK classes `vtkDifferentiableHomeomorphism`, `vtkHomeomorphismTransform`,

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The homeomorphism between two triangulations, for numpy arrays."""
+"""Homeomorphisms between two triangulations for numpy arrays."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def configure(algorithm, system: int, center: int, discordant_by_linear: bool):
 
 
 def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
-    """VTK's points, and how many coordinates they had. Shares the memory of contiguous (n, 3) arrays
-    of float32 and float64."""
+    """Returns vtkPoints and the number of coordinates per point. Shares the memory of contiguous (n, 3)
+    arrays of float32 and float64."""
     array = numpy.asarray(points)
     if array.dtype not in (numpy.float32, numpy.float64):
         if array.dtype.kind not in "biuf":
@@ -66,7 +66,7 @@ def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
         array = numpy.column_stack((array, numpy.zeros(len(array), array.dtype)))
     result = vtkPoints()
     result.SetDataType(10 if array.dtype == numpy.float32 else 11)
-    # numpy_to_vtk keeps a reference to what it shares.
+    # numpy_to_vtk keeps a reference to the shared array.
     result.SetData(numpy_to_vtk(numpy.ascontiguousarray(array)))
     return result, dimension
 
@@ -123,41 +123,39 @@ class _Messages:
 
         collect.CallDataType = "string0"
         algorithm.AddObserver("ErrorEvent", collect)
-        # The executive adds that the algorithm failed, which is known.
+        # Skip the executive's message that the algorithm failed.
         algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
 
     def raise_if_any(self):
         if self.errors:
             text = "\n".join(self.errors).strip()
             self.errors.clear()
-            # VTK's own prefix tells the place in the C++ source.
+            # Remove VTK's prefix, the position in the C++ source.
             raise ValueError(text.split("): ", 1)[-1].strip())
 
 
 class Homeomorphism:
-    """The map from one triangulated domain onto another, and back.
+    """The homeomorphism between the domains of two isomorphic triangulations, and its inverse.
 
     Parameters
     ----------
     source, target : array of shape (n, 2) or (n, 3)
-        The points of the two triangulations. In the plane (z counts as distance from it), or on surfaces
-        in 3-space.
+        Points of the two triangulations, in the plane or on surfaces in 3-space. In the plane, z is the
+        distance from it and is preserved.
     triangles : array of int of shape (m, 3)
-        Point numbers, the same in both.
+        Point ids of the triangles, the same in both.
     system : {"smooth", "linear", "contour"}
         The coordinate system. See vtkDifferentiableHomeomorphism.
     center : {"centroid", "incenter"}
-        Where the contours of the Contour system start.
+        Start of the contours of the Contour system.
     discordant_by_linear : bool
-        Whether the Linear system carries triangles in which Contour does not exist; else they are an
-        error.
+        Map discordant triangles by the Linear system instead of raising an error (Contour only).
     tolerance : float
-        How far outside a point may be, as a proportion of the domain's diagonal. 0 allows for rounding
-        only.
+        Greatest distance of a mapped point from the domain, relative to the diagonal of the domain.
+        0 allows for rounding only.
 
-    Points outside the domain become NaN. Meshes that do not define a map raise ValueError with a
-    message that names the triangles. One object must not be used by several threads at a time; each
-    call uses all processors by itself.
+    Points outside the domain become NaN. Invalid meshes raise ValueError with a message that lists the
+    triangles. An object must not be used by several threads at a time; each call is itself parallel.
     """
 
     def __init__(
@@ -174,7 +172,7 @@ class Homeomorphism:
         self._meshes = []
         dimensions = []
         for points, what in ((source, "source"), (target, "target")):
-            # A copy: what has been validated must not change behind our back.
+            # A copy, so that validated points cannot change.
             vtk_points, dimension = _as_points(numpy.array(points), what)
             mesh = vtkPolyData()
             mesh.SetPoints(vtk_points)
@@ -201,7 +199,7 @@ class Homeomorphism:
         self._filter.BlankOutsideOff()
         self._filter.SetOutputPointsPrecision(self._filter.DOUBLE_PRECISION)
         self._messages = _Messages(self._filter)
-        # Tells at once what is wrong with the meshes.
+        # Report invalid meshes at once.
         self._run(numpy.empty((0, 3)), False)
 
     def _set_up(self, algorithm):
@@ -246,13 +244,14 @@ class Homeomorphism:
         return self._map(points, False)
 
     def inverse(self, points) -> numpy.ndarray:
-        """Points of the source's domain whose images are given; NaN outside the target's domain."""
+        """Preimages of points of the target's domain; NaN outside."""
         return self._map(points, True)
 
     def jacobian(self, points, inverse: bool = False) -> numpy.ndarray:
-        """The derivative at points of the source's domain (of the inverse: the target's): float64, of
-        shape (n, k, d) for points of d coordinates whose images have k; element [i, j, l] is the change of
-        coordinate j of the image of point i with coordinate l of the point. NaN outside."""
+        """The derivative of the map at points of the source's domain, or of the inverse at points of the
+        target's: float64 of shape (n, k, d) for points of d coordinates whose images have k. Element
+        [i, j, l] is the partial derivative of coordinate j of the image of point i with respect to
+        coordinate l. NaN outside."""
         self._filter.ComputeJacobianOn()
         try:
             output, dimension = self._run(points, inverse)
@@ -267,7 +266,7 @@ class Homeomorphism:
 
     def coordinates(self, points):
         """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0
-        outside), p and c (NaN outside), four arrays of shape (n,)."""
+        outside), p and c (NaN outside); four arrays of shape (n,)."""
         algorithm = vtkTriangularCoordinates()
         messages = _Messages(algorithm)
         algorithm.SetInputData(0, self._meshes[0])
@@ -285,8 +284,8 @@ class Homeomorphism:
         )
 
     def continuity(self, samples: int = 5):
-        """Whether the map is differentiable across the interior edges, measured from its values: a dict of
-        arrays with one element for each edge (`JacobianJump`, `JacobianJumpError`, `Verdict`,
+        """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict
+        of arrays with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`,
         `EdgeTriangles`, ...; see vtkJacobianContinuity)."""
         algorithm = vtkJacobianContinuity()
         messages = _Messages(algorithm)
@@ -309,23 +308,23 @@ class Homeomorphism:
         background: float = 0.0,
         inverse: bool = False,
     ) -> numpy.ndarray:
-        """An image over the source's domain, seen over the target's: pulled back along the exact inverse,
-        interpolated linearly.
+        """Warps an image of the source's domain to the target's: samples it at the exact preimages of the
+        pixels, with linear interpolation.
 
         Parameters
         ----------
         image : array of shape (rows, columns) or (rows, columns, channels)
-            Pixel [row, column] lies at the point (column, row) times `spacing` of the source's plane.
+            Pixel [row, column] is the point (column, row) times `spacing` of the source's plane.
         shape : (rows, columns)
-            Of the result; the image's by default. Pixels lie at points of the target's plane in the same
-            way.
+            Shape of the result; that of the image by default. Its pixels are points of the target's plane in
+            the same way.
         background : float
-            The value of pixels outside.
+            Value of pixels outside.
         inverse : bool
-            The image lies over the target's domain instead, and the result over the source's.
+            The image covers the target's domain instead, and the result the source's.
 
-        Returns an array of the image's type: integers are rounded, of a mask half and more is True, the
-        parts of complex numbers are interpolated each.
+        Returns an array of the type of the image. Integers are rounded, values of a mask of at least 0.5
+        become True, and the parts of complex numbers are interpolated separately.
         """
         array = numpy.asarray(image)
         if array.ndim not in (2, 3):
@@ -356,7 +355,7 @@ class Homeomorphism:
         vtk_image = vtkImageData()
         vtk_image.SetDimensions(columns, rows, 1)
         vtk_image.SetSpacing(spacing, spacing, 1.0)
-        # Interpolated as float64, so that small integers are rounded once, and well.
+        # Interpolate as float64, so that small integers are rounded only once.
         values = numpy_to_vtk(
             numpy.ascontiguousarray(array, numpy.float64).reshape(-1, channels), deep=1
         )

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Rows.h
-/// The rows of the table: everything that is timed, by name.
+/// The rows of the table: all timed tasks, by name.
 
 #ifndef Rows_h
 #define Rows_h
@@ -20,25 +20,25 @@ struct Workload;
 /// One run of a row.
 struct Task
 {
-  /// Points in double precision, and as many places for their images.
+  /// Points in double precision, and an array of the same size for their images.
   vtkPoints* In;
   vtkPoints* Out;
   int Threads;
-  /// What the row made: the images' coordinates if it sets nothing else.
+  /// The result of the row: the coordinates of the images unless it sets another one.
   vtkSmartPointer<vtkDataArray> Result;
 };
 
 struct Row
 {
-  /// What is timed.
+  /// The timed part.
   std::function<void(Task&)> Run;
-  /// What is not: preparing, and bringing the result to where it is compared.
+  /// The parts that are not timed: preparation, and copying the result for comparison.
   std::function<void(Task&)> Before;
   std::function<void(Task&)> After;
 };
 
-/// Names are made of words without spaces, separated by slashes: who maps, how, and "forward" or
-/// "inverse". A new row is one lambda:
+/// Names consist of words without spaces, separated by slashes: the software, the method, and
+/// "forward" or "inverse". A new row is one lambda:
 ///
 ///   rows["batch/Smooth/forward"].Run = [&workload](Task& task) { ... };
 using Rows = std::map<std::string, Row>;
@@ -52,7 +52,7 @@ inline std::string Direction(bool inverse)
 }
 
 ///@{
-/// Add rows for a workload, which they refer to.
+/// Add rows for a workload, to which they keep a reference.
 void AddHomeomorphismRows(const Workload& workload, Rows& rows);
 void AddPeerRows(const Workload& workload, Rows& rows);
 void AddBoundRows(const Workload& workload, Rows& rows);
@@ -60,12 +60,13 @@ void AddImageRows(const Workload& workload, Rows& rows);
 void AddConstructionRows(const Workload& workload, Rows& rows);
 ///@}
 
-/// What the row "construct/..." of a name made in its last run is destroyed, and made anew.
+/// Destroys the result of the last run of the row "construct/..." with this name, and makes it
+/// again.
 struct Memory
 {
-  /// Allocated and kept, in bytes.
+  /// Bytes allocated and kept.
   double Kept;
-  /// Allocated at most meanwhile.
+  /// Bytes allocated at the peak.
   double Peak;
 };
 Memory MeasureMemory(Row& row, Task& task);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Workload.h
-/// What is mapped: a pair of meshes and sets of points, as the driver has written them to a folder.
+/// A pair of meshes and sets of points, as written to a folder by benchmark.py.
 
 #ifndef Workload_h
 #define Workload_h
@@ -19,12 +19,12 @@
 
 struct Workload
 {
-  /// Reads the files of a folder: source.f64 and target.f64 (three doubles a point), triangles.i64
-  /// (three point ids a triangle), any number of points-NAME.f64, and image.u8 (square, RGB) if
-  /// there is one.
+  /// Reads the files of a folder: source.f64 and target.f64 (three doubles per point),
+  /// triangles.i64 (three point ids per triangle), any number of points-NAME.f64, and image.u8
+  /// (square, RGB) if it exists.
   explicit Workload(const std::string& folder);
 
-  /// The mesh that is mapped from and the one that is mapped to.
+  /// The mesh that is mapped from and the mesh that is mapped to.
   vtkPolyData* GetFrom(bool inverse) const { return inverse ? this->Target : this->Source; }
   vtkPolyData* GetTo(bool inverse) const { return inverse ? this->Source : this->Target; }
 
@@ -38,7 +38,7 @@ struct Workload
 /// An affine map of the plane: x' = [0] x + [1] y + [2], y' = [3] x + [4] y + [5].
 using Affine = std::array<double, 6>;
 
-/// For each triangle of a mesh, the affine map that takes it to that of another.
+/// For each triangle of a mesh, the affine map to the corresponding triangle of another one.
 std::vector<Affine> TriangleMaps(vtkPolyData* from, vtkPolyData* to);
 
 inline void Apply(const Affine& map, const double in[3], double out[3])

@@ -2,13 +2,13 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Times this module and what people use today in one run, on the same meshes and points, in turn.
+"""Times this module and comparable software in one run, in turn, on the same meshes and points.
 
     benchmark.py PROGRAM FOLDER [--quick] [--only PART ...]
 
-PROGRAM is HomeomorphismBenchmark. Writes benchmark.md, benchmark.png and, with every single time,
-benchmark.json to FOLDER. With --quick everything is smaller and repeated less often: to see that it works,
-not for numbers to rely on. Meant to be started by Testing/benchmark.
+PROGRAM is HomeomorphismBenchmark. Writes benchmark.md, benchmark.png and, with all times,
+benchmark.json to FOLDER. With --quick everything is smaller and repeated less often, to check the program;
+do not rely on its numbers. Started by Testing/benchmark.
 """
 
 import argparse
@@ -30,7 +30,7 @@ FULL = {"small": 21, "large": 1000, "side": 800, "many": (4000, 2500), "dense": 
         "construction": (100, 316, 1000), "repetitions": (5, 15)}
 QUICK = {"small": 21, "large": 300, "side": 400, "many": (1000, 1000), "dense": (1000, 1000), "image": 512,
          "construction": (30, 95, 300), "repetitions": (3, 5)}
-# Tens of rounding errors at the domain's width: agreement to the last digits.
+# Tens of rounding errors at the width of the domain: agreement to the last digits.
 TOLERANCE = 1e-13
 
 
@@ -48,7 +48,7 @@ class Benchmark:
             {"part": part, "what": what, "error": float(error), "tolerance": tolerance, "good": bool(error <= tolerance)})
 
     def compare(self, part, measurements, first, second, tolerance):
-        """The largest difference of two rows' results, where both have one. Not finite is no result."""
+        """The largest difference of the results of two rows, if both exist. Infinite if a result is not finite."""
         found = {m.row.name: m for m in measurements}
         if first in found and second in found and found[first].count == found[second].count:
             a, b = found[first].result, found[second].result
@@ -56,7 +56,7 @@ class Benchmark:
             self.check(part, f"{first} = {second}", numpy.nan_to_num(difference, nan=numpy.inf), tolerance)
 
     def points(self, part, workload, program, names, whole=(), points="all", few="few", others=True):
-        """The rows of a workload's points, and whether they agree."""
+        """Measures the rows of a workload, and checks that they agree."""
         print(f"{part}: {len(workload.triangles)} triangles, {len(workload.points[points])} points", flush=True)
         counts = {name: len(array) for name, array in workload.points.items()}
         rows = [ProgramRow(program, name, threads) for name, threads in names]
@@ -73,7 +73,7 @@ class Benchmark:
             for system in SYSTEMS:
                 for way in ("pointwise", "filter"):
                     self.compare(part, single, f"transform/{system}/{direction}", f"{way}/{system}/{direction}", 0.0)
-        # Backward they have another triangulation of their own.
+        # In the inverse direction these peers use another triangulation.
         for peer in ("LinearNDInterpolator", "PiecewiseAffineTransform"):
             self.compare(part, single, "transform/Linear/forward", f"{peer}/forward", tolerance)
         for system in SYSTEMS:
@@ -83,7 +83,7 @@ class Benchmark:
         return measurements
 
     def python(self, workload):
-        """Made once for each workload: triangulating takes long."""
+        """Made once per workload, because triangulating takes long."""
         if not hasattr(workload, "python_rows"):
             workload.python_rows = python_rows(workload, len(workload.triangles))
         return workload.python_rows
@@ -145,7 +145,7 @@ class Benchmark:
         size = self.settings["image"]
         workload = Workload(self.folder / "image", self.settings["small"], (size - 1) / self.settings["small"])
         workload.set_image(picture(size))
-        # A row of pixels' worth, since the program wants points; images know their own.
+        # One row of pixels, because the program needs points; images have their own.
         workload.add_points("image", workload.source[:1])
         print(f"image: {size} x {size}", flush=True)
         with Program(self.program, workload) as program:
@@ -156,7 +156,7 @@ class Benchmark:
             measurements = measure(rows, {"image": size * size}, self.repetitions, "image")
         self.record("image", measurements)
         single = {m.row.name: m for m in measurements if m.row.threads == 1}
-        # The peer's pixels at the border are black where rounding takes them outside.
+        # The peer's pixels at the border are black where rounding moves them outside.
         inside = (slice(2, -2), slice(2, -2))
         images = {name: m.result.reshape(size, size, 3)[inside].astype(float) for name, m in single.items()}
         images["warp/PiecewiseAffineTransform"] *= 255.0
@@ -185,7 +185,7 @@ class Benchmark:
                 names = [*(f"construct/{system}" for system in SYSTEMS), "construct/vtkStaticCellLocator"]
                 rows += [(str(triangles), ProgramRow(program, name, threads)) for name in names for threads in (1, 2)]
             measurements = []
-            # Sizes apart, since rows take turns; the largest alone takes minutes.
+            # Each size separately, since rows take turns; the largest alone takes minutes.
             for size in counts:
                 measurements += measure([row for s, row in rows if s == size], counts, self.repetitions, size, keep=False)
         self.record("construction", measurements)

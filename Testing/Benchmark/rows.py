@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""The rows of the table, of the C++ program and of Python, and how they are timed."""
+"""The rows of the table, of the C++ program and of Python, and their timing."""
 
 import functools
 import statistics
@@ -12,12 +12,12 @@ import time
 import numpy
 
 DIRECTIONS = ("forward", "inverse")
-# Rows that would take longer for all points, in seconds, get few of them.
+# Rows that would take more seconds than this for all points get few of them.
 PATIENCE = 6.0
 
 
 class Program:
-    """The C++ program (Benchmark.cxx) with a workload, waiting to be told what to time."""
+    """The C++ program (Benchmark.cxx) with a workload, waiting for commands."""
 
     def __init__(self, executable, workload):
         self.workload = workload
@@ -61,7 +61,7 @@ class PythonRow:
     threads = 1
 
     def __init__(self, workload, name, make):
-        """What make() returns is called with points, or whatever the workload has under their name."""
+        """make() returns a function of points, or of the workload's data of that name."""
         self.name = name
         self._workload, self._make = workload, make
         self._result = None
@@ -85,7 +85,7 @@ class PythonRow:
 
 
 def python_rows(workload, triangles):
-    """SciPy's and, if there are only so many triangles, scikit-image's."""
+    """The rows of SciPy and, for small meshes, of scikit-image."""
     from scipy.interpolate import CloughTocher2DInterpolator, LinearNDInterpolator
     from scipy.spatial import Delaunay
     from skimage.transform import PiecewiseAffineTransform
@@ -138,16 +138,16 @@ class Measurement:
         return clock
 
     def record(self):
-        """Plain data, of which the report is made."""
+        """Plain data for the report."""
         return {"name": self.row.name, "threads": self.row.threads, "points": self.count,
                 "seconds": self.seconds, "processors": self.processors}
 
 
 def measure(rows, counts, repetitions, points="all", few=None, whole=(), keep=True):
-    """Times rows in turn, so that whatever else the machine does meets all of them.
+    """Times rows in turn, so that disturbances by other processes affect all of them.
 
-    The first run of each is not counted, unless it takes long, and its result is kept. Quick rows are
-    repeated more often than the least number of times."""
+    The first run of each is not counted unless it takes long; its result is kept. Fast rows are
+    repeated more often than the minimum."""
     least, most = repetitions
     measurements = []
     for row in rows:
@@ -166,7 +166,7 @@ def measure(rows, counts, repetitions, points="all", few=None, whole=(), keep=Tr
         print(f"  {row.name}, {row.threads} thread(s): {1e9 * first / measurement.count:.1f} ns a point", flush=True)
         measurements.append(measurement)
     for turn in range(most):
-        # To and fro, so that no row always runs after the same one.
+        # In alternating order, so that a row does not always follow the same one.
         for measurement in measurements[:: 1 if turn % 2 else -1]:
             done = len(measurement.seconds)
             if done < least or (done < most and statistics.median(measurement.seconds) < 0.5):

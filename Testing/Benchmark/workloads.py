@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""What is mapped: pairs of meshes, points and an image, the same in every run."""
+"""Workloads: pairs of meshes, points and an image, the same in every run."""
 
 import numpy
 
-# Points inside are moved by up to this share of a square. Every triangle is concordant then, in any pair.
+# Interior points move by up to this share of a square. All triangles are then concordant, in any pair.
 JITTER = 0.15
 
 
 def grid_points(n, seed):
-    """The points of n x n unit squares, row by row, those inside moved at random."""
+    """The points of n x n unit squares, row by row, with interior points moved at random."""
     points = numpy.stack(numpy.meshgrid(range(n + 1), range(n + 1)), -1).astype(float)
     offsets = numpy.random.default_rng(seed).uniform(-JITTER, JITTER, points.shape)
     points[1:-1, 1:-1] += offsets[1:-1, 1:-1]
@@ -18,10 +18,10 @@ def grid_points(n, seed):
 
 
 def delaunay_triangles(points, n):
-    """The grid's squares, each cut along the diagonal that makes the triangulation Delaunay.
+    """The squares of the grid, each divided along its Delaunay diagonal.
 
-    So the peers that triangulate by themselves arrive at the same triangles (which is checked), but these
-    are numbered along the rows, as those of meshes usually are."""
+    Peers that triangulate by themselves obtain the same triangles (which is checked). These triangles are
+    numbered along the rows, as usual for meshes."""
     corner = (numpy.arange(n)[:, None] * (n + 1) + numpy.arange(n)).ravel()
     a, b, c, d = corner, corner + 1, corner + n + 2, corner + n + 1
 
@@ -42,7 +42,7 @@ def grid_in_scan_order(n, columns, rows):
 
 
 def few_lines(points, columns, lines):
-    """Some of the lines of such a grid, for those who would take too long for all."""
+    """Some rows of such a grid, for slow peers."""
     grid = points.reshape(-1, columns, 2)
     return grid[:: max(1, len(grid) // lines)].reshape(-1, 2)
 
@@ -62,7 +62,7 @@ def picture(size):
 
 
 class Workload:
-    """A pair of meshes over the square [0, n] x [0, n], scaled, in a folder from which the C++ program reads it."""
+    """A pair of meshes of the square [0, n] x [0, n], scaled, in a folder for the C++ program."""
 
     def __init__(self, folder, n, scale=1.0):
         self.folder = folder
@@ -86,7 +86,7 @@ class Workload:
         self._write("image.u8", image)
 
     def meshes(self, inverse):
-        """The points of the mesh that is mapped from and of the one that is mapped to."""
+        """The points of the mesh that is mapped from and of the mesh that is mapped to."""
         return (self.target, self.source) if inverse else (self.source, self.target)
 
     @staticmethod

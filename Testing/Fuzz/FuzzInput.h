@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file FuzzInput.h
-/// Takes the bytes of a fuzzer for decisions and numbers.
+/// Converts the bytes of a fuzzer to decisions and numbers.
 
 #ifndef FuzzInput_h
 #define FuzzInput_h
@@ -15,7 +15,7 @@
 namespace fuzz
 {
 
-/// Bytes, read one after the other; zeros after the last.
+/// Bytes, read in sequence; zeros after the last.
 class Input
 {
 public:
@@ -27,10 +27,10 @@ public:
 
   std::uint8_t Byte() { return this->Next < this->End ? *this->Next++ : 0; }
   int Below(int count) { return this->Byte() % count; }
-  /// One in @a count, and never where the bytes have ended.
+  /// True once in @a count on average, and false after the end of the bytes.
   bool Chance(int count) { return this->Byte() % count == count - 1; }
 
-  /// A coordinate: mostly of a coarse grid, where triangles meet and coincide, sometimes any
+  /// A coordinate: usually of a coarse grid, where triangles meet and coincide, sometimes any
   /// double.
   double Number()
   {
@@ -41,7 +41,7 @@ public:
     }
     if (code < 252)
     {
-      // A neighbor of a number of the grid, or one far smaller or larger.
+      // A neighbor of a number of the grid, or a far smaller or larger number.
       const double grid = (this->Byte() - 120) / 16.0;
       const int unsignedExponent = this->Byte();
       const int exponent = unsignedExponent < 128 ? unsignedExponent : unsignedExponent - 256;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file FuzzRequire.h
-/// What must hold, whatever the bytes.
+/// Assertions of the fuzz targets.
 
 #ifndef FuzzRequire_h
 #define FuzzRequire_h
@@ -12,7 +12,7 @@
 namespace fuzz
 {
 
-/// Ends the program if something does not hold, which the fuzzer reports with the input.
+/// Aborts if the condition is false, which the fuzzer reports with the input.
 inline void Require(bool condition)
 {
   if (!condition)

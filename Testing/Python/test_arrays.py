@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python package against numpy's and scipy's own computations of the same things."""
+"""The Python package agrees with computations by numpy and scipy."""
 
 import doctest
 import unittest
@@ -16,7 +16,7 @@ from vtkhomeomorphism import Homeomorphism, arrays
 
 
 def make_pair(count=60, seed=5, move=0.02):
-    """Delaunay triangles of random points of the unit square, and the points moved a bit."""
+    """Delaunay triangles of random points of the unit square, and slightly moved points."""
     random = numpy.random.default_rng(seed)
     source = random.random((count, 2))
     source = numpy.vstack((source, [[0, 0], [1, 0], [1, 1], [0, 1]]))
@@ -24,7 +24,7 @@ def make_pair(count=60, seed=5, move=0.02):
     corners = source[triangulation.simplices]
     area = lambda p: numpy.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     target = source + move * random.standard_normal(source.shape)
-    # As far as no triangle is turned over.
+    # As far as no triangle is flipped.
     while (area(target[triangulation.simplices]) * area(corners) <= 0).any():
         target = source + 0.7 * (target - source)
     return triangulation, source, target
@@ -103,7 +103,7 @@ class Arrays(unittest.TestCase):
         back = Homeomorphism(self.target, self.source, self.triangles)
         here, there = f.coordinates(self.points), back.coordinates(f(self.points))
         same = here[0] == there[0]
-        # But for points that rounding puts on the other side of an edge.
+        # Except for points that rounding moves across an edge.
         self.assertGreater(same.mean(), 0.999)
         numpy.testing.assert_allclose(here[3][same], there[3][same], atol=1e-9)
 
@@ -112,7 +112,7 @@ class Arrays(unittest.TestCase):
         for system, verdict in (("linear", 1), ("smooth", 0)):
             result = self.make(system).continuity(samples=3)
             self.assertEqual(len(result["Verdict"]), edges // 2)
-            # Beside needles at the hull some verdicts are left open (2).
+            # Beside needles at the hull some verdicts are undecided (2).
             self.assertTrue(numpy.isin(result["Verdict"], (verdict, 2)).all())
             self.assertGreater((result["Verdict"] == verdict).mean(), 0.95)
             self.assertEqual(result["EdgeTriangles"].shape, (edges // 2, 2))

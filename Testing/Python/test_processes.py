@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the filters count in several processes: mpiexec -n N python3 test_processes.py. Every process must
-see the totals, whether it has data, has nothing to do, or has an error."""
+"""Statistics of the filters on several processes: mpiexec -n N python3 test_processes.py. Every process must
+get the totals, whether it has data, no data, or an error."""
 
 from mpi4py import MPI
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -66,7 +66,7 @@ def image():
 
 
 def count(algorithm, piece, pieces, ghosts):
-    """From the mask, without what belongs to other pieces."""
+    """From the mask, without duplicates of other pieces."""
     algorithm.UpdatePiece(piece, pieces, ghosts)
     arrays = algorithm.GetOutputDataObject(0).GetPointData()
     outside = vtk_to_numpy(arrays.GetArray("vtkValidPointMask")) == 0
@@ -78,12 +78,12 @@ def count(algorithm, piece, pieces, ghosts):
 
 def make(kind):
     algorithm = set_meshes(kind())
-    # The port of what is in pieces.
+    # The port of the input that comes in pieces.
     port = algorithm.GetNumberOfInputPorts() - 1
     data = image()
     algorithm.SetInputConnection(port, data.GetOutputPort())
     if kind is vtkResampleThroughHomeomorphism:
-        # Another one: the data is asked for whole.
+        # Separate data, because it is requested whole.
         data = image()
         algorithm.SetInputConnection(2, data.GetOutputPort())
     return algorithm
@@ -99,7 +99,7 @@ for kind in vtkDifferentiableHomeomorphism, vtkTriangularCoordinates, vtkResampl
         for controller_given in None, controller, None:
             algorithm.ReduceStatistics(controller_given)
             check_equal(algorithm.GetNumberOfOutsidePoints(), sum(counts), name + "'s total")
-    # One process alone executes again.
+    # Only one process executes again.
     if rank == processes - 1:
         algorithm.Modified()
         algorithm.UpdatePiece(rank, processes, ghosts)
@@ -107,7 +107,7 @@ for kind in vtkDifferentiableHomeomorphism, vtkTriangularCoordinates, vtkResampl
     algorithm.ReduceStatistics(None)
     check_equal(algorithm.GetNumberOfOutsidePoints(), sum(counts), name + "'s new total")
 
-    # The last process has nothing to do, unless it is the only one.
+    # The last process has no data, unless it is the only one.
     algorithm = make(kind)
     idle = rank == processes - 1 > 0
     if not idle:
@@ -143,7 +143,7 @@ def continuity():
     return algorithm
 
 
-# What is measured is part of the first piece.
+# Measurements are part of the first piece.
 alone = continuity()
 alone.Update()
 check_equal(measured(alone)[:1] + measured(alone)[2:3], (4, 4), "what is measured by one process")

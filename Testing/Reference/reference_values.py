@@ -238,12 +238,12 @@ class Contour:
     """One contour of a half edge, constructed in the half edge's frame: foot (0,0), vertex (b,0), center (0,h)."""
 
     def __init__(self, b, h, s):
-        # The wing segment joins the midpoint of the center segment to the vertex; s numbers its points.
+        # The wing segment joins the midpoint of the center segment to the vertex; s parametrizes its points.
         self.center = (mpf(0), h)
         self.wing_point = between((mpf(0), h / 2), (b, mpf(0)), s)
         straight = subtract(self.wing_point, self.center)
-        # The arc's center is where the perpendicular to the straight piece at the wing point meets the edge's line:
-        # (arc_centre - wing_point) . straight = 0 with arc_centre = (o, 0).
+        # The center of the arc is the intersection of the perpendicular to the straight piece at the wing
+        # point with the line of the edge: (arc_center - wing_point) . straight = 0 with arc_center = (o, 0).
         wx, wy = self.wing_point
         self.o = wx + wy * straight[1] / straight[0]
         self.r = length((wx - self.o, wy))
@@ -287,7 +287,7 @@ class Contour:
         rest = arc_length - self.straight_length()
         if rest <= 0:
             return between(self.center, self.wing_point, arc_length / self.straight_length()), True
-        # Turn the wing point about the arc's center, clockwise (towards the edge).
+        # Rotate the wing point about the center of the arc, clockwise (towards the edge).
         angle = rest / self.r
         cosine, sine = mp.cos(angle), mp.sin(angle)
         x, y = self.wing_point[0] - self.o, self.wing_point[1]
@@ -395,7 +395,8 @@ class Chart:
             if apex is None:
                 shift, kappa = zero, mpf(1)
             else:
-                # The common derivative V across the edge weighs the medians m and m* by the other triangle's area.
+                # The common derivative V across the edge weights the medians m and m* by the area of the
+                # other triangle.
                 middle = between(corners[i], corners[j], mpf(1) / 2)
                 m, m_star = subtract(corners[k], middle), subtract(apex, middle)
                 a, a_star = twice_area(*corners), twice_area(corners[j], corners[i], apex)
@@ -456,7 +457,7 @@ class Chart:
         def excess(beta):
             return beta - self.bump(k, on_chord(beta))
 
-        # B_k <= l_k <= 1, and B_k = 0 where the chord leaves the triangle.
+        # B_k <= l_k <= 1, and B_k = 0 at the ends of the chord.
         largest = min([mpf(1)] + [l0[n] / d[n] for n in range(3) if d[n] > 0])
         beta = bracketed_root(excess, mpf(0), largest, -self.bump(k, l0), excess(largest))
         l = on_chord(beta)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file EdgeBatch.h
-/// What edges of the plane see, for many at once.
+/// Views from edges of the plane, and strips, in batches.
 
 #ifndef homeomorphism_EdgeBatch_h
 #define homeomorphism_EdgeBatch_h
@@ -12,10 +12,10 @@
 namespace homeomorphism
 {
 
-/// How many at once: what all arrays take stays near the processor.
+/// The number of edges in a batch. All its arrays fit into the first-level cache.
 constexpr int EdgeBatchSize = 64;
 
-/// A point of each edge or triangle.
+/// One point per edge or triangle.
 struct PointBatch
 {
   double X[EdgeBatchSize];
@@ -28,7 +28,7 @@ struct PointBatch
   }
 };
 
-/// EdgeView's numbers.
+/// The members of EdgeView.
 struct ViewBatch
 {
   double Length[EdgeBatchSize];
@@ -36,11 +36,11 @@ struct ViewBatch
   double Height[EdgeBatchSize];
 };
 
-/// ViewFromEdge of the first @a count, to the same bits.
+/// Computes ViewFromEdge of the first @a count edges, to the same bits.
 void ViewFromEdges(const PointBatch& start, const PointBatch& end, const PointBatch& opposite,
   int count, ViewBatch& views);
 
-/// The strips of the first @a count edges in the triangle that has the views @a own.
+/// Computes the strips of the first @a count edges in the triangles with the views @a own.
 void MakeSmoothStrips(
   const ViewBatch& own, const ViewBatch& neighbor, int count, SmoothStrip* strips);
 

@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Vectorize.h
-/// Loops over several points at once.
+/// Macros for vectorized loops over batches.
 
 #ifndef homeomorphism_Vectorize_h
 #define homeomorphism_Vectorize_h
 
-/// HOMEOMORPHISM_FOR_WIDE_VECTORS, before a function: it is compiled for wider vectors, too, and
-/// the widest that the processor has are used. HOMEOMORPHISM_WITH_FMA: the same for functions with
-/// std::fma, which is one instruction where the processor has it. (By features: the name of an
-/// architecture, such as haswell, would mean the processors of one maker.) No rounding depends on
-/// which, since sums and products are never fused unasked (see Sources.cmake). Sanitizers do not
-/// work with functions that are chosen when the library is loaded.
+/// HOMEOMORPHISM_FOR_WIDE_VECTORS before a function compiles it for several vector widths; the
+/// loader selects the widest that the processor supports. HOMEOMORPHISM_WITH_FMA does the same for
+/// functions that use std::fma. Targets are named by feature, because the name of an architecture
+/// such as haswell would select processors of one manufacturer only. Results do not depend on the
+/// selection, because products and sums are never contracted implicitly (see Sources.cmake). The
+/// sanitizers do not support functions that are selected by the loader.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) &&       \
   !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define HOMEOMORPHISM_FOR_WIDE_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -22,7 +22,7 @@
 #define HOMEOMORPHISM_WITH_FMA
 #endif
 
-/// Before a function used by one of those: it becomes part of it.
+/// Before a function called by one of those: inlines it, so that it has the same target.
 #if defined(__GNUC__)
 #define HOMEOMORPHISM_ALWAYS_INLINE inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
@@ -34,9 +34,9 @@
 namespace homeomorphism
 {
 
-/// The most numbers that one instruction deals with. Arrays have so many elements more than are
-/// used, and loops run to whole multiples, writing what is overwritten or never read: what remains
-/// after whole vectors would take longer than they do.
+/// The largest number of doubles in a vector. Arrays have this many extra elements, and loops run
+/// to whole multiples of it, because a scalar remainder loop would take longer. The extra elements
+/// are overwritten later or never read.
 constexpr int WidestVector = 8;
 
 constexpr int InWholeVectors(int count)
@@ -46,7 +46,7 @@ constexpr int InWholeVectors(int count)
 
 } // namespace homeomorphism
 
-/// Before a loop over batch, whose passes do not depend on each other.
+/// Before a loop over a batch whose iterations are independent.
 #if defined(__clang__)
 #define HOMEOMORPHISM_SIMD _Pragma("clang loop vectorize(enable)")
 #elif defined(__GNUC__)
