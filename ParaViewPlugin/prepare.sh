@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Makes a private ParaView on Debian 12, once, in build/paraview-prefix. Run it, or source it for
-# $paraview_prefix and the packages to be there.
+# Makes a private ParaView on Debian, once, in build/paraview-prefix. Run it, or source it for $paraview_prefix,
+# $paraview_dir (what CMake needs) and the packages to be there. With --install, missing packages are installed.
 #
 # Debian's python3-paraview, which has pvpython and what CMake needs to find ParaView, cannot be installed
 # beside libvtk9-dev: the Python modules of the two VTKs are in the same folder. So it is unpacked into a
@@ -46,8 +46,13 @@ prepare_paraview()
     grep -v '^/usr/bin/' files | xargs -d '\n' cp --symbolic-link --parents --target-directory=.
     grep '^/usr/bin/' files | xargs -d '\n' cp --no-dereference --parents --target-directory=.
     rm files
+    # ParaView's CMake files of newer Debians name Python's modules without the tag of the interpreter.
+    find usr/lib -name '*.cpython-*.so' | while read -r file; do
+      [[ -e "${file%%.cpython-*}.so" ]] || ln -s "$(basename "$file")" "${file%%.cpython-*}.so"
+    done
   )
   touch "$done"
 }
 
 prepare_paraview
+paraview_dir="$(dirname "$(find "$paraview_prefix/usr/lib" -iname 'paraview-config.cmake' -print -quit)")"

@@ -104,7 +104,9 @@ def show_system(system, source, target, grid, view):
     display.AmbientColor = display.DiffuseColor = [0.45, 0.45, 0.5]
     display.LineWidth = 2.0
     display.RenderLinesAsTubes = 1
-    display.Position = [0.0, 0.0, 0.01]
+    # Called Position before ParaView 5.13.
+    name = "Translation" if "Translation" in display.ListProperties() else "Position"
+    setattr(display, name, [0.0, 0.0, 0.01])
 
     measured = JacobianContinuity(registrationName="Measured " + system, **settings)
     # The edges are those of the source; the map moves them to the target.

@@ -197,7 +197,7 @@ def write(mesh, output):
     lost = []
     for attributes in (mesh.GetPointData(), mesh.GetCellData()):
         lost += [attributes.GetArrayName(i) or "" for i in range(attributes.GetNumberOfArrays())]
-    lost = [name for name in lost if not name.endswith("ValidPointMask") and name != "vtkGhostType"]
+    lost = [name for name in lost if not name.endswith("vtkValidPointMask") and name != "vtkGhostType"]
     if lost:
         inform(f"{output.name} holds points and polygons only, not the arrays {quote(', '.join(lost))}.")
     cells = mesh.GetPolys()

@@ -4,11 +4,12 @@
 
 """Times this module and comparable software in one run, in turn, on the same meshes and points.
 
-    benchmark.py PROGRAM FOLDER [--quick] [--only PART ...]
+    benchmark.py PROGRAM FOLDER [--quick] [--only PART ...] [--baseline DIR]
 
 PROGRAM is HomeomorphismBenchmark. Writes benchmark.md, benchmark.png and, with all times,
 benchmark.json to FOLDER. With --quick everything is smaller and repeated less often, to check the program;
-do not rely on its numbers. Started by Testing/benchmark.
+do not rely on its numbers. With --baseline, only the rows of this program are timed, in turn with those of the
+HomeomorphismBenchmark in another build folder, and their ratios are printed. Started by Testing/benchmark.
 """
 
 import argparse
@@ -19,6 +20,7 @@ import tempfile
 
 import numpy
 
+import baseline
 import report
 from rows import DIRECTIONS, Program, ProgramRow, image_row, measure, python_rows
 from workloads import Workload, few_lines, grid_in_scan_order, picture, random_points
@@ -208,8 +210,14 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--quick", action="store_true", help="smaller, and repeated less often")
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, help="these parts only")
+    parser.add_argument("--baseline", type=pathlib.Path, metavar="DIR", help="another build folder to compare with")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
+    if arguments.baseline:
+        with tempfile.TemporaryDirectory() as folder:
+            slow = baseline.compare(arguments.program, arguments.baseline / "bin" / "HomeomorphismBenchmark",
+                                    QUICK if arguments.quick else FULL, pathlib.Path(folder), arguments.only)
+        raise SystemExit("Slower than the other build: " + "; ".join(slow) if slow else 0)
     with tempfile.TemporaryDirectory() as folder:
         benchmark = Benchmark(arguments.program, QUICK if arguments.quick else FULL, pathlib.Path(folder))
         benchmark.results["quick"] = arguments.quick

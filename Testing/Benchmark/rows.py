@@ -38,6 +38,11 @@ class Program:
             sys.exit(f"The program ended instead of answering: {' '.join(map(str, words))}")
         return [float(word) for word in answer.split()]
 
+    def names(self):
+        """The rows that the program has."""
+        print("rows", file=self.process.stdin, flush=True)
+        return self.process.stdout.readline().split()
+
     def saved(self, dtype):
         path = self.workload.folder / "result"
         self.ask("save", path)
@@ -143,7 +148,7 @@ class Measurement:
                 "seconds": self.seconds, "processors": self.processors}
 
 
-def measure(rows, counts, repetitions, points="all", few=None, whole=(), keep=True):
+def measure(rows, counts, repetitions, points="all", few=None, whole=(), keep=True, quiet=False):
     """Times rows in turn, so that disturbances by other processes affect all of them.
 
     The first run of each is not counted unless it takes long; its result is kept. Fast rows are
@@ -163,7 +168,8 @@ def measure(rows, counts, repetitions, points="all", few=None, whole=(), keep=Tr
         if first < PATIENCE:
             measurement.seconds.clear()
             measurement.processors.clear()
-        print(f"  {row.name}, {row.threads} thread(s): {1e9 * first / measurement.count:.1f} ns a point", flush=True)
+        if not quiet:
+            print(f"  {row.name}, {row.threads} thread(s): {1e9 * first / measurement.count:.1f} ns a point", flush=True)
         measurements.append(measurement)
     for turn in range(most):
         # In alternating order, so that a row does not always follow the same one.

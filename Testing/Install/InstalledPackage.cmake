@@ -1,68 +1,65 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Installs the build BUILD_DIR into an empty prefix under WORK_DIR, then takes the cpp blocks (point.cxx,
-# carry.cxx) and the first cmake block of README as a project, and configures, builds and runs that
-# against the prefix.
+# Installs the build BUILD_DIR into an empty prefix under WORK_DIR, moves the prefix, then configures, builds and
+# runs the examples in SOURCE_DIR against it.
 
 function (run)
-  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
-endfunction ()
-
-# Writes code blocks of README in the given language to files, the first block to the first file.
-function (extract_blocks language)
-  file(READ "${README}" text)
-  string(PREPEND text "\n")
-  set(fence "\n```${language}\n")
-  string(LENGTH "${fence}" length)
-  foreach (file IN LISTS ARGN)
-    string(FIND "${text}" "${fence}" begin)
-    if (begin EQUAL -1)
-      message(FATAL_ERROR "${README} has no ${language} block for ${file}")
-    endif ()
-    math(EXPR begin "${begin} + ${length}")
-    string(SUBSTRING "${text}" ${begin} -1 text)
-    string(FIND "${text}" "\n```" end)
-    if (end EQUAL -1)
-      message(FATAL_ERROR "A ${language} block of ${README} has no end")
-    endif ()
-    string(SUBSTRING "${text}" 0 ${end} block)
-    file(WRITE "${file}" "${block}\n")
-  endforeach ()
+  execute_process(COMMAND ${ARGN}
+    OUTPUT_VARIABLE output ECHO_OUTPUT_VARIABLE COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+  set(output "${output}" PARENT_SCOPE)
 endfunction ()
 
 file(REMOVE_RECURSE "${WORK_DIR}")
-extract_blocks(cpp "${WORK_DIR}/source/point.cxx" "${WORK_DIR}/source/carry.cxx")
-extract_blocks(cmake "${WORK_DIR}/source/CMakeLists.txt")
-
-run("${CMAKE_COMMAND}" --install "${BUILD_DIR}" --config "${CONFIG}" --prefix "${WORK_DIR}/prefix")
-run("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${WORK_DIR}/source" -B "${WORK_DIR}/build"
+run("${CMAKE_COMMAND}" --install "${BUILD_DIR}" --config "${CONFIG}" --prefix "${WORK_DIR}/staging")
+file(RENAME "${WORK_DIR}/staging" "${WORK_DIR}/prefix")
+run("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
   "-DCMAKE_BUILD_TYPE=${CONFIG}"
   "-DCMAKE_CXX_COMPILER=${CXX_COMPILER}"
   "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
   "-DCMAKE_C_COMPILER=${C_COMPILER}"
+  "-DVTK_DIR=${VTK_DIR}"
   "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix"
   "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${WORK_DIR}/bin$<0:>")
 run("${CMAKE_COMMAND}" --build "${WORK_DIR}/build" --config "${CONFIG}")
 
-# $<0:> above keeps multi-configuration generators from adding a folder.
-run("${WORK_DIR}/bin/point")
+# Installed libraries find each other by themselves.
+file(GLOB_RECURSE libraries "${WORK_DIR}/prefix/*.so" "${WORK_DIR}/prefix/bin/*")
+foreach (library IN LISTS libraries)
+  if (NOT READELF OR IS_DIRECTORY "${library}")
+    continue ()
+  endif ()
+  run("${READELF}" --dynamic "${library}")
+  if (output MATCHES "NEEDED[^\n]*libvtkFiltersHomeomorphism" AND NOT output MATCHES "(RUNPATH|RPATH)[^\n]*ORIGIN")
+    message(FATAL_ERROR "${library} does not find the library it is installed with.")
+  endif ()
+endforeach ()
 
-# The second program carries a triangle's points; in the target the triangle is twice as large.
-function (write_triangle file size)
+# $<0:> above keeps multi-configuration generators from adding a folder.
+run("${WORK_DIR}/bin/MapPoint")
+if (NOT output MATCHES "is mapped to \\(0.4, [0-9.]*\\) and back to \\(0.4, 0.5\\)")
+  message(FATAL_ERROR "The point does not return.")
+endif ()
+
+# A square of two triangles; in the target it is twice as high on the left.
+function (write_square file height)
   file(WRITE "${file}" "<VTKFile type=\"PolyData\" version=\"0.1\"><PolyData>
-<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\">
+<Piece NumberOfPoints=\"4\" NumberOfPolys=\"2\">
 <Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">
-0 0 0 ${size} 0 0 0 ${size} 0</DataArray></Points>
-<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>
-<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3</DataArray></Polys>
+0 0 0 1 0 0 1 1 0 0 ${height} 0</DataArray></Points>
+<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 0 2 3</DataArray>
+<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3 6</DataArray></Polys>
 </Piece></PolyData></VTKFile>
 ")
 endfunction ()
-write_triangle("${WORK_DIR}/source.vtp" 1)
-write_triangle("${WORK_DIR}/target.vtp" 2)
-run("${WORK_DIR}/bin/carry" "${WORK_DIR}/source.vtp" "${WORK_DIR}/target.vtp"
+write_square("${WORK_DIR}/source.vtp" 1)
+write_square("${WORK_DIR}/target.vtp" 2)
+run("${WORK_DIR}/bin/MapFile" "${WORK_DIR}/source.vtp" "${WORK_DIR}/target.vtp"
   "${WORK_DIR}/source.vtp" "${WORK_DIR}/result.vtp")
-if (NOT EXISTS "${WORK_DIR}/result.vtp")
-  message(FATAL_ERROR "The README's pipeline wrote no result.")
+if (NOT output MATCHES "^0 points are outside" OR NOT EXISTS "${WORK_DIR}/result.vtp")
+  message(FATAL_ERROR "The points of the file are not mapped.")
+endif ()
+run("${WORK_DIR}/bin/MeasureContinuity" "${WORK_DIR}/source.vtp" "${WORK_DIR}/target.vtp")
+if (NOT output MATCHES "Linear: 1 creases.*Smooth: 0 creases")
+  message(FATAL_ERROR "The continuity of the Jacobian is not measured.")
 endif ()

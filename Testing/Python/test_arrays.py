@@ -22,7 +22,11 @@ def make_pair(count=60, seed=5, move=0.02):
     source = numpy.vstack((source, [[0, 0], [1, 0], [1, 1], [0, 1]]))
     triangulation = scipy.spatial.Delaunay(source)
     corners = source[triangulation.simplices]
-    area = lambda p: numpy.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+
+    def area(p):
+        (x1, y1), (x2, y2) = (p[:, 1] - p[:, 0]).T, (p[:, 2] - p[:, 0]).T
+        return x1 * y2 - y1 * x2
+
     target = source + move * random.standard_normal(source.shape)
     # As far as no triangle is flipped.
     while (area(target[triangulation.simplices]) * area(corners) <= 0).any():

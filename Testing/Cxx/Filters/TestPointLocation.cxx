@@ -968,7 +968,7 @@ TEST(PointLocation, TheSmallestNumbersThereAre)
 
 TEST(PointLocation, NationalGrid)
 {
-  // Metres from the corner of a country, cells of ten meters, points to the millimeter.
+  // Meters from the corner of a country, cells of ten meters, points to the millimeter.
   const Point corner{ 4.5e6, 5.8e6, 0.0 };
   const MeshPair origin = MakePlanarPair(10, 34);
   MeshPair pair = Scaled(origin, 10.0, 10.0);

@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""The rows of this build beside those of another one, in turn, as ratios."""
+
+import contextlib
+import statistics
+
+from rows import DIRECTIONS, Program, ProgramRow, measure
+from workloads import Workload, grid_in_scan_order, picture, random_points
+
+SYSTEMS = ("Linear", "Contour", "Smooth", "Cubic")
+PARTS = ("small", "large", "image", "construction")
+# A median may be so much slower, or as much as two runs of the other build differ.
+ALLOWED = 1.03
+
+
+def row_names(part):
+    """The rows of a part; a build need not have all of them."""
+    if part == "image":
+        return [f"{way}/{system}" for way in ("reslice", "resample") for system in SYSTEMS]
+    if part == "construction":
+        return [f"construct/{system}" for system in SYSTEMS]
+    ways = ("transform", "pointwise", "filter", "jacobian") if part == "small" else ("transform",)
+    return [f"{way}/{system}/{d}" for way in ways for system in SYSTEMS for d in DIRECTIONS]
+
+
+def make_workloads(part, settings, folder):
+    """Workloads of a part with the points of each, by a title."""
+    if part == "image":
+        size = settings["image"]
+        workload = Workload(folder / part, settings["small"], (size - 1) / settings["small"])
+        workload.set_image(picture(size))
+        workload.add_points("image", workload.source[:1])
+        return workload, {"image": ("image", size * size)}
+    workload = Workload(folder / part, settings["small" if part == "small" else "large"])
+    if part == "construction":
+        workload.add_points("few", workload.source[:1])
+        return workload, {"construction": ("few", len(workload.triangles))}
+    side = settings["side"]
+    orders = {"scan": grid_in_scan_order(workload.width, side, side),
+              "random": random_points(workload.width, side * side)}
+    for order, points in orders.items():
+        workload.add_points(order, points)
+    return workload, {f"{part}, {order}": (order, side * side) for order in orders}
+
+
+def compare(program, other, settings, folder, parts, thread_counts=(1,)):
+    """Prints a table of nanoseconds an item and ratios. Returns the rows that are too slow."""
+    slow = []
+    print("| | row | other build, ns | this build, ns | ratio | other against itself |")
+    print("|---|---|---:|---:|---:|---:|")
+    for part in (p for p in parts if p in PARTS):
+        workload, orders = make_workloads(part, settings, folder)
+        with contextlib.ExitStack() as stack:
+            # The other build twice: how far its own medians differ.
+            builds = [stack.enter_context(Program(p, workload)) for p in (other, program, other)]
+            known = set.intersection(*(set(b.names()) for b in builds))
+            for title, (points, count) in orders.items():
+                for name in (n for n in row_names(part) if n in known):
+                    for threads in thread_counts:
+                        rows = [ProgramRow(build, name, threads) for build in builds]
+                        measured = measure(rows, {points: count}, settings["repetitions"], points, keep=False, quiet=True)
+                        before, now, again = (1e9 * statistics.median(m.seconds) / count for m in measured)
+                        spread = max(before / again, again / before)
+                        ratio = 2.0 * now / (before + again)
+                        too_slow = ratio > max(ALLOWED, spread)
+                        print(f"| {title} | {name} | {before:.4g} | {now:.4g} | {'**' if too_slow else ''}{ratio:.3f}"
+                              f"{'**' if too_slow else ''} | {spread:.3f} |", flush=True)
+                        if too_slow:
+                            slow.append(f"{title}: {name}")
+    return slow
