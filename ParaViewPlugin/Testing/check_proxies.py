@@ -26,7 +26,10 @@ def same(text, values):
 for name, outputs in (("DifferentiableHomeomorphism", ["Mapped data", "Continuity"]),
                       ("JacobianContinuity", ["Edges", "Triangulation"]),
                       ("ResampleThroughHomeomorphism", ["Resampled data"]),
-                      ("TriangularCoordinates", ["Points", "Lines", "Triangulation"])):
+                      ("TriangularCoordinates", ["Points", "Lines", "Triangulation"]),
+                      ("InBetweenTriangulation", ["Triangulation"]),
+                      ("RefinedTriangulationPair", ["Source", "Target"]),
+                      ("TriangulationPairReport", ["Source", "Target", "Statistics", "Defects"])):
     arguments = {"Source": source} if name == "TriangularCoordinates" else \
         {"Source": source, "Target": target}
     filter = getattr(simple, name)(**arguments)
