@@ -31,7 +31,8 @@ double ArcTangentRatio(double z)
   return z != 0.0 ? std::atan(z) / z : 1.0;
 }
 
-/// Derivative of atan(z) / z, (1 / (1 + z^2) - atan(z) / z) / z, by its series where that cancels.
+/// The derivative of atan(z) / z, (1 / (1 + z^2) - atan(z) / z) / z. A series replaces it where it
+/// cancels.
 double ArcTangentRatioDerivative(double z)
 {
   if (z > 0.25)
@@ -47,7 +48,7 @@ double ArcTangentRatioDerivative(double z)
   return -z * sum;
 }
 
-/// (sin x - x cos x) / x^2, by its series where that cancels.
+/// (sin x - x cos x) / x^2. A series replaces it where it cancels.
 double SineMinusCosineRatio(double x)
 {
   if (x > 0.5)
@@ -58,13 +59,13 @@ double SineMinusCosineRatio(double x)
   double sum = 0.0;
   for (int n = 9; n >= 1; --n)
   {
-    // Each term is the one before times -x^2 / (2 n (2 n + 3)).
+    // Each term is the previous one times -x^2 / (2 n (2 n + 3)).
     sum = 1.0 - x2 / (2.0 * n * (2.0 * n + 3.0)) * sum;
   }
   return x / 3.0 * sum;
 }
 
-/// sqrt(a^2 + b^2), safe from underflow and overflow without a branch.
+/// sqrt(a^2 + b^2) without underflow, overflow or branches.
 HOMEOMORPHISM_ALWAYS_INLINE double Hypotenuse(double a, double b)
 {
   const double larger = a > b ? a : b;
@@ -77,11 +78,10 @@ HOMEOMORPHISM_ALWAYS_INLINE double Hypotenuse(double a, double b)
   return unscale * std::sqrt(x * x + y * y);
 }
 
-/// What of a contour depends on its number s alone, in one half of an edge. The half is seen in the
-/// frame with the foot of the center segment at the origin, the center at (0, h) and the corner at
-/// (b, 0); its contours are numbered by s from 0, the center segment, to 1, the segment from the
-/// center to the corner. The contour meets the wing segment at (b s, h (1 - s) / 2). This much is
-/// cheap and finds s.
+/// The part of a contour that is cheap to compute and sufficient to find s. The frame of a half
+/// edge has the foot of the center segment at the origin, the center at (0, h) and the corner at
+/// (b, 0). The parameter s runs from 0 (the center segment) to 1 (the segment from the center to
+/// the corner). The contour meets the wing segment at (b s, h (1 - s) / 2).
 struct ArcOfHalf
 {
   /// Twice the length of the straight piece: R = sqrt(h^2 (1 + s)^2 + 4 b^2 s^2).
@@ -99,10 +99,10 @@ struct ArcOfHalf
   }
 };
 
-/// The contour's lengths besides.
+/// A contour with its lengths.
 struct ContourOfHalf : ArcOfHalf
 {
-  /// tan(phi) = 2 b s / (h (1 + s)), phi being the angle by which the arc turns.
+  /// tan(phi) = 2 b s / (h (1 + s)), where phi is the angle by which the arc turns.
   double Slope;
   /// Length of the arc, r phi = (R / 2) ((1 - s) / (1 + s)) atan(tan phi) / tan phi.
   double ArcLength;
@@ -112,7 +112,7 @@ struct ContourOfHalf : ArcOfHalf
   ContourOfHalf(double h, double b, double s);
 };
 
-/// Derivatives of an arc's numbers with respect to s.
+/// Derivatives of the members of ArcOfHalf with respect to s.
 struct ArcOfHalfDerivative
 {
   double R;
@@ -132,10 +132,10 @@ struct ArcOfHalfDerivative
   }
 };
 
-/// Derivatives of a contour's numbers with respect to s.
+/// Derivatives of the members of ContourOfHalf with respect to s.
 struct ContourOfHalfDerivative : ArcOfHalfDerivative
 {
-  double Bend;   ///< R times that of the curvature, which overflows in needles
+  double Bend;   ///< R times the derivative of the curvature, which itself overflows in needles
   double Angle;  ///< d phi / d s
   double Radius; ///< d r / d s; infinite at the center segment
   double Length; ///< d L / d s
@@ -143,20 +143,20 @@ struct ContourOfHalfDerivative : ArcOfHalfDerivative
   ContourOfHalfDerivative(double h, double b, double s, const ContourOfHalf& contour);
 };
 
-/// The number s of the contour that meets the edge at E(s) = b @a proportion, for some at once.
+/// Equations for the parameter s of the contour that meets the edge at E(s) = b @a proportion.
 template <int Width>
 struct EndingEquation : RootBatch<Width, true>
 {
-  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double, double proportion)
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int index, double, double proportion)
   {
-    // 0 <= share <= 1 / 2 below.
-    this->Start(lane, proportion / 1.5, proportion, proportion / 1.25);
+    // 0 <= share <= 1 / 2, see Evaluate.
+    this->Start(index, proportion / 1.5, proportion, proportion / 1.25);
   }
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double flatness, double proportion)
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int index, double flatness, double proportion)
   {
     // E / b and its derivative, with R / (h (1 + s)) = sqrt(1 + tan^2 phi).
-    const double s = this->Root[lane];
+    const double s = this->Root[index];
     const double over = 1.0 / (1.0 + s);
     const double slope = flatness * s * over;
     const double secant = std::sqrt(1.0 + slope * slope);
@@ -165,43 +165,43 @@ struct EndingEquation : RootBatch<Width, true>
     const double secantDerivative = slope / secant * flatness * over * over;
     const double shareDerivative =
       -2.0 * over * over * overSecant - share * overSecant * secantDerivative;
-    this->Step(lane, s * (1.0 + share) - proportion, 1.0 + share + s * shareDerivative, 0x1p-32);
+    this->Step(index, s * (1.0 + share) - proportion, 1.0 + share + s * shareDerivative, 0x1p-32);
   }
 };
 
-/// The number s of the contour whose arc passes through (x, y), for some at once: the only root, in
-/// [0, 1 - 2 y / h], of E(s) - y^2 / (r + sqrt(r^2 - y^2)) - x. This is the smallest root of the
-/// publication's cubic; the cubic's larger root belongs to the other half of the circle.
+/// Equations for the parameter s of the contour whose arc passes through (x, y): the only root in
+/// [0, 1 - 2 y / h] of E(s) - y^2 / (r + sqrt(r^2 - y^2)) - x. It is the smallest root of the
+/// published cubic. The larger root of the cubic belongs to the other half of the circle.
 template <int Width>
 struct ThroughEquation : RootBatch<Width, true>
 {
-  HOMEOMORPHISM_ALWAYS_INLINE void Set(int lane, double h, double b, double x, double y)
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int index, double h, double b, double x, double y)
   {
     const double last = 1.0 - 2.0 * y / h;
-    this->Start(lane, 0.0, last > 0.0 ? last : 0.0, x / b);
+    this->Start(index, 0.0, last > 0.0 ? last : 0.0, x / b);
   }
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double h, double b, double x, double y)
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int index, double h, double b, double x, double y)
   {
-    const double s = this->Root[lane];
+    const double s = this->Root[index];
     const ArcOfHalf arc(h, b, s);
     const ArcOfHalfDerivative derivative(h, b, s, arc);
     double sine = y * arc.Curvature;
     sine = sine < 1.0 ? sine : 1.0;
     const double root = std::sqrt((1.0 - sine) * (1.0 + sine));
-    // An arc turns by phi at most. Near a right angle the sine has forgotten the cosine, and a
-    // cosine of 0 would be an infinite slope, whose step of 0 looks like a root.
+    // An arc turns by at most phi. Near a right angle the sine does not determine the cosine, and a
+    // cosine of 0 would give an infinite slope and a zero step, which would pass for convergence.
     const double least = h * (1.0 + s) / arc.R;
     const double cosine = root > least ? root : least;
     const double overOne = 1.0 / (1.0 + cosine);
-    // On the edge, where the curvature at the corner is infinite, there is no inset.
+    // On the edge the inset is 0, although the curvature at the corner is infinite.
     const double inset = y > 0.0 ? y * sine * overOne : 0.0;
     const double insetDerivative = y > 0.0 ? derivative.Curvature * y * y * overOne / cosine : 0.0;
-    this->Step(lane, arc.EdgePoint - inset - x, derivative.EdgePoint - insetDerivative, 0x1p-50);
+    this->Step(index, arc.EdgePoint - inset - x, derivative.EdgePoint - insetDerivative, 0x1p-50);
   }
 };
 
-/// Equations side by side; what is beyond the last of them is filled up to whole vectors.
+/// Batches of equations. Elements after the last equation are filled up to whole vectors.
 struct ThroughBatch
 {
   static constexpr int Capacity = 256;
@@ -220,7 +220,7 @@ struct EndingBatch
   double S[Capacity];
 };
 
-/// How many are solved at once.
+/// Number of equations solved together.
 constexpr int GroupWidth = 16;
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
@@ -256,7 +256,7 @@ void SolveEnding(EndingBatch& batch, int count)
   }
 }
 
-/// 2 b / h, bounded so that its square is a number; beyond that nothing depends on it.
+/// 2 b / h, bounded so that its square is finite. The result does not depend on larger values.
 double Flatness(double h, double b)
 {
   return std::min(2.0 * b / h, 0x1p500);
@@ -282,7 +282,7 @@ ContourOfHalf::ContourOfHalf(double h, double b, double s)
   , ArcLength(0.5 * R * (1.0 - s) / (1.0 + s) * ArcTangentRatio(Slope))
   , Length(0.5 * R + ArcLength)
 {
-  // The product of h and R underflows in needles thinner than 1e-150.
+  // The product h R underflows in needles thinner than 1e-150.
   this->Curvature = 4.0 * b * s / this->R / (h * (1.0 - s));
 }
 
@@ -310,7 +310,7 @@ ContourOfHalfDerivative::ContourOfHalfDerivative(
 ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, CenterPoint center)
   : Unit(PowerOfTwoNear(shape.Base))
 {
-  // Powers of two: to multiply by the reciprocal rounds no more than to divide.
+  // Multiplying by the reciprocal of a power of two is exact.
   const double overUnit = 1.0 / this->Unit;
   this->Shape = { shape.Base * overUnit, shape.ApexX * overUnit, shape.Height * overUnit,
     shape.Apex };
@@ -337,8 +337,8 @@ ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, C
     Edge& edge = this->Edges[k];
     edge.Start = this->Shape.Corner(NextCorner(k));
     edge.Length = view.Length;
-    // The tangent of an edge other than the base follows from how it sees the base's far end; the
-    // difference of its own ends would be useless where it is short.
+    // The tangent of an edge other than the base follows from the view of the far end of the base.
+    // The difference of the ends of the edge would be inaccurate for short edges.
     if (k == shape.Apex)
     {
       edge.Tangent = { 1.0, 0.0 };
@@ -353,13 +353,13 @@ ContourChart::ContourChart(const TriangleShape& shape, const EdgeViews& views, C
       edge.Tangent = { (view.Foot - 1.0) * view.Length / this->Shape.Base,
         -view.Height / this->Shape.Base };
     }
-    // Rounding the differences of coordinates may lose a needle's height, though not its
+    // Rounded differences of coordinates may lose the height of a needle, though not its
     // orientation.
     const double height =
       view.Height > 0.0 ? view.Height : std::numeric_limits<double>::epsilon() * view.Length;
     edge.CenterHeight = this->CenterWeights[k] * height;
-    // The foot of a weighted mean of the corners is the weighted mean of their feet: 0 and Length
-    // for the edge's ends.
+    // The foot of a weighted mean of the corners is the weighted mean of their feet, which are 0
+    // and Length for the ends of the edge.
     edge.FootDistance =
       view.Length * (this->CenterWeights[PreviousCorner(k)] + this->CenterWeights[k] * view.Foot);
   }
@@ -391,7 +391,8 @@ ContourChart::Search ContourChart::StartSearch(const Vector2& pointInFrame) cons
     }
   }
   const Edge& edge = this->Edges[k];
-  // On the boundary, and outside by rounding, the nearest point of the triangle counts.
+  // A point on the boundary, or outside by rounding, is replaced by the nearest point of the
+  // triangle.
   const bool inside = l[0] > 0.0 && l[1] > 0.0 && l[2] > 0.0;
   const Vector2 fromStart = (inside ? point : this->Shape.FromBarycentric(l)) - edge.Start;
   const double along = Dot(fromStart, edge.Tangent);
@@ -438,8 +439,8 @@ ContourChart::Reference ContourChart::EndSearch(const Search& search) const
     coordinates.ContourParameter = Clamp01(distance / contour.Length);
     return coordinates;
   }
-  // The arc that remains between the point and the edge, r psi, with sin psi = y / r. Near a right
-  // angle the sine says little about the angle, so the cosine helps.
+  // The length of the arc between the point and the edge, r psi with sin psi = y / r. Near a right
+  // angle the sine does not determine the angle, so the cosine is used.
   double remaining = 0.0;
   if (y > 0.0 && search.S < 1.0)
   {
@@ -562,7 +563,8 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
   const ContourOfHalfDerivative derivative(h, b, s, contour);
   const double remaining = (1.0 - c) * contour.Length;
 
-  // In the half's frame: the derivative with respect to c, and that with respect to s over c.
+  // In the frame of the half edge: the derivative with respect to c, and the derivative with
+  // respect to s divided by c.
   Vector2 byC;
   Vector2 bySOverC;
   if (remaining >= contour.ArcLength)
@@ -582,7 +584,7 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
     const double sine = std::sin(angle);
     const double cosine = std::cos(angle);
     byC = { contour.Length * sine, -contour.Length * cosine };
-    // d(1/r)/ds (r psi)^2, from whichever of 1/r and r is finite.
+    // d(1/r)/ds (r psi)^2, computed from 1/r or r, whichever is finite.
     const double bend = s < 0.5 ? derivative.Bend * (remaining / contour.R) * remaining
                                 : -derivative.Radius * angle * angle;
     const double halfSine = SineRatio(0.5 * angle);
@@ -613,7 +615,7 @@ ContourChart::Direction ContourChart::Pullback(
 {
   const Vector2 vector = (1.0 / this->Unit) * vectorInFrame;
   const Matrix2 columns = this->Columns(coordinates);
-  // Powers of two keep the products from underflow.
+  // Scaling by powers of two avoids underflow of the products.
   const double scaleX = PowerOfTwoNear(columns.ImageOfX);
   const double scaleY = PowerOfTwoNear(columns.ImageOfY);
   const Vector2 x = (1.0 / scaleX) * columns.ImageOfX;

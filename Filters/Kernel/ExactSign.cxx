@@ -10,7 +10,7 @@ namespace homeomorphism
 namespace
 {
 
-/// x + y exactly: the rounded sum and what rounding lost (Knuth).
+/// Exact sum x + y: the rounded sum and its rounding error (Knuth).
 struct TwoTerms
 {
   double High;
@@ -31,7 +31,7 @@ TwoTerms Product(double x, double y)
   return { product, std::fma(x, y, -product) };
 }
 
-/// A number held exactly as a sum of doubles that do not overlap, smallest first.
+/// An expansion: a number held exactly as a sum of nonoverlapping doubles, smallest first.
 class Expansion
 {
 public:
@@ -77,12 +77,12 @@ public:
   }
 
 private:
-  // Six products of two terms by two give 8 terms each: the most that a predicate below adds.
+  // The largest predicate below adds six products of two terms by two, with 8 terms each.
   double Terms[48];
   int Size = 0;
 };
 
-/// Divides by a power of two, exactly.
+/// Exact division by a power of two.
 TwoTerms Scaled(const TwoTerms& x, double scale)
 {
   return { x.High / scale, x.Low / scale };
@@ -100,10 +100,10 @@ int SignOfFoot(const double* a, const double* b, const double* c, int dimension)
     value += u * u + u * v;
     magnitude += u * u + std::abs(u * v);
   }
-  // Two rounded differences, a product and at most five additions: fewer than 10 relative errors of
-  // half an ulp on any term.
+  // Two rounded differences, a product and at most five additions: each term has fewer than 10
+  // relative errors of half an ulp.
   const double bound = 10.0 * std::numeric_limits<double>::epsilon() * magnitude;
-  // Products near the least normal number are not rounded relatively.
+  // Below this magnitude, products may be subnormal and the relative bound does not hold.
   if (magnitude > 1e-280)
   {
     if (value > bound)

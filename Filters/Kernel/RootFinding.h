@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RootFinding.h
-/// The roots of increasing functions, by Newton's method kept inside brackets, for several at once.
+/// Bracketed Newton iteration for batches of increasing functions.
 
 #ifndef homeomorphism_RootFinding_h
 #define homeomorphism_RootFinding_h
@@ -15,60 +15,59 @@
 namespace homeomorphism
 {
 
-/// @a Width equations, each for the root of an increasing function in an interval. Every evaluation
-/// narrows the interval. Newton's step is taken where it stays inside; where it leads out, the
-/// interval is halved. It ends with a step so small that what is left is below rounding, or when
-/// nothing is left of the interval. A root that is found stays as it is while others are looked
-/// for, so that none depends on the others.
+/// Solves @a Width equations, each for the root of an increasing function in an interval. Every
+/// evaluation narrows the bracket. A Newton step that leaves the bracket is replaced by bisection.
+/// Iteration ends when the step is below rounding or the bracket is empty. A root that has
+/// converged no longer changes, so the result of an equation does not depend on the others.
 ///
-/// With @a AtEnds, a step that leads out leads to the end first, if that was not tried yet: for
-/// functions whose root is often there.
+/// With @a AtEnds, a step that leaves the bracket goes to the end of the bracket first, unless that
+/// end was evaluated before. Use this for functions whose root often lies at an end.
 ///
-/// Nothing branches, so that the loop over the batch can become vector instructions.
+/// Branch-free, so that the loop over the batch vectorizes.
 template <int Width, bool AtEnds>
 class RootBatch
 {
 public:
   double Root[Width];
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Start(int lane, double lower, double upper, double guess)
+  HOMEOMORPHISM_ALWAYS_INLINE void Start(int index, double lower, double upper, double guess)
   {
     guess = guess < upper ? guess : upper;
-    this->Root[lane] = guess > lower ? guess : lower;
-    this->Lower[lane] = lower;
-    this->Upper[lane] = upper;
-    this->TriedLower[lane] = 0.0;
-    this->TriedUpper[lane] = 0.0;
-    this->LastStep[lane] = 0.0;
-    this->Done[lane] = 0.0;
+    this->Root[index] = guess > lower ? guess : lower;
+    this->Lower[index] = lower;
+    this->Upper[index] = upper;
+    this->TriedLower[index] = 0.0;
+    this->TriedUpper[index] = 0.0;
+    this->LastStep[index] = 0.0;
+    this->Done[index] = 0.0;
   }
 
-  /// The function's value and slope at Root. The last step is at most @a enough times the root, or,
-  /// with
-  /// @a AtEnds, one that is so much smaller than the step before it that what is left, about the
-  /// square of their ratio, is below rounding.
-  HOMEOMORPHISM_ALWAYS_INLINE void Step(int lane, double value, double slope, double enough)
+  /// Takes a step from the value and slope of the function at Root. Iteration ends with a step of
+  /// at most @a enough times the root. With @a AtEnds it also ends when the ratio to the previous
+  /// step shows that the remaining error, about the square of that ratio, is below rounding.
+  HOMEOMORPHISM_ALWAYS_INLINE void Step(int index, double value, double slope, double enough)
   {
-    const double x = this->Root[lane];
+    const double x = this->Root[index];
     const double step = value / slope;
     const double size = std::abs(step);
-    const double lower = value < 0.0 ? x : this->Lower[lane];
-    const double upper = value > 0.0 ? x : this->Upper[lane];
+    const double lower = value < 0.0 ? x : this->Lower[index];
+    const double upper = value > 0.0 ? x : this->Upper[index];
     const double middle = 0.5 * (lower + upper);
     double below = middle;
     double above = middle;
     double done = size <= enough * x ? 1.0 : 0.0;
     if constexpr (AtEnds)
     {
-      const double triedLower = value < 0.0 ? 1.0 : this->TriedLower[lane];
-      const double triedUpper = value > 0.0 ? 1.0 : this->TriedUpper[lane];
-      this->TriedLower[lane] = triedLower;
-      this->TriedUpper[lane] = triedUpper;
+      const double triedLower = value < 0.0 ? 1.0 : this->TriedLower[index];
+      const double triedUpper = value > 0.0 ? 1.0 : this->TriedUpper[index];
+      this->TriedLower[index] = triedLower;
+      this->TriedUpper[index] = triedUpper;
       below = triedLower > 0.0 ? middle : lower;
       above = triedUpper > 0.0 ? middle : upper;
-      const double last = this->LastStep[lane];
+      const double last = this->LastStep[index];
       done = size * size * size <= 0x1p-55 * x * (last * last) ? 1.0 : done;
-      // Next to a change of sign; the lower end itself may be still to be tried.
+      // The root lies within one ulp of the lower end. Evaluate that end too, if it has not been
+      // evaluated.
       const double atLower = middle == lower ? triedUpper : 0.0;
       done = atLower > 0.0 ? 1.0 : done;
     }
@@ -83,31 +82,31 @@ public:
     next = newton < upper ? next : above;
     if constexpr (AtEnds)
     {
-      // A step that is not a number halves the interval, too.
+      // An infinite or NaN step is replaced by bisection.
       next = size <= std::numeric_limits<double>::max() ? next : middle;
-      this->LastStep[lane] = next == newton ? size : 0.0;
+      this->LastStep[index] = next == newton ? size : 0.0;
     }
     next = size <= 0x1p-53 * x ? x : next;
     next = value == 0.0 ? x : next;
-    this->Root[lane] = this->Done[lane] > 0.0 ? x : next;
-    this->Done[lane] = this->Done[lane] > done ? this->Done[lane] : done;
-    this->Lower[lane] = lower;
-    this->Upper[lane] = upper;
+    this->Root[index] = this->Done[index] > 0.0 ? x : next;
+    this->Done[index] = this->Done[index] > done ? this->Done[index] : done;
+    this->Lower[index] = lower;
+    this->Upper[index] = upper;
   }
 
-  /// Whether every root was found, or @a steps are more than halving alone would need, from 1 to
-  /// the smallest root that matters, an ulp of 1 cubed.
+  /// Whether all roots have converged. The limit of @a steps exceeds what bisection alone needs
+  /// from 1 down to the smallest relevant root, an ulp of 1 cubed.
   HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
   {
-    // Some of many nearly always need three steps, and to ask takes as long as one.
+    // Large batches nearly always need three steps, and this test costs as much as a step.
     if (Width > 1 && steps < 3)
     {
       return false;
     }
     double done = 1.0;
-    for (int lane = 0; lane < Width; ++lane)
+    for (int index = 0; index < Width; ++index)
     {
-      done = this->Done[lane] < done ? this->Done[lane] : done;
+      done = this->Done[index] < done ? this->Done[index] : done;
     }
     return done > 0.0 || steps > 250;
   }
@@ -121,23 +120,23 @@ private:
   double Done[Width];
 };
 
-/// Finds the roots of some equations, a RootBatch with functions Set and Evaluate, which get a lane
-/// and what
-/// @a numbers, arrays of a value for each lane, have there.
+/// Finds the roots of the equations of a batch. @a Equation is a RootBatch with functions Set and
+/// Evaluate, which take an index and the elements of @a numbers (arrays with one value per
+/// equation) for that index.
 template <int Width, typename Equation, typename... Numbers>
 HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*... numbers)
 {
   HOMEOMORPHISM_SIMD
-  for (int lane = 0; lane < Width; ++lane)
+  for (int index = 0; index < Width; ++index)
   {
-    equation.Set(lane, numbers[lane]...);
+    equation.Set(index, numbers[index]...);
   }
   for (int step = 0; !equation.IsDone(step); ++step)
   {
     HOMEOMORPHISM_SIMD
-    for (int lane = 0; lane < Width; ++lane)
+    for (int index = 0; index < Width; ++index)
     {
-      equation.Evaluate(lane, numbers[lane]...);
+      equation.Evaluate(index, numbers[index]...);
     }
   }
 }

@@ -15,9 +15,9 @@ namespace homeomorphism
 namespace
 {
 
-/// B_k, its derivatives, and the chart's determinant, at a point of the strip of edge k, by the
-/// point's coordinates with respect to k, the next corner and the previous one. Beyond the strip's
-/// ends all is continued: by l_k past the edge, by 0 elsewhere.
+/// B_k, its derivatives and the determinant of the chart at a point of the strip of edge k. The
+/// arguments are the coordinates of the point for k, the next corner and the previous one. Outside
+/// the strip B_k is continued by l_k beyond the edge and by 0 elsewhere.
 struct StripFunction
 {
   double K;
@@ -30,9 +30,9 @@ struct StripFunction
     : K(k)
     , Tau(tau)
   {
-    // One division for 1 / sum and k / (tau q) = k sum / product.
+    // A single division gives 1 / sum and k / (tau q) = k sum / product.
     const double sum = next + previous;
-    // Where it would underflow, within so little of a corner, there is nothing to tell apart.
+    // The product underflows only so close to a corner that the value does not matter.
     double product = tau * (next * previous);
     product += 1e-290;
     const double over = 1.0 / (sum * product);
@@ -40,7 +40,7 @@ struct StripFunction
     this->ShareNext = next * overSum;
     this->SharePrevious = previous * overSum;
     double u = k * sum * (sum * over);
-    // Where it is not a number, at a corner, there is no strip.
+    // At a corner u is NaN, and there is no strip.
     u = u < 1.0 ? u : 1.0;
     u = u > 0.0 ? u : 0.0;
     const double lesser = next < previous ? next : previous;
@@ -63,8 +63,8 @@ struct StripFunction
     return this->U * this->U * (18.0 - this->U * (32.0 - 15.0 * this->U));
   }
 
-  /// The share of the other two corners: dB/dl_i = 12 tau u^3 (1 - u)^2 (l_j / (l_i + l_j))^2, and
-  /// i, j exchanged.
+  /// The part of the other two corners: dB/dl_i = 12 tau u^3 (1 - u)^2 (l_j / (l_i + l_j))^2, and
+  /// with i, j exchanged.
   HOMEOMORPHISM_ALWAYS_INLINE double AlongSides(double next, double previous) const
   {
     const double rest = 1.0 - this->U;
@@ -73,7 +73,7 @@ struct StripFunction
         this->ShareNext * this->ShareNext * previous);
   }
 
-  /// 1 + d_k K' + AlongSides(d), without the cancellation that a small kappa = 1 + d_k brings.
+  /// 1 + d_k K' + AlongSides(d), without the cancellation of a small kappa = 1 + d_k.
   HOMEOMORPHISM_ALWAYS_INLINE double DeterminantRatio(
     double kappa, double offsetNext, double offsetPrevious) const
   {
@@ -81,7 +81,7 @@ struct StripFunction
     return kappa * (1.0 - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
   }
 
-  /// beta - B for a point whose affine coordinate is affineK = l_k + d_k beta, without
+  /// beta - B for a point with the affine coordinate affineK = l_k + d_k beta, without
   /// cancellation: beta (1 + d_k W) - affineK W.
   HOMEOMORPHISM_ALWAYS_INLINE double Residual(double beta, double affineK, double kappa) const
   {
@@ -91,29 +91,29 @@ struct StripFunction
   }
 };
 
-/// The strip's equation for some points at once: affine = l + d B(l), so with beta = B(l),
-/// beta = B(affine - d beta). The difference of the sides increases with beta, because its slope is
-/// the determinant ratio. B(affine) is a first guess.
+/// The equations of strips. From affine = l + d B(l) and beta = B(l) follows beta = B(affine - d
+/// beta). The difference of both sides increases with beta, because its slope is the determinant
+/// ratio. B(affine) is the initial guess.
 template <int Width>
 struct StripEquation : RootBatch<Width, false>
 {
   HOMEOMORPHISM_ALWAYS_INLINE void Set(
-    int lane, double k, double next, double previous, double, double, double, double tau)
+    int index, double k, double next, double previous, double, double, double, double tau)
   {
     // B <= tau q max(u W) <= (1 / 4) (16 / 81).
     constexpr double bound = 0.05;
-    this->Start(lane, 0.0, bound, StripFunction(k, next, previous, tau).Value());
+    this->Start(index, 0.0, bound, StripFunction(k, next, previous, tau).Value());
   }
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int lane, double k, double next, double previous,
+  HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int index, double k, double next, double previous,
     double kappa, double offsetNext, double offsetPrevious, double tau)
   {
-    const double beta = this->Root[lane];
+    const double beta = this->Root[index];
     const StripFunction function(
       k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau);
-    // What a step leaves, about its square times half the relative second derivative, which tau
-    // bounds, is a fraction of what a barycentric coordinate's rounding makes of it.
-    this->Step(lane, function.Residual(beta, k, kappa),
+    // The error after a step is about its square times half the relative second derivative, which
+    // tau bounds. It is a fraction of the rounding error of a barycentric coordinate.
+    this->Step(index, function.Residual(beta, k, kappa),
       function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-24 * tau * tau);
   }
 };
@@ -162,8 +162,8 @@ SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor,
 namespace
 {
 
-/// One point: less of the strips has to be fetched from memory than for several at once.
-void SetSmoothLane(SmoothBatch& batch, int i, const double* const coordinates[3],
+/// For few points, this loads less of the strips than the vectorized loops do.
+void SetSmoothPoint(SmoothBatch& batch, int i, const double* const coordinates[3],
   const SmoothStrips& source, const SmoothStrips& target)
 {
   const double l[3] = { coordinates[0][i], coordinates[1][i], coordinates[2][i] };
@@ -173,13 +173,13 @@ void SetSmoothLane(SmoothBatch& batch, int i, const double* const coordinates[3]
   batch.L[1][i] = l[NextCorner(corner)];
   batch.L[2][i] = l[PreviousCorner(corner)];
   const SmoothStrips* domains[2] = { &source, &target };
-  for (int side = 0; side < 2; ++side)
+  for (int domain = 0; domain < 2; ++domain)
   {
-    const SmoothStrip& strip = (*domains[side])[corner];
-    batch.OffsetNext[side][i] = strip.OffsetNext;
-    batch.OffsetPrevious[side][i] = strip.OffsetPrevious;
-    batch.Kappa[side][i] = strip.Kappa;
-    batch.Tau[side][i] = strip.Tau;
+    const SmoothStrip& strip = (*domains[domain])[corner];
+    batch.OffsetNext[domain][i] = strip.OffsetNext;
+    batch.OffsetPrevious[domain][i] = strip.OffsetPrevious;
+    batch.Kappa[domain][i] = strip.Kappa;
+    batch.Tau[domain][i] = strip.Tau;
   }
 }
 
@@ -193,7 +193,7 @@ void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const 
   {
     for (int i = begin; i < end; ++i)
     {
-      SetSmoothLane(batch, i, coordinates, source, target);
+      SetSmoothPoint(batch, i, coordinates, source, target);
     }
     return;
   }
@@ -215,21 +215,21 @@ void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const 
     batch.L[2][i] = corner == 0 ? c : (corner == 1 ? a : b);
   }
   const SmoothStrips* domains[2] = { &source, &target };
-  for (int side = 0; side < 2; ++side)
+  for (int domain = 0; domain < 2; ++domain)
   {
-    const SmoothStrip s0 = (*domains[side])[0];
-    const SmoothStrip s1 = (*domains[side])[1];
-    const SmoothStrip s2 = (*domains[side])[2];
+    const SmoothStrip s0 = (*domains[domain])[0];
+    const SmoothStrip s1 = (*domains[domain])[1];
+    const SmoothStrip s2 = (*domains[domain])[2];
     HOMEOMORPHISM_SIMD
     for (int i = begin; i < stop; ++i)
     {
       const bool is0 = batch.Corner[i] == 0;
       const bool is1 = batch.Corner[i] == 1;
-      batch.OffsetNext[side][i] = is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
-      batch.OffsetPrevious[side][i] =
+      batch.OffsetNext[domain][i] = is0 ? s0.OffsetNext : (is1 ? s1.OffsetNext : s2.OffsetNext);
+      batch.OffsetPrevious[domain][i] =
         is0 ? s0.OffsetPrevious : (is1 ? s1.OffsetPrevious : s2.OffsetPrevious);
-      batch.Kappa[side][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
-      batch.Tau[side][i] = is0 ? s0.Tau : (is1 ? s1.Tau : s2.Tau);
+      batch.Kappa[domain][i] = is0 ? s0.Kappa : (is1 ? s1.Kappa : s2.Kappa);
+      batch.Tau[domain][i] = is0 ? s0.Tau : (is1 ? s1.Tau : s2.Tau);
     }
   }
 }
@@ -243,12 +243,12 @@ void FillSmoothBatch(SmoothBatch& batch, int begin, int end)
     {
       l[i] = 1.0 / 3.0;
     }
-    for (int side = 0; side < 2; ++side)
+    for (int domain = 0; domain < 2; ++domain)
     {
-      batch.OffsetNext[side][i] = 0.0;
-      batch.OffsetPrevious[side][i] = 0.0;
-      batch.Kappa[side][i] = 1.0;
-      batch.Tau[side][i] = 0.0;
+      batch.OffsetNext[domain][i] = 0.0;
+      batch.OffsetPrevious[domain][i] = 0.0;
+      batch.Kappa[domain][i] = 1.0;
+      batch.Tau[domain][i] = 0.0;
     }
   }
 }
@@ -265,7 +265,7 @@ void GetSmoothBatch(const SmoothBatch& batch, int begin, int end, double* const 
   {
     const bool is0 = batch.Corner[i] == 0;
     const bool is1 = batch.Corner[i] == 1;
-    // Read whatever the corner is: to read or not to read takes longer.
+    // Read unconditionally: a conditional load would be slower.
     const double k = batch.L[0][i];
     const double next = batch.L[1][i];
     const double previous = batch.L[2][i];
@@ -331,7 +331,7 @@ int SmoothChart::StripAt(const Barycentric& l) const
 
 SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
 {
-  // The chart maps each strip onto itself, so the affine coordinates tell which it is.
+  // The chart maps each strip onto itself, so the affine coordinates determine the strip.
   const Barycentric affine = this->Shape.ToBarycentric(point);
   const int k = this->StripAt(affine);
   if (k < 0)
@@ -376,7 +376,8 @@ SmoothChart::Direction SmoothChart::Pullback(const Reference& l, const Vector2& 
   {
     return direction;
   }
-  // The chart's derivative is the identity plus a matrix of rank one (Sherman and Morrison).
+  // The derivative of the chart is the identity plus a matrix of rank one (Sherman-Morrison
+  // formula).
   const SmoothStrip& strip = this->Strips[k];
   const StripFunction function = FunctionAt(l, k, strip);
   return Moved(direction, k, strip,

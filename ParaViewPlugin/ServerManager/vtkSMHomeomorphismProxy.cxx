@@ -19,7 +19,7 @@ void vtkSMHomeomorphismProxy::UpdatePropertyInformationInternal(vtkSMProperty* p
   if (this->ObjectsCreated && this->SurfacePoint != 0 &&
     (!property || property->GetInformationOnly()))
   {
-    // The null object as an id, since pointers do not travel to other processes.
+    // The null object as an id, since pointers cannot be sent to other processes.
     vtkClientServerStream stream;
     stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "ReduceStatistics"
            << vtkClientServerID() << vtkClientServerStream::End;

@@ -2,22 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Benchmark.cxx
-/// Times one row at a time, as benchmark.py asks for them, so that rows of this program and of
-/// Python take turns.
+/// Times single rows on request of benchmark.py, so that rows of this program and of Python can
+/// take turns.
 ///
 ///   HomeomorphismBenchmark FOLDER
 ///
-/// reads the workload in a folder (see Workload.h) and then commands from standard input, each
+/// reads the workload from a folder (see Workload.h) and then commands from standard input, each
 /// answered with one line:
 ///
 /// - `rows`: the names of all rows;
-/// - `run ROW POINTS THREADS`: seconds, of the clock and of processors, that the row took for the
-/// points
-///   in points-POINTS.f64;
+/// - `run ROW POINTS THREADS`: seconds of wall time and of processor time that the row took for the
+///   points in points-POINTS.f64;
 /// - `save FILE`: writes the result of the last run as it is in memory, answers with its size in
-/// bytes;
+///   bytes;
 /// - `roundtrip ROW BACK POINTS`: the largest difference of a coordinate after the two rows;
-/// - `memory ROW`: bytes that a row "construct/..." allocates and keeps, and the peak meanwhile.
+/// - `memory ROW`: the bytes that a row "construct/..." allocates and keeps, and their peak.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -221,7 +220,7 @@ private:
       for (int axis = 0; axis < 3; ++axis)
       {
         const double difference = std::abs(preimage[axis] - in[3 * i + axis]);
-        // Not a number is worse than anything.
+        // NaN is the largest value.
         largest = difference <= largest ? largest : difference;
       }
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file BoundRows.cxx
-/// What no map of points can be faster than, and what no piecewise map can be much faster than.
+/// Lower bounds for the time of any map of points, and of any piecewise map.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -22,7 +22,7 @@
 namespace
 {
 
-/// Where points are, known beforehand.
+/// The known triangles of the points.
 struct KnownTriangles
 {
   std::vector<Affine> Maps;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ConstructionRows.cxx
-/// Getting ready to map: time and memory.
+/// Time and memory of preparation.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -54,7 +54,7 @@ void AddHomeomorphism(
 {
   auto map = std::make_shared<std::shared_ptr<const Homeomorphism>>();
   Row& row = rows["construct/" + name];
-  // Destroying the one before takes time, too, but another's.
+  // Destroying the previous result is not timed.
   row.Before = [map](Task&) { map->reset(); };
   row.Run = [map, system, &workload](Task&) {
     HomeomorphismOptions options;
@@ -79,7 +79,7 @@ void AddConstructionRows(const Workload& workload, Rows& rows)
   auto locator = std::make_shared<vtkSmartPointer<vtkStaticCellLocator>>();
   Row& row = rows["construct/vtkStaticCellLocator"];
   row.Before = [locator, &workload](Task&) {
-    // Part of the mesh, which vtkPolyData puts off until its cells are asked for.
+    // Part of the mesh, which vtkPolyData builds when its cells are first used.
     workload.Source->BuildCells();
     *locator = vtkSmartPointer<vtkStaticCellLocator>::New();
     (*locator)->SetDataSet(workload.Source);
@@ -93,7 +93,7 @@ Memory MeasureMemory(Row& row, Task& task)
   malloc_trim(0);
   const double before = Allocated();
   const double residentBefore = Status("VmRSS:");
-  // The high-water mark starts again.
+  // Reset the high-water mark.
   std::ofstream("/proc/self/clear_refs") << "5";
   row.Run(task);
   return { Allocated() - before, Status("VmHWM:") - residentBefore };

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file HomeomorphismRows.cxx
-/// This module's ways of mapping points: the transform's batch call, the filter, and point by point
-/// in plain arrays.
+/// This module's ways of mapping points: the batch call of the transform, the filter, and point by
+/// point in plain arrays.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -30,7 +30,7 @@ const std::array<const char*, 3> systemNames{ "Linear", "Contour", "Smooth" };
 const std::array<CoordinateSystem, 3> systems{ CoordinateSystem::Linear, CoordinateSystem::Contour,
   CoordinateSystem::Smooth };
 
-/// Made at its first use, for both directions.
+/// Made at first use, for both directions.
 class LazyHomeomorphism
 {
 public:
@@ -96,10 +96,10 @@ void AddTransform(const Workload& workload, int system, Rows& rows)
     }
     Row& row = rows[std::string("transform/") + systemNames[system] + Direction(inverse)];
     row.Before = [forward, transform](Task& task) {
-      // An updated transform shares what it has computed with its inverse.
+      // An updated transform shares its prepared map with its inverse.
       forward->Update();
       transform->Update();
-      // VTK appends to what is there.
+      // VTK appends to existing points.
       task.Out->Reset();
     };
     row.Run = [transform](Task& task) { transform->TransformPoints(task.In, task.Out); };

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ImageRows.cxx
-/// Warping an image: each pixel of the output, over the source mesh, shows the place of the input
-/// that it is mapped to, over the target mesh.
+/// Warping an image: each pixel of the output, over the source mesh, gets the value of the input at
+/// its image, over the target mesh.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -79,7 +79,7 @@ void AddImageRows(const Workload& workload, Rows& rows)
     transform->SetCoordinateSystem(system);
     AddReslice(workload, systemNames[system], transform, rows);
 
-    // The data's domain is the target mesh's here, that of the grid the source mesh's.
+    // Here the target mesh covers the data, and the source mesh covers the grid.
     auto grid = vtkSmartPointer<vtkImageData>::New();
     grid->CopyStructure(workload.Image);
     auto resample = vtkSmartPointer<vtkResampleThroughHomeomorphism>::New();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PeerRows.cxx
-/// What people use today for the same: PROJ's triangulated grids, and VTK's own.
+/// Comparable software: PROJ's triangulated grids, and VTK's own classes.
 
 #include "Rows.h"
 #include "Workload.h"
@@ -29,7 +29,7 @@
 namespace
 {
 
-/// Writes the pair as PROJ wants it.
+/// Writes the pair as a PROJ triangulation file.
 void WriteTinshift(const Workload& workload, const std::string& path)
 {
   nlohmann::json vertices = nlohmann::json::array();
@@ -144,7 +144,7 @@ void AddFindCell(const Workload& workload, bool inverse, Rows& rows)
       in += 3;
     }
   };
-  // Finding is all that is timed. The map shows that the right triangles were found.
+  // Only finding cells is timed. The map verifies that they are correct.
   row.After = [finder, &workload, inverse](Task& task) {
     const std::vector<Affine> maps =
       TriangleMaps(workload.GetFrom(inverse), workload.GetTo(inverse));
@@ -162,7 +162,7 @@ void AddFindCell(const Workload& workload, bool inverse, Rows& rows)
   };
 }
 
-/// Points as an image if they are the points of one, which vtkProbeFilter takes several times
+/// Points as an image if they form one, which vtkProbeFilter processes several times
 /// faster.
 vtkSmartPointer<vtkDataSet> AsDataSet(vtkPoints* points)
 {

@@ -51,7 +51,7 @@ vtkSmartPointer<vtkPoints> ReadPoints(const std::filesystem::path& path)
 vtkSmartPointer<vtkPolyData> ReadMesh(
   const std::filesystem::path& points, const std::filesystem::path& triangles)
 {
-  // In one component, as connectivity is.
+  // An array with one component, as connectivity is stored.
   auto ids = ReadArray<vtkIdTypeArray>(triangles);
   ids->SetNumberOfComponents(1);
   vtkNew<vtkCellArray> cells;

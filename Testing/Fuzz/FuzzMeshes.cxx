@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Makes meshes and data of any bytes and sends points through all classes, or, in FuzzMaps, from
-// raw arrays to mapped points without VTK's pipeline, which is ten times faster. Whatever the
-// bytes, nothing may crash, hang or say that it mapped what it did not: a point inside has an
-// image, and that of the inverse. With FUZZ_SHOW in the environment, prints the meshes that the
-// bytes stand for.
+// Makes meshes and data from arbitrary bytes and maps points through all classes or, in FuzzMaps,
+// from raw arrays to mapped points without VTK's pipeline, which is ten times faster. For all
+// bytes: nothing crashes or hangs, and every point reported as inside has an image and is the
+// inverse of that image. The environment variable FUZZ_SHOW prints the meshes encoded by the
+// bytes.
 
 #include "FuzzInput.h"
 
@@ -66,7 +66,7 @@ vtkSmartPointer<vtkPoints> AnyPoints(Input& input, int count)
   return points;
 }
 
-/// A cell array, sound or not.
+/// A cell array, valid or invalid.
 template <typename ArrayType>
 vtkSmartPointer<vtkCellArray> RawCells(Input& input, int count, int points)
 {
@@ -83,11 +83,11 @@ vtkSmartPointer<vtkCellArray> RawCells(Input& input, int count, int points)
         points == 0 || input.Chance(64) ? input.Byte() - 8 : input.Below(points));
     }
     const auto end = static_cast<int>(connectivity->GetNumberOfValues());
-    // Wrong offsets are wrong by little as often as by anything.
+    // Invalid offsets are often wrong by little.
     const int wrong = sound || input.Chance(2) ? 0 : input.Below(5) - 2;
     offsets->InsertNextValue(sound || wrong != 0 ? end + wrong : input.Byte() - 8);
   }
-  // Memory ends where the values do, so that reading one more is noticed.
+  // The allocation ends with the values, so that the sanitizer detects reading past them.
   offsets->Squeeze();
   connectivity->Squeeze();
   auto cells = vtkSmartPointer<vtkCellArray>::New();
@@ -99,7 +99,7 @@ vtkSmartPointer<vtkCellArray> AnyCells(Input& input, int points)
 {
   if (input.Chance(2))
   {
-    // A grid, which is a mesh more often than random ids are.
+    // A grid, which is a valid mesh more often than random ids are.
     const int domain = 1 + input.Below(3);
     auto cells = vtkSmartPointer<vtkCellArray>::New();
     for (int j = 0; j < domain; ++j)
@@ -150,7 +150,7 @@ bool IsTame(vtkPoints* points)
     points->GetPoint(i, p);
     for (const double x : p)
     {
-      // Larger numbers may overflow on the way, and finer ones underflow.
+      // Larger numbers may overflow in intermediate results, and smaller ones underflow.
       if (!(std::abs(x) < 1e100) || (x != 0.0 && std::abs(x) < 1e-100))
       {
         return false;
@@ -189,7 +189,7 @@ struct Setting
   bool Mask;
   bool ByLinear;
   bool Inverse;
-  /// Whether the data are the mesh itself.
+  /// Whether the data is the mesh itself.
   bool MapsTheMesh;
 };
 
@@ -215,8 +215,8 @@ std::shared_ptr<const homeomorphism::Homeomorphism> MakeMap(vtkPolyData* source,
   return homeomorphism::Homeomorphism::Make(source, target, options, problems);
 }
 
-/// Whether rounding an image may move it out of the domain: not if it is in the mesh, but if it is
-/// as far beside a plane that is parallel to no axes.
+/// Whether rounding may move an image out of the domain: not for a point of the mesh, but for a
+/// point equally far from a plane that is not parallel to two axes.
 bool IsFarBeside(
   const homeomorphism::Homeomorphism& map, homeomorphism::Domain domain, const double image[3])
 {
@@ -225,7 +225,7 @@ bool IsFarBeside(
   return 4.0 * HalfUlp * largest * scale > map.GetAbsoluteTolerance(domain, 0.0, HalfUlp);
 }
 
-/// The floor below the filters, which is far faster.
+/// Below the filters, which is far faster.
 void MapDirectly(
   vtkPolyData* source, vtkPolyData* target, vtkPoints* points, const Setting& setting, bool tame)
 {

@@ -30,7 +30,7 @@ double LengthOfError(const DerivativeEstimate& estimate, const Vector& exact)
 
 } // namespace
 
-// Of smooth functions both derivatives are found, within the bound of the error, and the bound is
+// Both derivatives of smooth functions are found within the bound of the error, and the bound is
 // small.
 TEST(OneSidedDerivative, BoundsItsError)
 {
@@ -53,8 +53,8 @@ TEST(OneSidedDerivative, BoundsItsError)
   }
 }
 
-// A piece of another slope that begins close to 0 must not hide the slope at 0.
-TEST(OneSidedDerivative, SeesPiecesThatBeginNearby)
+// A piece of another slope that begins close to 0 does not affect the derivative at 0.
+TEST(OneSidedDerivative, DetectsPiecesThatBeginNearby)
 {
   for (const double border : { 0.05, 1e-2, 1e-3, 1e-4 })
   {
@@ -68,7 +68,7 @@ TEST(OneSidedDerivative, SeesPiecesThatBeginNearby)
   }
 }
 
-TEST(OneSidedDerivative, IsUnknownWhereTheFunctionIs)
+TEST(OneSidedDerivative, IsUndefinedWhereTheFunctionIs)
 {
   const auto function = [](double) -> Vector {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -79,8 +79,8 @@ TEST(OneSidedDerivative, IsUnknownWhereTheFunctionIs)
   EXPECT_TRUE(std::isnan(estimate.Value[0]));
 }
 
-// Values stored as floats are known to no more than that, whatever rounding the caller claims.
-TEST(OneSidedDerivative, NoticesStoredPrecision)
+// Values stored as floats are known to float precision only, whatever rounding the caller claims.
+TEST(OneSidedDerivative, DetectsStoredPrecision)
 {
   const auto function = [](double t) -> Vector {
     return { static_cast<double>(static_cast<float>(1.0 + 0.7 * t)), 0.0, 0.0 };

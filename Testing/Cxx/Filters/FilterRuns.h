@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file FilterRuns.h
-/// For the tests that run the VTK classes: the coordinate systems to run through, pairs of meshes
-/// of every kind, points at random on a mesh, and small linear algebra.
+/// Helpers for tests of the VTK classes: coordinate systems, pairs of meshes of every kind, random
+/// points of a mesh, and small linear algebra.
 
 #ifndef FilterRuns_h
 #define FilterRuns_h
@@ -114,7 +114,7 @@ inline Matrix Inverted(const Matrix& m)
   return Transposed(
     { factor * Cross(m[1], m[2]), factor * Cross(m[2], m[0]), factor * Cross(m[0], m[1]) });
 }
-/// Root of the sum of the squares of all entries.
+/// Frobenius norm.
 inline double Norm(const Matrix& m)
 {
   return std::hypot(Norm(m[0]), Norm(m[1]), Norm(m[2]));
@@ -123,7 +123,7 @@ inline double Distance(const Matrix& a, const Matrix& b)
 {
   return std::hypot(Distance(a[0], b[0]), Distance(a[1], b[1]), Distance(a[2], b[2]));
 }
-/// Turns by an angle about an axis (Rodrigues).
+/// Rotation by an angle about an axis (Rodrigues).
 inline Matrix Rotation(const Point& axis, double angle)
 {
   const Point n = Unit(axis);
@@ -142,7 +142,7 @@ inline Matrix Rotation(const Point& axis, double angle)
   return m;
 }
 
-// --- Reading VTK's objects -----------------------------------------------------------------------
+// --- Access to VTK objects -----------------------------------------------------------------------
 
 inline Point PointOf(vtkDataSet* data, vtkIdType i)
 {
@@ -174,7 +174,7 @@ inline vtkDataArray* PointArray(vtkDataSet* data, const char* name)
   return data->GetPointData()->GetArray(name);
 }
 
-/// Length of the diagonal of the box around a mesh: its size.
+/// Length of the diagonal of the bounding box of a mesh.
 inline double SizeOf(vtkDataSet* mesh)
 {
   return mesh->GetLength();
@@ -191,8 +191,8 @@ inline double LargestCoordinate(vtkDataSet* mesh)
   return largest;
 }
 
-/// The number rounded to float. Stored in between: GCC 12 vectorizes the conversion to float and
-/// back of neighboring elements away.
+/// The number rounded to float. It is stored in between, because GCC 12 optimizes vectorized
+/// conversions of neighboring elements to float and back away.
 inline double RoundedToFloat(double x)
 {
   const volatile float rounded = static_cast<float>(x);
@@ -227,7 +227,7 @@ inline vtkIdType CountDifferentPoints(vtkDataSet* a, vtkDataSet* b)
   return different;
 }
 
-/// Number of values that differ in any bit; all, if the arrays differ in kind.
+/// Number of values that differ in any bit; all of them if the arrays differ in type or size.
 inline vtkIdType CountDifferentValues(vtkDataArray* a, vtkDataArray* b)
 {
   if (!a || !b || a->GetDataType() != b->GetDataType() ||
@@ -265,7 +265,7 @@ inline vtkIdType CountDifferentCells(vtkDataSet* a, vtkDataSet* b)
 
 // --- Coordinate systems --------------------------------------------------------------------------
 
-/// A coordinate system as the tests run through them.
+/// A coordinate system with its options.
 struct System
 {
   const char* Name;
@@ -300,7 +300,7 @@ inline std::string NameOfSystem(const ::testing::TestParamInfo<System>& info)
   return info.param.Name;
 }
 
-/// Discordant triangles are carried by the Linear system.
+/// Discordant triangles are mapped by the Linear system.
 template <typename Algorithm>
 void SetSystem(Algorithm* algorithm, const System& system)
 {
@@ -323,7 +323,7 @@ inline vtkSmartPointer<vtkDifferentiableHomeomorphism> MakeFilter(
   return filter;
 }
 
-/// The filter's output after an update, as a point set.
+/// The output of the filter after an update, as a point set.
 inline vtkPointSet* Output(vtkDifferentiableHomeomorphism* filter)
 {
   filter->Update();
@@ -349,9 +349,9 @@ vtkSmartPointer<vtkPolyData> Moved(vtkPolyData* mesh, Move&& move)
   return result;
 }
 
-/// The kinds of pairs: of the plane (square on square, square on a sheared one, where many
-/// triangles are discordant, and on one in a tilted plane), surfaces with a boundary, a plane laid
-/// over a surface, and closed surfaces.
+/// The kinds of pairs: planar (a square and another square, a sheared one with many discordant
+/// triangles, and one in a tilted plane), surfaces with boundary, a plane and a surface, and closed
+/// surfaces.
 struct Pairing
 {
   const char* Name;
@@ -384,10 +384,10 @@ inline std::vector<Pairing> AllPairings(int n, int divisions, std::uint64_t seed
     { "plane to sheet", { planar.Source, MakeSheet(n, seed + 3, 1.2) } }, { "closed", closed } };
 }
 
-// --- Points at random ----------------------------------------------------------------------------
+// --- Random points -------------------------------------------------------------------------------
 
-/// Numbers that follow from the seed on every platform, which the standard library's distributions
-/// would not.
+/// Random numbers that follow from the seed on every platform, unlike the distributions of the
+/// standard library.
 class Random
 {
 public:
@@ -409,13 +409,13 @@ private:
 };
 
 /// A point of a mesh: a triangle and the weights of its three points.
-struct ToSurfacePoint
+struct MeshPoint
 {
   vtkIdType Triangle;
   Point Weights;
 };
 
-/// Uniform in the triangle, all weights at least @a margin.
+/// Uniform in the triangle, with all weights at least @a margin.
 inline Point RandomWeights(Random& random, double margin = 0.0)
 {
   double u = random.Uniform();
@@ -429,14 +429,13 @@ inline Point RandomWeights(Random& random, double margin = 0.0)
   return { margin + room * u, margin + room * v, margin + room * (1.0 - u - v) };
 }
 
-/// Everywhere in the triangles, and one in four on an edge, close to an edge or close to a vertex,
-/// by any power of ten down to the rounding.
-inline std::vector<ToSurfacePoint> RandomPlaces(
-  vtkPolyData* mesh, vtkIdType count, std::uint64_t seed)
+/// Everywhere in the triangles; one in four on an edge, or close to an edge or a vertex at any
+/// power of ten down to rounding.
+inline std::vector<MeshPoint> RandomSamples(vtkPolyData* mesh, vtkIdType count, std::uint64_t seed)
 {
   Random random(seed);
-  std::vector<ToSurfacePoint> places(count);
-  for (ToSurfacePoint& surfacePoint : places)
+  std::vector<MeshPoint> samples(count);
+  for (MeshPoint& surfacePoint : samples)
   {
     surfacePoint.Triangle = random.Below(mesh->GetNumberOfCells());
     surfacePoint.Weights = RandomWeights(random);
@@ -454,20 +453,20 @@ inline std::vector<ToSurfacePoint> RandomPlaces(
       surfacePoint.Weights[(k + 2) % 3] = 1.0 - small - next;
     }
   }
-  return places;
+  return samples;
 }
 
-/// Inside triangles, all weights at least @a margin.
-inline std::vector<ToSurfacePoint> InnerPlaces(
+/// Inside triangles, with all weights at least @a margin.
+inline std::vector<MeshPoint> InnerSamples(
   vtkPolyData* mesh, vtkIdType count, std::uint64_t seed, double margin)
 {
   Random random(seed);
-  std::vector<ToSurfacePoint> places(count);
-  for (ToSurfacePoint& surfacePoint : places)
+  std::vector<MeshPoint> samples(count);
+  for (MeshPoint& surfacePoint : samples)
   {
     surfacePoint = { random.Below(mesh->GetNumberOfCells()), RandomWeights(random, margin) };
   }
-  return places;
+  return samples;
 }
 
 inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
@@ -478,7 +477,7 @@ inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
     PointOf(mesh, ids->GetId(2)) };
 }
 
-inline Point PositionOf(vtkPolyData* mesh, const ToSurfacePoint& surfacePoint)
+inline Point PositionOf(vtkPolyData* mesh, const MeshPoint& surfacePoint)
 {
   const std::array<Point, 3> corners = CornersOf(mesh, surfacePoint.Triangle);
   return surfacePoint.Weights[0] * corners[0] + surfacePoint.Weights[1] * corners[1] +
@@ -502,11 +501,11 @@ inline vtkSmartPointer<vtkPolyData> MakeCloud(
 }
 
 inline vtkSmartPointer<vtkPolyData> MakeCloud(
-  vtkPolyData* mesh, const std::vector<ToSurfacePoint>& places)
+  vtkPolyData* mesh, const std::vector<MeshPoint>& samples)
 {
   std::vector<Point> positions;
-  positions.reserve(places.size());
-  for (const ToSurfacePoint& surfacePoint : places)
+  positions.reserve(samples.size());
+  for (const MeshPoint& surfacePoint : samples)
   {
     positions.push_back(PositionOf(mesh, surfacePoint));
   }
@@ -530,13 +529,13 @@ vtkSmartPointer<ArrayType> RandomArray(
   return array;
 }
 
-/// The worst of many errors, each over its bound.
+/// The largest of many errors divided by their bounds.
 class Worst
 {
 public:
   void Take(double error, double bound)
   {
-    // Written so that NaN is the worst of all.
+    // Negated so that NaN is the largest.
     if (!(error / bound <= this->OverBound))
     {
       this->OverBound = std::isnan(error) ? std::numeric_limits<double>::infinity() : error / bound;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MappedPoints.h
-/// What vtkDifferentiableHomeomorphism makes of a list of points, and ways to alter the meshes of
-/// TestMeshes.h.
+/// Images of a list of points under vtkDifferentiableHomeomorphism, and modifications of the meshes
+/// of TestMeshes.h.
 
 #ifndef MappedPoints_h
 #define MappedPoints_h
@@ -39,7 +39,7 @@ inline void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& surfacePoint
   mesh->GetPoints()->Modified();
 }
 
-/// The point with these weights of a triangle's corners.
+/// The point with these barycentric weights in a triangle.
 inline Point PointIn(vtkPolyData* mesh, const Triangle& triangle, const Point& weights)
 {
   const std::vector<Point> points = PointsOf(mesh);
@@ -64,7 +64,7 @@ inline double DistanceOf(const Point& a, const Point& b)
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// A vtkPolyData of points alone.
+/// A vtkPolyData with points only.
 inline vtkSmartPointer<vtkPolyData> MakeCloud(const std::vector<Point>& points)
 {
   return MakeMesh(points, {});

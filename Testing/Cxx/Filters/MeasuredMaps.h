@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MeasuredMaps.h
-/// Maps that are no homeomorphisms of triangulations: one with creases of known size in known
-/// places, and one with none.
+/// Maps that are not homeomorphisms of triangulations: one with known creases, and one without
+/// creases.
 
 #ifndef MeasuredMaps_h
 #define MeasuredMaps_h
@@ -21,10 +21,10 @@
 namespace test_meshes
 {
 
-/// A map of the plane that is smooth but for the line x = 7, from where on Amount times the
-/// distance to the power Exponent is added. With EveryLine, it is made of pieces between all lines
-/// of integer x: straight lines up and down (Exponent 1), or parabolas with one tangent where they
-/// meet (2).
+/// A map of the plane that is smooth except at the line x = 7, beyond which Amount times the
+/// distance to the power Exponent is added. With EveryLine, it consists of pieces between all
+/// lines of integer x: straight lines up and down (Exponent 1), or parabolas with common tangents
+/// (2).
 class PiecewiseMap : public vtkWarpTransform
 {
 public:
@@ -61,7 +61,7 @@ protected:
   }
   void ForwardTransformPoint(const float in[3], float out[3]) override { this->Map(in, out); }
   void ForwardTransformPoint(const double in[3], double out[3]) override { this->Map(in, out); }
-  // Not used: the instrument evaluates, and never asks for derivatives.
+  // Not used: the filter evaluates values only.
   void ForwardTransformDerivative(const float in[3], float out[3], float d[3][3]) override
   {
     this->Map(in, out);
@@ -75,8 +75,8 @@ protected:
 };
 inline vtkStandardNewMacro(PiecewiseMap);
 
-/// A thin plate spline from the source to the target of a pair, through every @a stride-th point,
-/// moved a bit in both, so that landmarks lie off the vertices.
+/// A thin plate spline from the source to the target of a pair through every @a stride-th point,
+/// slightly moved in both meshes, so that landmarks lie off the vertices.
 inline vtkSmartPointer<vtkThinPlateSplineTransform> MakeThinPlateSpline(
   const MeshPair& pair, vtkIdType stride)
 {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A long run that its user stops ends within a second, and what it leaves is valid and cannot be
-// taken for the whole.
+// An aborted filter stops within a second, and its output is valid and marked as
+// incomplete.
 
 #include "FilterRuns.h"
 
@@ -24,7 +24,7 @@ namespace
 using namespace filter_runs;
 using Clock = std::chrono::steady_clock;
 
-/// Asks to abort once an algorithm has got so far, as a user does who is tired of waiting.
+/// Requests an abort when the progress of an algorithm exceeds a limit.
 class Impatience
 {
 public:
@@ -67,7 +67,8 @@ private:
   Clock::time_point Time;
 };
 
-/// Updates, asks to abort at some progress, and expects the end soon and without errors.
+/// Updates, requests an abort at some progress, and expects the filter to stop soon and without
+/// errors.
 void UpdateImpatiently(vtkAlgorithm* algorithm, double progress)
 {
   Messages messages(algorithm);
@@ -150,7 +151,7 @@ TEST(Abort, Coordinates)
 
 TEST(Abort, CoordinateLines)
 {
-  // Lines take longest, and are the first to be made.
+  // Lines take longest and are made first.
   const MeshPair pair = MakePlanarPair(80, 43);
   vtkNew<vtkTriangularCoordinates> filter;
   filter->SetInputData(pair.Source);
@@ -208,7 +209,7 @@ TEST(Abort, Resample)
     auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
     ASSERT_TRUE(output);
     EXPECT_LT(CountValid(output), 800 * 800);
-    // Nothing is invented for what was not reached.
+    // Points that were not reached are marked as invalid.
     vtkDataArray* brightness = PointArray(output, "Brightness");
     for (vtkIdType i = 0; brightness && i < output->GetNumberOfPoints(); ++i)
     {

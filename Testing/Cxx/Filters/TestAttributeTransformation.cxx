@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What becomes of vectors, normals, tensors and gradients that vtkDifferentiableHomeomorphism
-// carries.
+// Transformation of vectors, normals, tensors and gradients by vtkDifferentiableHomeomorphism.
 
 #include "FilterRuns.h"
 
@@ -20,13 +19,14 @@ namespace
 
 using namespace filter_runs;
 
-class Transport : public ::testing::TestWithParam<System>
+class AttributesInEverySystem : public ::testing::TestWithParam<System>
 {
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Transport, ::testing::ValuesIn(AllSystems()), NameOfSystem);
+INSTANTIATE_TEST_SUITE_P(
+  All, AttributesInEverySystem, ::testing::ValuesIn(AllSystems()), NameOfSystem);
 
-/// A random symmetric tensor in VTK's order XX, YY, ZZ, XY, YZ, XZ as a matrix.
+/// A random symmetric tensor as a matrix, from VTK's order XX, YY, ZZ, XY, YZ, XZ.
 Matrix SymmetricOf(vtkDataArray* array, vtkIdType i)
 {
   double t[6];
@@ -34,11 +34,11 @@ Matrix SymmetricOf(vtkDataArray* array, vtkIdType i)
   return { { { t[0], t[3], t[5] }, { t[3], t[1], t[4] }, { t[5], t[4], t[2] } } };
 }
 
-/// A cloud inside the triangles of a mesh with an array of each kind.
-vtkSmartPointer<vtkPolyData> MakeCarriedCloud(vtkPolyData* mesh, std::uint64_t seed)
+/// Points inside the triangles of a mesh, with an array of each kind.
+vtkSmartPointer<vtkPolyData> MakeCloudWithArrays(vtkPolyData* mesh, std::uint64_t seed)
 {
   constexpr vtkIdType count = 3000;
-  const auto cloud = MakeCloud(mesh, InnerPlaces(mesh, count, seed, 1e-3));
+  const auto cloud = MakeCloud(mesh, InnerSamples(mesh, count, seed, 1e-3));
   vtkPointData* pointData = cloud->GetPointData();
   pointData->SetScalars(RandomArray("Scalars", 3, count, seed + 1));
   pointData->SetVectors(RandomArray("Vectors", 3, count, seed + 2));
@@ -61,12 +61,12 @@ vtkSmartPointer<vtkPolyData> MakeCarriedCloud(vtkPolyData* mesh, std::uint64_t s
 
 // --- Forward and back ----------------------------------------------------------------------------
 
-TEST_P(Transport, ForwardThenBackIsTheIdentity)
+TEST_P(AttributesInEverySystem, ForwardThenBackIsTheIdentity)
 {
   for (const Pairing& pairing : AllPairings(8, 2, 400))
   {
     const MeshPair& pair = pairing.Meshes;
-    const auto cloud = MakeCarriedCloud(pair.Source, 50);
+    const auto cloud = MakeCloudWithArrays(pair.Source, 50);
     cloud->GetPointData()->AddArray(RandomArray("Gradient", 3, cloud->GetNumberOfPoints(), 70));
     cloud->GetPointData()->AddArray(RandomArray("Metric", 9, cloud->GetNumberOfPoints(), 71));
     const auto forward = MakeFilter(GetParam(), pair, cloud);
@@ -113,12 +113,12 @@ TEST_P(Transport, ForwardThenBackIsTheIdentity)
   }
 }
 
-TEST_P(Transport, FollowsTheJacobian)
+TEST_P(AttributesInEverySystem, FollowsTheJacobian)
 {
   for (const Pairing& pairing : AllPairings(6, 1, 410))
   {
     const MeshPair& pair = pairing.Meshes;
-    const auto cloud = MakeCarriedCloud(pair.Source, 80);
+    const auto cloud = MakeCloudWithArrays(pair.Source, 80);
     const vtkIdType count = cloud->GetNumberOfPoints();
     for (const char* name : { "Gradient", "Normal" })
     {
@@ -166,7 +166,7 @@ TEST_P(Transport, FollowsTheJacobian)
         MatrixOf(PointArray(cloud, "Metric9"), i), inverseTransposed);
       takeTensor(SymmetricOf(PointArray(output, "Metric6"), i),
         SymmetricOf(PointArray(cloud, "Metric6"), i), inverseTransposed);
-      // The rate of change of a scalar along a path does not depend on where both are drawn.
+      // The derivative of a scalar along a path is invariant.
       worst.Take(std::abs(Dot(vector(output, "Gradient"), vector(output, "Vectors")) -
                    Dot(vector(cloud, "Gradient"), vector(cloud, "Vectors"))),
         bound * Norm(vector(output, "Gradient")) * Norm(vector(output, "Vectors")));
@@ -177,28 +177,28 @@ TEST_P(Transport, FollowsTheJacobian)
 
 // --- Geometry ------------------------------------------------------------------------------------
 
-TEST_P(Transport, VectorsFollowTheirPoints)
+TEST_P(AttributesInEverySystem, VectorsFollowTheirPoints)
 {
-  // A vector as the difference of two nearby points of the triangle, carried, is the difference of
-  // their images.
+  // The image of the difference of two nearby points of a triangle is the difference of their
+  // images.
   for (const Pairing& pairing : AllPairings(8, 2, 420))
   {
     const MeshPair& pair = pairing.Meshes;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 90, 0.02);
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 90, 0.02);
     constexpr double h = 1e-6;
     Random random(91);
-    std::vector<ToSurfacePoint> ahead = places;
-    std::vector<ToSurfacePoint> behind = places;
-    const auto cloud = MakeCloud(pair.Source, places);
+    std::vector<MeshPoint> ahead = samples;
+    std::vector<MeshPoint> behind = samples;
+    const auto cloud = MakeCloud(pair.Source, samples);
     const auto vectors = RandomArray("Vectors", 3, cloud->GetNumberOfPoints(), 92);
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const double a = random.Uniform(-1.0, 1.0);
       const double b = random.Uniform(-1.0, 1.0);
       const Point change{ -a - b, a, b };
-      ahead[i].Weights = places[i].Weights + h * change;
-      behind[i].Weights = places[i].Weights - h * change;
-      const std::array<Point, 3> corners = CornersOf(pair.Source, places[i].Triangle);
+      ahead[i].Weights = samples[i].Weights + h * change;
+      behind[i].Weights = samples[i].Weights - h * change;
+      const std::array<Point, 3> corners = CornersOf(pair.Source, samples[i].Triangle);
       vectors->SetTuple(static_cast<vtkIdType>(i),
         (change[0] * corners[0] + change[1] * corners[1] + change[2] * corners[2]).data());
     }
@@ -206,39 +206,39 @@ TEST_P(Transport, VectorsFollowTheirPoints)
     const auto filter = MakeFilter(GetParam(), pair, cloud);
     const auto filterAhead = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, ahead));
     const auto filterBehind = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, behind));
-    vtkDataArray* carried = PointArray(Output(filter), "Vectors");
+    vtkDataArray* mapped = PointArray(Output(filter), "Vectors");
     std::vector<double> errors;
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
     {
       const Point difference =
         (0.5 / h) * (PointOf(Output(filterAhead), i) - PointOf(Output(filterBehind), i));
       errors.push_back(
-        Distance(difference, VectorOf(carried, i)) / (1e-3 + Norm(VectorOf(carried, i))));
+        Distance(difference, VectorOf(mapped, i)) / (1e-3 + Norm(VectorOf(mapped, i))));
     }
-    // All but the few whose difference is taken across a spoke or a wing segment.
+    // Except for the few whose difference crosses a spoke or a wing segment.
     std::sort(errors.begin(), errors.end());
     EXPECT_LT(errors[errors.size() * 99 / 100], 1e-6) << pairing.Name;
   }
 }
 
-TEST_P(Transport, NormalsStayNormal)
+TEST_P(AttributesInEverySystem, NormalsStayNormal)
 {
-  // Of a curve in the plane, and of a surface.
+  // For a curve in the plane and for a surface.
   const MeshPair planar = MakePlanarPair(8, 430);
   const MeshPair closed = MakeClosedPair(2, 431);
   Random random(95);
   for (const bool isPlanar : { true, false })
   {
     const MeshPair& pair = isPlanar ? planar : closed;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 96, 1e-3);
-    const auto cloud = MakeCloud(pair.Source, places);
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 96, 1e-3);
+    const auto cloud = MakeCloud(pair.Source, samples);
     const vtkIdType count = cloud->GetNumberOfPoints();
     const auto tangents = RandomArray("Tangents", 3, count, 97);
     const auto normals = RandomArray("Normals", 3, count, 98);
     for (vtkIdType i = 0; i < count; ++i)
     {
       const std::array<Point, 3> c =
-        CornersOf(pair.Source, places[static_cast<std::size_t>(i)].Triangle);
+        CornersOf(pair.Source, samples[static_cast<std::size_t>(i)].Triangle);
       const Point tangent =
         random.Uniform(-1.0, 1.0) * (c[1] - c[0]) + random.Uniform(-1.0, 1.0) * (c[2] - c[0]);
       const Point normal =
@@ -260,7 +260,7 @@ TEST_P(Transport, NormalsStayNormal)
       if (!isPlanar)
       {
         const std::array<Point, 3> c =
-          CornersOf(pair.Target, places[static_cast<std::size_t>(i)].Triangle);
+          CornersOf(pair.Target, samples[static_cast<std::size_t>(i)].Triangle);
         worst.Take(Distance(normal, Unit(Cross(c[1] - c[0], c[2] - c[0]))), 1e-11);
       }
     }
@@ -268,10 +268,10 @@ TEST_P(Transport, NormalsStayNormal)
   }
 }
 
-TEST_P(Transport, ZeroVectorsStayZero)
+TEST_P(AttributesInEverySystem, ZeroVectorsStayZero)
 {
   const MeshPair pair = MakePlanarPair(4, 435);
-  const auto cloud = MakeCloud(pair.Source, InnerPlaces(pair.Source, 50, 99, 1e-3));
+  const auto cloud = MakeCloud(pair.Source, InnerSamples(pair.Source, 50, 99, 1e-3));
   for (const bool normals : { false, true })
   {
     vtkNew<vtkDoubleArray> zero;
@@ -289,9 +289,9 @@ TEST_P(Transport, ZeroVectorsStayZero)
   }
 }
 
-TEST_P(Transport, AGradientStaysTheGradient)
+TEST_P(AttributesInEverySystem, GradientsOfImagesAreImagesOfGradients)
 {
-  // A scalar s on P, and its gradient carried; on Q, s o f^-1 has that gradient.
+  // A scalar s on P with its gradient, and on Q the scalar s o f^-1 with the transformed gradient.
   const auto scalar = [](const Point& p) {
     return std::sin(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[0] * p[1] + 0.5 * p[2];
   };
@@ -302,8 +302,8 @@ TEST_P(Transport, AGradientStaysTheGradient)
   for (const Pairing& pairing : AllPairings(8, 2, 440))
   {
     const MeshPair& pair = pairing.Meshes;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 100, 0.02);
-    const auto cloud = MakeCloud(pair.Source, places);
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 100, 0.02);
+    const auto cloud = MakeCloud(pair.Source, samples);
     const vtkIdType count = cloud->GetNumberOfPoints();
     const auto gradients = RandomArray("Gradient", 3, count, 101);
     for (vtkIdType i = 0; i < count; ++i)
@@ -316,14 +316,14 @@ TEST_P(Transport, AGradientStaysTheGradient)
       "Gradient", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
     vtkPointSet* output = Output(filter);
 
-    // Differences on Q, within the triangle's plane.
+    // Differences on Q, within the plane of the triangle.
     constexpr double h = 1e-6;
     std::vector<Point> stencil;
     std::vector<std::array<Point, 2>> directions;
     for (vtkIdType i = 0; i < count; ++i)
     {
       const std::array<Point, 3> c =
-        CornersOf(pair.Target, places[static_cast<std::size_t>(i)].Triangle);
+        CornersOf(pair.Target, samples[static_cast<std::size_t>(i)].Triangle);
       directions.push_back({ Unit(c[1] - c[0]), Unit(c[2] - c[0]) });
       for (const Point& direction : directions.back())
       {
@@ -338,15 +338,15 @@ TEST_P(Transport, AGradientStaysTheGradient)
     std::vector<double> errors;
     for (vtkIdType i = 0; i < count; ++i)
     {
-      const Point carried = VectorOf(PointArray(output, "Gradient"), i);
+      const Point mapped = VectorOf(PointArray(output, "Gradient"), i);
       for (int k = 0; k < 2; ++k)
       {
         const double difference = (scalar(PointOf(preimages, 4 * i + 2 * k)) -
                                     scalar(PointOf(preimages, 4 * i + 2 * k + 1))) /
           (2.0 * h);
         errors.push_back(
-          std::abs(difference - Dot(carried, directions[static_cast<std::size_t>(i)][k])) /
-          (0.1 + Norm(carried)));
+          std::abs(difference - Dot(mapped, directions[static_cast<std::size_t>(i)][k])) /
+          (0.1 + Norm(mapped)));
       }
     }
     std::sort(errors.begin(), errors.end());
@@ -356,7 +356,7 @@ TEST_P(Transport, AGradientStaysTheGradient)
 
 // --- Cells ---------------------------------------------------------------------------------------
 
-TEST_P(Transport, CellDataIsCarriedAtTheCellsMeans)
+TEST_P(AttributesInEverySystem, CellDataIsTransformedAtCellCenters)
 {
   for (const Pairing& pairing : AllPairings(6, 2, 450))
   {
@@ -438,9 +438,9 @@ TEST_P(Transport, CellDataIsCarriedAtTheCellsMeans)
   }
 }
 
-TEST_P(Transport, CellsThatSpanTrianglesOfASurface)
+TEST_P(AttributesInEverySystem, CellsThatSpanTrianglesOfASurface)
 {
-  // Quadrilaterals of two triangles each: their means lie well off the surface.
+  // Quadrilaterals of two triangles each. Their means lie well off the surface.
   const MeshPair pair = MakeClosedPair(2, 455);
   vtkNew<vtkPolyData> data;
   data->SetPoints(pair.Source->GetPoints());
@@ -468,10 +468,10 @@ TEST_P(Transport, CellsThatSpanTrianglesOfASurface)
   ASSERT_EQ(cells, 3 * pair.Source->GetNumberOfCells() / 2);
   data->GetCellData()->SetVectors(RandomArray("Flux", 3, cells, 108));
   const auto filter = MakeFilter(GetParam(), pair, data);
-  vtkDataArray* carried = Output(filter)->GetCellData()->GetVectors();
+  vtkDataArray* mapped = Output(filter)->GetCellData()->GetVectors();
   for (vtkIdType i = 0; i < cells; ++i)
   {
-    const Point flux = VectorOf(carried, i);
+    const Point flux = VectorOf(mapped, i);
     ASSERT_TRUE(std::isfinite(Norm(flux)));
     ASSERT_GT(Norm(flux), 0.0);
   }
@@ -503,7 +503,7 @@ protected:
 
   using Algorithm = vtkDifferentiableHomeomorphism;
   const MeshPair Pair = MakePlanarPair(6, 460);
-  const vtkSmartPointer<vtkPolyData> Cloud = MakeCarriedCloud(this->Pair.Source, 110);
+  const vtkSmartPointer<vtkPolyData> Cloud = MakeCloudWithArrays(this->Pair.Source, 110);
   const vtkSmartPointer<vtkDifferentiableHomeomorphism> Filter =
     MakeFilter(Smooth, this->Pair, this->Cloud);
 };
@@ -525,7 +525,7 @@ TEST_F(WhichArrays, NoneWithoutTransformActiveAttributes)
 
 TEST_F(WhichArrays, AllVectors)
 {
-  // Not texture coordinates, the active scalars, integers, nor arrays of other sizes.
+  // Texture coordinates, active scalars, integers and arrays of other sizes are not transformed.
   this->Filter->TransformAllInputVectorsOn();
   EXPECT_EQ(this->Changed(), "Vectors Normals Tensors Displacement Stress FloatVelocity");
 }
@@ -540,7 +540,8 @@ TEST_F(WhichArrays, NamedOnes)
     "TextureCoordinates", Algorithm::GRADIENT_TRANSFORMATION);
   this->Filter->SetAttributeTransformation("Counts", Algorithm::TANGENT_TRANSFORMATION);
   EXPECT_EQ(this->Changed(), "Scalars Normals Tensors TextureCoordinates Counts");
-  // What has not the components of a vector or tensor passes, as do tensors taken for normals.
+  // Arrays without the components of a vector or tensor pass, and so do tensors declared as
+  // normals.
   for (const char* name : { "Pair", "Single" })
   {
     this->Filter->SetAttributeTransformation(name, Algorithm::TANGENT_TRANSFORMATION);
@@ -557,7 +558,7 @@ TEST_F(WhichArrays, NamedOnes)
   EXPECT_EQ(this->Changed(), "Vectors Normals Tensors");
 }
 
-TEST_F(WhichArrays, NonsenseIsRefused)
+TEST_F(WhichArrays, InvalidTransformationsAreRefused)
 {
   Messages messages(this->Filter);
   for (const int transformation : { -1, 4 })
@@ -595,9 +596,9 @@ TEST_F(WhichArrays, RolesAndNamesAreKept)
       pointData->GetAbstractAttribute(role.first), pointData->GetAbstractArray(role.second));
   }
   EXPECT_STREQ(pointData->GetVectors()->GetComponentName(1), "Y");
-  // Nothing twice: the input's arrays and the mask.
+  // No duplicates: the arrays of the input and the mask.
   EXPECT_EQ(pointData->GetNumberOfArrays(), this->Cloud->GetPointData()->GetNumberOfArrays() + 1);
-  // The input keeps its own.
+  // The arrays of the input are unchanged.
   EXPECT_NE(this->Cloud->GetPointData()->GetVectors(), pointData->GetVectors());
 }
 
@@ -608,19 +609,19 @@ TEST_F(WhichArrays, ArraysWithoutAName)
   this->Cloud->GetPointData()->SetVectors(nameless);
   this->Filter->ComputeJacobianOn();
   vtkPointSet* output = Output(this->Filter);
-  vtkDataArray* carried = output->GetPointData()->GetVectors();
-  ASSERT_TRUE(carried);
-  EXPECT_FALSE(carried->GetName());
+  vtkDataArray* mapped = output->GetPointData()->GetVectors();
+  ASSERT_TRUE(mapped);
+  EXPECT_FALSE(mapped->GetName());
   Worst worst;
-  for (vtkIdType i = 0; i < carried->GetNumberOfTuples(); ++i)
+  for (vtkIdType i = 0; i < mapped->GetNumberOfTuples(); ++i)
   {
     const Matrix j = MatrixOf(PointArray(output, "Jacobian"), i);
-    worst.Take(Distance(VectorOf(carried, i), j * VectorOf(nameless, i)), 1e-10 * Norm(j));
+    worst.Take(Distance(VectorOf(mapped, i), j * VectorOf(nameless, i)), 1e-10 * Norm(j));
   }
   EXPECT_LE(worst.OverBound, 1.0);
 }
 
-TEST_F(WhichArrays, ArraysOfAnotherLengthPass)
+TEST_F(WhichArrays, ArraysOfWrongLengthPass)
 {
   const auto tooShort = RandomArray("TooShort", 3, this->Cloud->GetNumberOfPoints() - 7, 122);
   const auto tooLong = RandomArray("TooLong", 9, this->Cloud->GetNumberOfPoints() + 7, 123);
@@ -632,10 +633,10 @@ TEST_F(WhichArrays, ArraysOfAnotherLengthPass)
   EXPECT_EQ(CountDifferentValues(PointArray(output, "TooLong"), tooLong), 0);
 }
 
-TEST(AttributeTransformation, CellsOfPointsThatDoNotExist)
+TEST(AttributeTransformation, CellsWithInvalidPointIdsPass)
 {
   const MeshPair pair = MakePlanarPair(4, 466);
-  const auto data = MakeCloud(pair.Source, InnerPlaces(pair.Source, 20, 124, 1e-3));
+  const auto data = MakeCloud(pair.Source, InnerSamples(pair.Source, 20, 124, 1e-3));
   vtkNew<vtkCellArray> lines;
   lines->InsertNextCell({ 0, 1 });
   lines->InsertNextCell({ 2, 20 });
@@ -643,7 +644,7 @@ TEST(AttributeTransformation, CellsOfPointsThatDoNotExist)
   lines->InsertNextCell({ 4, 5, 6 });
   data->SetLines(lines);
   data->GetCellData()->SetVectors(RandomArray("Flux", 3, 4, 125));
-  // With a point outside there are ghosts, too.
+  // A point outside adds ghost arrays.
   data->GetPoints()->SetPoint(19, -50.0, 0.0, 0.0);
   const auto filter = MakeFilter(Smooth, pair, data);
   vtkPointSet* output = Output(filter);
@@ -667,7 +668,7 @@ TEST_F(WhichArrays, TypesOfNumbers)
   vtkPointSet* output = Output(this->Filter);
   EXPECT_EQ(PointArray(output, "FloatVelocity")->GetDataType(), VTK_FLOAT);
   EXPECT_EQ(PointArray(output, "Vectors")->GetDataType(), VTK_DOUBLE);
-  // A carried integer vector is no integer any more.
+  // A transformed integer vector is no longer integral.
   ASSERT_EQ(PointArray(output, "Counts")->GetDataType(), VTK_DOUBLE);
   Worst worst;
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -681,7 +682,7 @@ TEST_F(WhichArrays, TypesOfNumbers)
   }
   EXPECT_LE(worst.OverBound, 1.0);
 
-  // Integer vectors are carried if they are the active ones, too.
+  // Integer vectors are also transformed if they are the active ones.
   this->Cloud->GetPointData()->SetVectors(
     RandomArray<vtkShortArray>("ShortVectors", 3, this->Cloud->GetNumberOfPoints(), 121));
   this->Filter->ClearAttributeTransformations();
@@ -691,7 +692,7 @@ TEST_F(WhichArrays, TypesOfNumbers)
   EXPECT_EQ(PointArray(output, "Counts")->GetDataType(), VTK_INT);
 }
 
-TEST_P(Transport, OutsideIsNotANumber)
+TEST_P(AttributesInEverySystem, VectorsOutsideAreNaN)
 {
   const MeshPair pair = MakePlanarPair(6, 465);
   vtkNew<vtkImageData> image;
@@ -746,11 +747,11 @@ TEST_P(Transport, OutsideIsNotANumber)
   }
 }
 
-TEST_P(Transport, HeightsInSpaceAreCarriedToo)
+TEST_P(AttributesInEverySystem, HeightsInSpaceAreTransformed)
 {
-  // A map of the plane leaves what points along its normal alone.
+  // A map of the plane keeps vectors along its normal.
   const MeshPair pair = MakePlanarPair(6, 470);
-  const auto cloud = MakeCloud(pair.Source, InnerPlaces(pair.Source, 500, 137, 1e-3));
+  const auto cloud = MakeCloud(pair.Source, InnerSamples(pair.Source, 500, 137, 1e-3));
   vtkNew<vtkDoubleArray> up;
   up->SetName("Up");
   up->SetNumberOfComponents(3);

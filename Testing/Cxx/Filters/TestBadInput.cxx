@@ -699,7 +699,7 @@ std::vector<BadInput> Table()
   add(harmless, "The same object on both ports", {}, "Taken: the map is the identity.", []() {
     const MeshPair pair = GoodPair();
     Outcome outcome = Run({ pair.Source, pair.Source }, true);
-    const auto data = MakeCloud(pair.Source, RandomPlaces(pair.Source, 100, 3));
+    const auto data = MakeCloud(pair.Source, RandomSamples(pair.Source, 100, 3));
     const auto filter = MakeFilter(Smooth, { pair.Source, pair.Source }, data);
     vtkPointSet* output = Output(filter);
     for (vtkIdType i = 0; i < 100; ++i)
@@ -983,7 +983,7 @@ std::vector<BadInput> Table()
       transform->SetSource(pair.Source);
       transform->SetTarget(pair.Target);
       transform->Update();
-      const std::vector<ToSurfacePoint> places = RandomPlaces(pair.Source, 2000, 17);
+      const std::vector<MeshPoint> places = RandomSamples(pair.Source, 2000, 17);
       const auto run = [&](std::vector<Point>& images) {
         for (std::size_t i = 0; i < places.size(); ++i)
         {

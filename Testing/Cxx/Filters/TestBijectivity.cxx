@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The map of whole meshes is one to one and onto: the images of small triangles tile the other
-// domain, and every point of it is hit by exactly one of them and comes back there.
+// The map of whole meshes is bijective: the images of small triangles tile the other domain, and
+// every point of it lies in exactly one of them and maps back into its preimage.
 
 #include "FilterRuns.h"
 
@@ -21,10 +21,10 @@ namespace
 using namespace filter_runs;
 using homeomorphism::Vector2;
 
-/// How often each edge is divided.
+/// Number of subdivisions of each edge.
 constexpr int Divisions = 24;
 
-/// A piece of a mesh's triangle, and three points of the subdivided mesh.
+/// A piece of a triangle of a mesh, and three points of the subdivided mesh.
 struct Piece
 {
   vtkIdType Triangle;
@@ -78,7 +78,7 @@ double SignedArea(const Vector2& a, const Vector2& b, const Vector2& c)
   return 0.5 * homeomorphism::Cross(b - a, c - a);
 }
 
-/// Of corners that run counterclockwise: 1 if the point is inside, 0 if it is on the boundary, -1
+/// For corners in counterclockwise order: 1 if the point is inside, 0 if it is on the boundary, -1
 /// outside.
 int Containment(const std::array<Vector2, 3>& corners, const Vector2& point)
 {
@@ -90,12 +90,12 @@ int Containment(const std::array<Vector2, 3>& corners, const Vector2& point)
   return least;
 }
 
-/// Points of a mesh of almost equilateral triangles: all of them are concordant.
+/// The points of a mesh of almost equilateral triangles, all of which are concordant.
 MeshPair MakeConcordantPair(int n, std::uint64_t seed)
 {
   const auto slant = [](vtkPolyData* mesh) {
-    // The grid's diagonals run from the lower left to the upper right, so they must be the short
-    // ones.
+    // The diagonals of the grid run from the lower left to the upper right, so they must be the
+    // short ones.
     return Moved(mesh, [](const Point& p) -> Point {
       return { p[0] - 0.5 * p[1], 0.866 * p[1], 0.0 };
     });
@@ -113,7 +113,7 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
   ASSERT_EQ(mapped->GetNumberOfPoints(), static_cast<vtkIdType>(pieces.Points.size()));
   ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0);
 
-  // The images do not turn over, and their areas add up to the domain's.
+  // No image is flipped, and the areas of the images sum to that of the domain.
   double area = 0.0;
   for (vtkIdType t = 0; t < pair.Target->GetNumberOfCells(); ++t)
   {
@@ -135,7 +135,7 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
   EXPECT_EQ(turnedOver, 0);
   EXPECT_NEAR(sum, area, 1e-12 * area);
 
-  // A fine grid over the target, shifted so that its points are on no line of the mesh.
+  // A fine grid over the target, shifted so that none of its points is on a line of the mesh.
   double bounds[6];
   pair.Target->GetBounds(bounds);
   constexpr int gridSize = 220;
@@ -204,8 +204,8 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
   EXPECT_EQ(notOnce, 0);
   EXPECT_GT(inside.size(), std::size_t(gridSize * gridSize / 3));
 
-  // Back: into the piece whose image has the point, up to what the straight sides of the image
-  // leave out.
+  // The preimage lies in the piece whose image contains the point, up to the difference between the
+  // image and its straight-sided approximation.
   const auto inverse = MakeFilter(system, pair, MakeCloud(inside));
   inverse->InverseOn();
   vtkPointSet* back = Output(inverse);
@@ -242,7 +242,7 @@ class Bijectivity : public testing::TestWithParam<System>
 
 INSTANTIATE_TEST_SUITE_P(AllSystems, Bijectivity, testing::ValuesIn(AllSystems()), NameOfSystem);
 
-TEST_P(Bijectivity, EveryPointIsHitOnce)
+TEST_P(Bijectivity, EveryTargetPointHasOnePreimage)
 {
   for (const std::uint64_t seed : { 31u, 57u })
   {
@@ -254,9 +254,9 @@ TEST_P(Bijectivity, EveryPointIsHitOnce)
   }
 }
 
-/// Smooth takes triangles of any shape: here the target is sheared, and one vertex is close to an
+/// Smooth accepts triangles of any shape: here the target is sheared, and one vertex is close to an
 /// edge.
-TEST(BijectivityOfSmooth, WithNeedles)
+TEST(BijectivityOfSmooth, HoldsForNeedles)
 {
   const MeshPair pair = MakePlanarPair(4, 91);
   const auto target = Sheared(pair.Target);
@@ -268,12 +268,12 @@ TEST(BijectivityOfSmooth, WithNeedles)
   ExpectBijective(Smooth, { pair.Source, target }, 91);
 }
 
-// --- What the stress test found
-// ----------------------------------------------------------------------
+// --- Ill-conditioned cases
+// --------------------------------------------------------------------------
 
-/// Where a neighbor is far smaller, the columns of the Jacobian are almost parallel, and the
-/// determinant as a difference of their products was anything.
-TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
+/// Beside a far smaller neighbor the columns of the Jacobian are almost parallel, and the
+/// difference of their products would be inaccurate.
+TEST(Determinant, IsAccurateBesideFarSmallerTriangles)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 2, 1, 3 }, { 0, 2, 4 }, { 1, 0, 5 } };
   const MeshPair pair{ MakeMesh({ { 0, 0, 0 }, { -0.002454802733636777, -0.0035144943034052731, 0 },
@@ -289,7 +289,7 @@ TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
                { 15.042583642223518, 7.2082027694053439, 0 } },
       triangles) };
   std::vector<Point> points{ { -0.0010156480399538691, -0.0014540839480793751, 0.0 } };
-  for (const ToSurfacePoint& surfacePoint : RandomPlaces(pair.Source, 20000, 5))
+  for (const MeshPoint& surfacePoint : RandomSamples(pair.Source, 20000, 5))
   {
     points.push_back(PositionOf(pair.Source, surfacePoint));
   }
@@ -305,9 +305,9 @@ TEST(Determinant, OfTrianglesBesideFarSmallerOnes)
   }
 }
 
-/// Two needles on a short edge, both 1e11 times as long as it: the components of the Smooth chart's
-/// offset cancel, and did not sum to 0.
-TEST(RoundTrip, OfNeedlesOnAShortEdge)
+/// Two needles on a short edge, both 1e11 times as long as the edge: the components of the Smooth
+/// chart's offset cancel and must sum to 0 nevertheless.
+TEST(RoundTrip, HoldsForNeedlesOnAShortEdge)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };
   const MeshPair pair{ MakeMesh({ { 476514376170425.75, 487995329171615.19, 0 },
@@ -331,7 +331,7 @@ TEST(RoundTrip, OfNeedlesOnAShortEdge)
 }
 
 /// Two ulp beside the corner of a triangle whose edges are longer than its coordinates.
-TEST(Reach, MeasuringTheDistanceRoundsToo)
+TEST(Tolerance, IncludesRoundingOfTheDistance)
 {
   const MeshPair pair{ MakeMesh({ { 0, 0, 0 }, { 1.0335040411931204, 0.64456407854183768, 0 },
                                   { -0.99287494773428980, 1.0514803639231405, 0 },
@@ -339,7 +339,7 @@ TEST(Reach, MeasuringTheDistanceRoundsToo)
                          { { 0, 1, 2 }, { 1, 0, 3 } }),
     MakeMesh(
       { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 } }, { { 0, 1, 2 }, { 1, 0, 3 } }) };
-  // Everywhere around the corners, up to two ulp of the largest coordinate away.
+  // All around the corners, up to two ulp of the largest coordinate away.
   std::vector<Point> points;
   for (vtkIdType corner = 0; corner < 4; ++corner)
   {

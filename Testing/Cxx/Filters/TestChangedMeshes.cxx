@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestChangedMeshes.cxx
-/// Meshes that are changed in place after a first update: what was computed from them must not
-/// outlive the change, and must not be computed again without one.
+/// Meshes that change in place after an update. Data computed from them must be recomputed after a
+/// change, and only then.
 
 #include "TestMeshes.h"
 
@@ -27,8 +27,8 @@ namespace
 
 using namespace test_meshes;
 
-/// Two squares side by side, the diagonals of which can be changed. The target is no affine image
-/// of the source, so that the map shows which diagonals it was made with.
+/// Two adjacent squares with changeable diagonals. The target is not an affine image of the source,
+/// so the map depends on the diagonals.
 MeshPair MakeTwoSquares()
 {
   const std::vector<Triangle> triangles{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 } };
@@ -39,8 +39,8 @@ MeshPair MakeTwoSquares()
       triangles) };
 }
 
-/// Gives the first square its other diagonal, in place. The cell array's own time alone tells of
-/// it.
+/// Replaces the diagonal of the first square in place. Only the modification time of the cell array
+/// changes.
 void FlipDiagonal(vtkPolyData* mesh)
 {
   const Triangle first{ 0, 1, 3 };
@@ -50,7 +50,7 @@ void FlipDiagonal(vtkPolyData* mesh)
   mesh->GetPolys()->Modified();
 }
 
-/// Leaves the second square alone, in place: Reset keeps the arrays.
+/// Keeps only the second square, in place: Reset keeps the arrays.
 void KeepSecondSquare(vtkPolyData* mesh)
 {
   const Triangle first{ 1, 2, 5 };
@@ -60,17 +60,17 @@ void KeepSecondSquare(vtkPolyData* mesh)
   mesh->GetPolys()->InsertNextCell(3, second.data());
 }
 
-const std::vector<Point> Places{ { 0.3, 0.4, 0 }, { 0.75, 0.25, 0 }, { 0.5, 0.5, 0 },
+const std::vector<Point> Samples{ { 0.3, 0.4, 0 }, { 0.75, 0.25, 0 }, { 0.5, 0.5, 0 },
   { 0.4, 0.1, 0 }, { 1.2, 0.7, 0 }, { 1.7, 0.4, 0 } };
 
-/// A user of a pair of meshes that can be asked, again and again, what becomes of the places. An
-/// empty answer is a refusal.
+/// A consumer of a pair of meshes that maps the test points repeatedly. An empty result is a
+/// refusal.
 class User
 {
 public:
   virtual ~User() = default;
   virtual std::vector<double> Ask() = 0;
-  /// Says that something has changed, as far as a change did not tell by itself.
+  /// Calls Modified for changes that do not update any modification time.
   virtual void Touch() = 0;
 };
 
@@ -81,7 +81,7 @@ void Append(std::vector<double>& numbers, vtkDataArray* array)
     for (int k = 0; k < array->GetNumberOfComponents(); ++k)
     {
       const double x = array->GetComponent(i, k);
-      // NaN equals nothing, itself included.
+      // NaN is unequal to everything, itself included.
       numbers.push_back(std::isnan(x) ? -1e99 : x);
     }
   }
@@ -91,20 +91,20 @@ class FilterUser : public User
 {
 public:
   explicit FilterUser(const MeshPair& pair)
-    : Told(Filter)
+    : Log(Filter)
   {
     this->Filter->SetSourceData(pair.Source);
     this->Filter->SetTargetData(pair.Target);
-    this->Filter->SetDataObject(MakeMesh(Places, {}));
+    this->Filter->SetDataObject(MakeMesh(Samples, {}));
     this->Filter->ComputeTriangleIdOn();
   }
   std::vector<double> Ask() override
   {
-    this->Told.Clear();
+    this->Log.Clear();
     this->Filter->Update();
     std::vector<double> answer;
     auto* output = vtkPointSet::SafeDownCast(this->Filter->GetOutputDataObject(0));
-    if (!this->Told.HasError())
+    if (!this->Log.HasError())
     {
       Append(answer, output->GetPoints()->GetData());
       Append(answer, output->GetPointData()->GetArray("TriangleId"));
@@ -114,26 +114,26 @@ public:
   void Touch() override { this->Filter->Modified(); }
 
   vtkNew<vtkDifferentiableHomeomorphism> Filter;
-  Messages Told;
+  Messages Log;
 };
 
-/// The filter of one mesh: the pair's source.
+/// The filter with a single mesh: the source of the pair.
 class CoordinatesUser : public User
 {
 public:
   explicit CoordinatesUser(const MeshPair& pair)
-    : Told(Filter)
+    : Log(Filter)
   {
     this->Filter->SetInputData(0, pair.Source);
-    this->Filter->SetDataObject(MakeMesh(Places, {}));
+    this->Filter->SetDataObject(MakeMesh(Samples, {}));
   }
   std::vector<double> Ask() override
   {
-    this->Told.Clear();
+    this->Log.Clear();
     this->Filter->Update();
     std::vector<double> answer;
     auto* output = vtkPointSet::SafeDownCast(this->Filter->GetOutputDataObject(0));
-    if (!this->Told.HasError())
+    if (!this->Log.HasError())
     {
       for (const char* name : { "TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter" })
       {
@@ -147,24 +147,24 @@ public:
   void Touch() override { this->Filter->Modified(); }
 
   vtkNew<vtkTriangularCoordinates> Filter;
-  Messages Told;
+  Messages Log;
 };
 
 class TransformUser : public User
 {
 public:
   explicit TransformUser(const MeshPair& pair)
-    : Told(Transform)
+    : Log(Transform)
   {
     this->Transform->SetSource(pair.Source);
     this->Transform->SetTarget(pair.Target);
   }
   std::vector<double> Ask() override
   {
-    this->Told.Clear();
+    this->Log.Clear();
     this->Transform->Update();
     std::vector<double> answer;
-    for (const Point& surfacePoint : this->Told.HasError() ? std::vector<Point>() : Places)
+    for (const Point& surfacePoint : this->Log.HasError() ? std::vector<Point>() : Samples)
     {
       Point image;
       this->Transform->TransformPoint(surfacePoint.data(), image.data());
@@ -175,7 +175,7 @@ public:
   void Touch() override { this->Transform->Modified(); }
 
   vtkNew<vtkHomeomorphismTransform> Transform;
-  Messages Told;
+  Messages Log;
 };
 
 enum class Kind
@@ -205,7 +205,7 @@ const char* NameOf(Kind kind)
                               : (kind == Kind::Coordinates ? "coordinates" : "transform");
 }
 
-/// The meshes anew, in objects that nobody has seen before.
+/// Copies of the meshes in new objects.
 MeshPair Anew(const MeshPair& pair)
 {
   MeshPair copy;
@@ -217,8 +217,8 @@ MeshPair Anew(const MeshPair& pair)
   return copy;
 }
 
-/// Changes meshes under a user who has used them, who must then say the same as one who sees them
-/// for the first time.
+/// Changes meshes after a consumer has used them. The consumer must then give the same result as a
+/// new one.
 void ExpectNoticed(
   const std::function<void(const MeshPair&)>& change, bool touch = false, bool changesSource = true)
 {
@@ -241,7 +241,7 @@ void ExpectNoticed(
     const std::vector<double> after = user->Ask();
     EXPECT_EQ(after, MakeUser(kind, Anew(pair))->Ask());
     EXPECT_NE(after, before);
-    // And it stays so. (A filter whose update has failed says nothing at the next one.)
+    // The result stays the same. (After a failed update a filter does not report again.)
     if (!after.empty())
     {
       EXPECT_EQ(user->Ask(), after);
@@ -259,7 +259,7 @@ TEST(ChangedMeshes, CellsReplacedInPlace)
 
 TEST(ChangedMeshes, CellsReplacedInOneMeshAreRefused)
 {
-  // Source and target are the same mesh no more.
+  // Source and target are no longer isomorphic.
   for (const auto mesh : { &MeshPair::Source, &MeshPair::Target })
   {
     for (const Kind kind : { Kind::Filter, Kind::Transform })
@@ -279,7 +279,7 @@ TEST(ChangedMeshes, CellsMadeInvalidInPlaceAreRefused)
   ExpectNoticed([](const MeshPair& pair) {
     for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
     {
-      // A point twice.
+      // A repeated corner.
       const Triangle triangle{ 0, 4, 4 };
       mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
       mesh->GetPolys()->Modified();
@@ -298,9 +298,9 @@ TEST(ChangedMeshes, FewerCellsAfterReset)
   });
 }
 
-TEST(ChangedMeshes, FewerCellsAfterResetWithoutTimeOfTheirOwn)
+TEST(ChangedMeshes, FewerCellsAfterResetWithoutModifiedTime)
 {
-  // Nothing but the number of cells tells of the change, once the user is made to look.
+  // Only the number of cells has changed when the consumer updates.
   ExpectNoticed(
     [](const MeshPair& pair) {
       for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
@@ -338,7 +338,7 @@ TEST(ChangedMeshes, MorePointsInOneMeshAreRefused)
       const MeshPair pair = MakeTwoSquares();
       const auto user = MakeUser(kind, pair);
       ASSERT_FALSE(user->Ask().empty());
-      // InsertNextPoint leaves all times as they are.
+      // InsertNextPoint does not change any modification time.
       (pair.*mesh)->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
       user->Touch();
       EXPECT_TRUE(user->Ask().empty());
@@ -346,9 +346,9 @@ TEST(ChangedMeshes, MorePointsInOneMeshAreRefused)
   }
 }
 
-TEST(ChangedMeshes, ARefusedMeshMendedInPlaceIsTaken)
+TEST(ChangedMeshes, ARefusedMeshRepairedInPlaceIsAccepted)
 {
-  // The refusal is kept like a result, so it must be given up like one.
+  // A refusal is cached like a result and must be invalidated like one.
   for (const Kind kind : Kinds)
   {
     SCOPED_TRACE(NameOf(kind));
@@ -382,7 +382,7 @@ TEST(ChangedMeshes, PointsMovedInPlace)
       pair.Target->GetPoints()->Modified();
     },
     false, false);
-  // Through the array behind the points.
+  // Through the array of the points.
   ExpectNoticed([](const MeshPair& pair) {
     vtkDataArray* coordinates = pair.Source->GetPoints()->GetData();
     coordinates->SetComponent(4, 0, 1.1);
@@ -398,14 +398,14 @@ TEST(ChangedMeshes, CellsHiddenInPlace)
   });
 }
 
-/// Edits of one filter's meshes and settings, and whether the meshes are read again for them.
-class Builds : public ::testing::Test
+/// Changes to the meshes and options of a filter, and whether the meshes are read again.
+class Rebuilds : public ::testing::Test
 {
 protected:
   MeshPair Pair = MakeTwoSquares();
   FilterUser User{ Pair };
 
-  /// How often the meshes are read in another update.
+  /// The number of times the meshes are read in another update.
   vtkIdType BuildsOfUpdate()
   {
     const vtkIdType before = this->User.Filter->GetNumberOfMeshBuilds();
@@ -414,7 +414,7 @@ protected:
   }
 };
 
-TEST_F(Builds, OnceForEveryEdit)
+TEST_F(Rebuilds, OncePerChange)
 {
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
   EXPECT_EQ(this->BuildsOfUpdate(), 0);
@@ -430,7 +430,7 @@ TEST_F(Builds, OnceForEveryEdit)
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
 }
 
-TEST_F(Builds, NoneForDataOnTheMeshes)
+TEST_F(Rebuilds, NoneForDataOnTheMeshes)
 {
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
   for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
@@ -454,7 +454,7 @@ TEST_F(Builds, NoneForDataOnTheMeshes)
   }
 }
 
-TEST_F(Builds, NoneForAnotherObjectAroundTheSameArrays)
+TEST_F(Rebuilds, NoneForAnotherObjectWithTheSameArrays)
 {
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
   const vtkNew<vtkPolyData> same;
@@ -463,7 +463,7 @@ TEST_F(Builds, NoneForAnotherObjectAroundTheSameArrays)
   EXPECT_EQ(this->BuildsOfUpdate(), 0);
 }
 
-TEST_F(Builds, OfOptions)
+TEST_F(Rebuilds, OncePerChangeOfOptions)
 {
   auto* filter = this->User.Filter.Get();
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
@@ -475,7 +475,7 @@ TEST_F(Builds, OfOptions)
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
   filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::USE_LINEAR);
   EXPECT_EQ(this->BuildsOfUpdate(), 1);
-  // These say how the map is used, not what it is.
+  // These options do not affect the map itself.
   filter->ComputeJacobianOn();
   filter->SetTolerance(0.1);
   filter->BlankOutsideOff();
@@ -485,7 +485,7 @@ TEST_F(Builds, OfOptions)
   EXPECT_EQ(this->BuildsOfUpdate(), 0);
 }
 
-TEST(ChangedMeshes, OptionsOfEverybody)
+TEST(ChangedMeshes, OptionsOfAllClasses)
 {
   // Linear and Smooth differ in the two squares.
   const MeshPair pair = MakeTwoSquares();
@@ -506,9 +506,9 @@ TEST(ChangedMeshes, OptionsOfEverybody)
   EXPECT_EQ(smooth, std::make_tuple(filter.Ask(), coordinates.Ask(), transform.Ask()));
 }
 
-TEST(ChangedMeshes, CopiesAndInversesOfATransformNotice)
+TEST(ChangedMeshes, CopiesAndInversesOfATransformFollow)
 {
-  // They share what the transform has computed, but not beyond a change.
+  // They share the data computed by the transform until it changes.
   const MeshPair pair = MakeTwoSquares();
   TransformUser user(pair);
   ASSERT_FALSE(user.Ask().empty());
@@ -521,7 +521,7 @@ TEST(ChangedMeshes, CopiesAndInversesOfATransformNotice)
   FlipDiagonal(pair.Target);
   const MeshPair anew = Anew(pair);
   TransformUser fresh(anew);
-  for (const Point& surfacePoint : Places)
+  for (const Point& surfacePoint : Samples)
   {
     Point expected;
     Point image;

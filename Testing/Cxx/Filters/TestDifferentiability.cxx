@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The counterexample of Documentation/differentiability.md, with the numbers that stand there: from
-// the map's values, from the library's closed form, and by the formulas of the text, written out
-// here.
+// The counterexample of Documentation/differentiability.md with its numbers: from values of the
+// map, from the closed form of the library, and from the formulas of the document, evaluated here.
 
 #include "TestMeshes.h"
 
@@ -24,7 +23,7 @@ namespace
 
 using namespace test_meshes;
 
-/// Two triangles on the edge from (-2, 0) to (2, 0); in the target the upper apex is pulled up.
+/// Two triangles on the edge from (-2, 0) to (2, 0). In the target the upper apex is moved up.
 MeshPair MakeCounterexample()
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };
@@ -50,8 +49,8 @@ std::array<double, 2> Image(vtkHomeomorphismTransform* map, double x, double y)
   return { image[0], image[1] };
 }
 
-/// The contour of a half edge that ends at a distance from the foot, by the formulas of the text:
-/// its length. Bisection, so as to share nothing with the library.
+/// The length of the contour of a half edge that ends at a given distance from the foot, by the
+/// formulas of the document. Bisection, which shares no code with the library.
 double ContourLength(double h, double b, double edgePoint)
 {
   double lower = 0.0;
@@ -69,17 +68,17 @@ double ContourLength(double h, double b, double edgePoint)
   return 0.5 * radius(s) + arc;
 }
 
-struct PlaceOnEdge
+struct EdgeSample
 {
   double Proportion;
   double DerivativeFromAbove;
   double Jump;
 };
 
-constexpr std::array<PlaceOnEdge, 3> places{ { { 1.0 / 2.0, 2.0, 0.55470 },
+constexpr std::array<EdgeSample, 3> samples{ { { 1.0 / 2.0, 2.0, 0.55470 },
   { 2.0 / 3.0, 1.73095, 0.43188 }, { 5.0 / 6.0, 1.42977, 0.27313 } } };
 
-TEST(Answer, TheMapOnTheMiddleLine)
+TEST(Differentiability, ContourIsPiecewiseLinearOnTheMiddleLine)
 {
   const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
   for (int i = 0; i <= 16; ++i)
@@ -92,10 +91,10 @@ TEST(Answer, TheMapOnTheMiddleLine)
   }
 }
 
-TEST(Answer, TheDerivativeFromTheTwoSides)
+TEST(Differentiability, OneSidedDerivativesDiffer)
 {
   const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
-  for (const PlaceOnEdge& surfacePoint : places)
+  for (const EdgeSample& surfacePoint : samples)
   {
     const double x = -2.0 + 4.0 * surfacePoint.Proportion;
     EXPECT_NEAR(ContourLength(2.0, 2.0, x) / ContourLength(1.0, 2.0, x),
@@ -108,7 +107,7 @@ TEST(Answer, TheDerivativeFromTheTwoSides)
     ContourLength(2.0, 2.0, 2.0 - 1e-9) / ContourLength(1.0, 2.0, 2.0 - 1e-9), 1.26491, 5e-6);
 }
 
-TEST(Answer, TheInstrumentAgrees)
+TEST(Differentiability, MeasuredJumpsEqualTheClosedForm)
 {
   const MeshPair pair = MakeCounterexample();
   vtkNew<vtkJacobianContinuity> filter;
@@ -120,17 +119,18 @@ TEST(Answer, TheInstrumentAgrees)
   EXPECT_EQ(filter->GetNumberOfCreases(), 1);
   vtkDataArray* jump = filter->GetOutput()->GetPointData()->GetArray("JacobianJump");
   vtkDataArray* exact = filter->GetOutput()->GetPointData()->GetArray("JacobianJumpExact");
-  // The five samples are at sixths of the edge, in either direction: it is symmetric.
+  // The five samples are at sixths of the edge. Its direction does not matter, because the edge is
+  // symmetric.
   for (int i = 0; i < 3; ++i)
   {
-    EXPECT_NEAR(jump->GetTuple1(3 + i), places[i].Jump, 5e-6);
-    EXPECT_NEAR(exact->GetTuple1(3 + i), places[i].Jump, 5e-6);
-    EXPECT_NEAR(jump->GetTuple1(3 - i), places[i].Jump, 5e-6);
+    EXPECT_NEAR(jump->GetTuple1(3 + i), samples[i].Jump, 5e-6);
+    EXPECT_NEAR(exact->GetTuple1(3 + i), samples[i].Jump, 5e-6);
+    EXPECT_NEAR(jump->GetTuple1(3 - i), samples[i].Jump, 5e-6);
   }
   EXPECT_NEAR(jump->GetTuple1(3), 2.0 / std::sqrt(13.0), 1e-8);
 }
 
-TEST(Answer, SmoothHasNoSuchJump)
+TEST(Differentiability, SmoothHasNoJump)
 {
   const MeshPair pair = MakeCounterexample();
   vtkNew<vtkJacobianContinuity> filter;
@@ -143,9 +143,9 @@ TEST(Answer, SmoothHasNoSuchJump)
     vtkJacobianContinuity::DIFFERENTIABLE);
 }
 
-TEST(Answer, DirectionsTurnAtDifferentRatesBesideASpoke)
+TEST(Differentiability, DirectionsTurnAtDifferentRatesBesideASpoke)
 {
-  // kappa of the text.
+  // lambda of the document.
   const auto kappa = [](double rho, double h, double edge) {
     return rho * rho * (2.0 * rho + h) / (h * (rho + h) * edge);
   };
@@ -157,8 +157,8 @@ TEST(Answer, DirectionsTurnAtDifferentRatesBesideASpoke)
   EXPECT_NEAR(besideAB, 1.33292, 5e-6);
   EXPECT_NEAR(besideCA, 1.23330, 5e-6);
 
-  // The same from the map's values: a small turn to either side of the way from the centroid (0, 1)
-  // to A = (-2, 0).
+  // From values of the map: a small turn to either side of the segment from the centroid (0, 1) to
+  // A = (-2, 0).
   const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
   const double direction = std::atan2(-1.0, -2.0);
   const auto directionOfImage = [&](double turn) {
@@ -170,12 +170,12 @@ TEST(Answer, DirectionsTurnAtDifferentRatesBesideASpoke)
   constexpr double turn = 1e-6;
   const double straight = directionOfImage(0.0);
   EXPECT_NEAR(straight, std::atan2(-2.0, -2.0), 1e-14);
-  // Turning counterclockwise leads to the side of AB, clockwise to that of CA.
+  // Counterclockwise is the side of AB, clockwise that of CA.
   EXPECT_NEAR((directionOfImage(turn) - straight) / turn, besideAB, 1e-5);
   EXPECT_NEAR((straight - directionOfImage(-turn)) / turn, besideCA, 1e-5);
 }
 
-TEST(Answer, KinksOfContourAreWhereTheTextPutsThem)
+TEST(Differentiability, CreasesOfContourAreAsDocumented)
 {
   const MeshPair pair = MakeCounterexample();
   for (const int center : { vtkJacobianContinuity::CENTROID, vtkJacobianContinuity::INCENTER })
@@ -192,8 +192,8 @@ TEST(Answer, KinksOfContourAreWhereTheTextPutsThem)
     filter->Update();
     EXPECT_EQ(
       filter->GetNumberOfFeatures(vtkJacobianContinuity::EDGE, vtkJacobianContinuity::CREASE), 1);
-    // The upper triangle is stretched, the lower one is not. To either side of the spoke to the
-    // upper corner, directions turn alike, but distances grow to both sides.
+    // The upper triangle is stretched, the lower one is not. On both sides of the spoke to the
+    // upper corner directions turn alike, but distances grow on both sides.
     EXPECT_EQ(
       filter->GetNumberOfFeatures(vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::CREASE), 3);
     EXPECT_EQ(filter->GetNumberOfFeatures(

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestExtremeScales.cxx
-/// Very large, very small and very many: coordinates near the ends of the numbers' range, overlaps
-/// that show only once others are left out, and meshes that could take quadratic time.
+/// Extreme sizes and counts: coordinates near the ends of the range of doubles, overlaps hidden
+/// behind other overlaps, and meshes that could take quadratic time.
 
 #include "TestMeshes.h"
 
@@ -141,8 +141,8 @@ Mapped MapPoints(
 //------------------------------------------------------------------------------------------------
 // Sizes.
 
-/// Maps a pair, and the same pair with its meshes scaled by powers of two, which round nothing: the
-/// results must be the same but for the factor, bit for bit.
+/// Maps a pair and the same pair scaled by powers of two, which is exact. The results must agree up
+/// to the factor, bit for bit.
 void ExpectSameAtAnyScale(const MeshPair& pair, int sourceExponent, int targetExponent)
 {
   const double sourceScale = std::ldexp(1.0, sourceExponent);
@@ -153,20 +153,20 @@ void ExpectSameAtAnyScale(const MeshPair& pair, int sourceExponent, int targetEx
     for (const bool inverse : { false, true })
     {
       SCOPED_TRACE("system " + std::to_string(system) + (inverse ? ", inverse" : ""));
-      const std::vector<Point> places = RandomPointsOf(inverse ? pair.Target : pair.Source, 3, 99);
-      std::vector<Point> scaledPlaces = places;
-      for (Point& p : scaledPlaces)
+      const std::vector<Point> samples = RandomPointsOf(inverse ? pair.Target : pair.Source, 3, 99);
+      std::vector<Point> scaledSamples = samples;
+      for (Point& p : scaledSamples)
       {
         p = Times(p, inverse ? targetScale : sourceScale);
       }
       const Options options{ system, false, inverse };
-      const Mapped expected = MapPoints(pair, places, options);
-      const Mapped mapped = MapPoints(scaled, scaledPlaces, options);
+      const Mapped expected = MapPoints(pair, samples, options);
+      const Mapped mapped = MapPoints(scaled, scaledSamples, options);
       ASSERT_EQ(expected.Error, "");
       ASSERT_EQ(mapped.Error, "");
       ASSERT_TRUE(expected.AllValid());
       ASSERT_TRUE(mapped.AllValid());
-      for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t i = 0; i < samples.size(); ++i)
       {
         ASSERT_EQ(mapped.Points[i], Times(expected.Points[i], inverse ? sourceScale : targetScale));
       }
@@ -200,17 +200,17 @@ TEST(ExtremeScales, APlaneAndASurfaceOfVeryDifferentSizes)
   ExpectSameAtAnyScale({ pair.Target, pair.Source }, 664, -664);
 }
 
-TEST(ExtremeScales, FromTwoHundredZerosBeforeThePointToTwoHundredBehind)
+TEST(ExtremeScales, ScalesFromTenToTheTwoHundredToItsReciprocal)
 {
-  // Sizes as people write them. Similar meshes: the map is the similarity, whose factor is no
-  // number.
+  // Decimal scales. The meshes are similar, so the map is the similarity, whose factor is not a
+  // double.
   const MeshPair flat = MakePlanarPair(3, 71);
   const auto sheet = MakeSheet(3, 72, 0.7);
   for (const auto& mesh : { flat.Source, sheet })
   {
     const MeshPair pair{ Scaled(mesh, 1e200), Scaled(mesh, 1e-200) };
-    const std::vector<Point> places = RandomPointsOf(mesh, 4, 73);
-    std::vector<Point> large = places;
+    const std::vector<Point> samples = RandomPointsOf(mesh, 4, 73);
+    std::vector<Point> large = samples;
     for (Point& p : large)
     {
       p = Times(p, 1e200);
@@ -220,12 +220,12 @@ TEST(ExtremeScales, FromTwoHundredZerosBeforeThePointToTwoHundredBehind)
       const Mapped mapped = MapPoints(pair, large, { system });
       ASSERT_EQ(mapped.Error, "");
       ASSERT_TRUE(mapped.AllValid());
-      for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t i = 0; i < samples.size(); ++i)
       {
         for (int axis = 0; axis < 3; ++axis)
         {
-          // Relative to the mesh's size, 3.
-          EXPECT_NEAR(mapped.Points[i][axis] * 1e200, places[i][axis], 100.0 * Epsilon);
+          // Relative to the size of the mesh, 3.
+          EXPECT_NEAR(mapped.Points[i][axis] * 1e200, samples[i][axis], 100.0 * Epsilon);
         }
         if (mesh == flat.Source)
         {
@@ -238,21 +238,22 @@ TEST(ExtremeScales, FromTwoHundredZerosBeforeThePointToTwoHundredBehind)
 
 TEST(ExtremeScales, HeightsAreExactWhateverTheScales)
 {
-  // Heights over a plane are lengths of space: no mesh's size enters them, and none may spoil them.
+  // Heights above a plane are lengths of the ambient space. They do not depend on the sizes of the
+  // meshes.
   const MeshPair flat = MakePlanarPair(3, 74);
   for (const auto& scales : std::vector<std::array<double, 2>>{ { 1e200, 1e-200 },
          { 1e-200, 1e200 }, { 1e200, 1e200 }, { 1e-200, 1e-200 }, { 1.0, 1e-200 } })
   {
     const MeshPair pair{ Scaled(flat.Source, scales[0]), Scaled(flat.Target, scales[1]) };
-    std::vector<Point> places = RandomPointsOf(pair.Source, 5, 75);
-    // A corner, which has a rule of its own.
-    places.push_back(PointOf(pair.Source, 5));
-    // Of either mesh's size these are a proportion that is a normal number.
+    std::vector<Point> samples = RandomPointsOf(pair.Source, 5, 75);
+    // A corner, which is mapped by a separate rule.
+    samples.push_back(PointOf(pair.Source, 5));
+    // Relative to the size of either mesh these are normal numbers.
     for (const double height : { 0.0, 1.0, -0.3, 5.0, 1e-90, -1e80 })
     {
       SCOPED_TRACE(
         ::testing::Message() << scales[0] << " to " << scales[1] << ", height " << height);
-      std::vector<Point> raised = places;
+      std::vector<Point> raised = samples;
       for (Point& p : raised)
       {
         p[2] = height;
@@ -288,7 +289,7 @@ MeshPair MakePairWithTinyTriangle(double tiny, double targetStretch)
   return { MakeMesh(source, triangles), MakeMesh(target, triangles) };
 }
 
-/// Maps points of a tiny triangle of a unit mesh and of its neighbors there and back.
+/// Maps points of a tiny triangle of a unit mesh and of its neighbors and back.
 void ExpectTinyTriangleMapped(double tiny, int system)
 {
   SCOPED_TRACE(tiny);
@@ -342,8 +343,8 @@ void ExpectTinyTriangleMapped(double tiny, int system)
 
 TEST(ExtremeScales, ANeedleWhoseHeightIsLostInRounding)
 {
-  // The far corners are so far away that the others are at the same place from there, but the
-  // triangles have areas.
+  // The far corners are so far away that the others coincide in their frame, but the triangles are
+  // not degenerate.
   const std::vector<Triangle> triangles{ { 0, 1, 3 }, { 0, 3, 2 } };
   const MeshPair pair{ MakeMesh({ { 1.25, 0.125, 0.0 }, { -2.25, 4.9375, 0.0 },
                                   { 5.875, 4.75, 0.0 }, { -7.5, 0x1p74, 0.0 } },
@@ -372,7 +373,7 @@ TEST(ExtremeScales, ANeedleWhoseHeightIsLostInRounding)
   }
 }
 
-// Products of such lengths underflow, yet the triangle has an area and an orientation.
+// Products of such lengths underflow, but the triangle has an area and an orientation.
 constexpr double TinySizes[] = { 1e-20, 1e-100, 1e-150, 1e-160, 1e-170, 1e-250 };
 
 TEST(ExtremeScales, ATinyTriangleInAUnitMeshLinear)
@@ -414,9 +415,9 @@ TEST(ExtremeScales, ATinyTriangleHasCoordinates)
   EXPECT_EQ(output->GetPointData()->GetArray("vtkValidPointMask")->GetTuple1(0), 1.0);
 }
 
-TEST(ExtremeScales, ATinyTriangleWithoutAreaIsStillRefused)
+TEST(ExtremeScales, ATinyDegenerateTriangleIsRefused)
 {
-  // Three points in a line, of which no rounding can make more.
+  // Three collinear points, exactly representable.
   const MeshPair pair = MakePairWithTinyTriangle(1e-170, 1.0);
   pair.Source->GetPoints()->SetPoint(2, 0.5e-170, 0.0, 0.0);
   const Mapped mapped = MapPoints(pair, { { 0.5, 0.25, 0 } });
@@ -448,14 +449,14 @@ bool IsStrictlyInside(vtkPolyData* mesh, vtkIdType cell, const Point& p)
 struct WoundStrip
 {
   MeshPair Pair;
-  /// Triangles of the strip; those after them are the small ones.
+  /// Number of triangles of the strip. The small triangles follow them.
   vtkIdType StripTriangles = 0;
   vtkIdType BoundaryTriangles = 0;
 };
 
-/// The source is a straight strip, and beside it, that is on top of each triangle at its boundary,
-/// a small triangle by itself. In the target the small triangles are out of the way, but the strip
-/// is wound round by more than a turn, so that its end lies on its beginning.
+/// The source is a straight strip with a small triangle on top of each of its boundary triangles.
+/// In the target the small triangles are elsewhere, but the strip is wound by more than a turn, so
+/// that its end overlaps its beginning.
 WoundStrip MakeWoundStrip(double turns)
 {
   const int length = 60;
@@ -516,24 +517,24 @@ WoundStrip MakeWoundStrip(double turns)
   return strip;
 }
 
-TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
+TEST(ExtremeScales, OverlapsHiddenBehindOtherOverlapsAreFound)
 {
-  // What overlaps in the source is left out: exactly the strip's boundary, beside which an overlap
-  // in the target would be looked for. The new boundary must be looked at.
+  // The triangles that overlap in the source are masked: exactly the boundary of the strip, where
+  // an overlap in the target would be searched. The new boundary must be searched too.
   const WoundStrip strip = MakeWoundStrip(1.3);
   for (const MeshPair& pair : { strip.Pair, MeshPair{ strip.Pair.Target, strip.Pair.Source } })
   {
     const bool exchanged = pair.Source == strip.Pair.Target;
     SCOPED_TRACE(exchanged ? "exchanged" : "as described");
     const int perTriangle = 4;
-    const std::vector<Point> places = RandomPointsOf(pair.Source, perTriangle, 81);
-    const Mapped mapped = MapPoints(pair, places, { Systems[0], true });
+    const std::vector<Point> samples = RandomPointsOf(pair.Source, perTriangle, 81);
+    const Mapped mapped = MapPoints(pair, samples, { Systems[0], true });
     ASSERT_EQ(mapped.Error, "");
     EXPECT_NE(mapped.Warning.find("triangles of the source"), std::string::npos);
 
-    // Not all is lost: the strip's middle overlaps nothing.
+    // The middle of the strip does not overlap.
     std::vector<bool> used(pair.Source->GetNumberOfCells(), false);
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       if (mapped.Valid[i])
       {
@@ -544,7 +545,8 @@ TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
     EXPECT_GT(numberUsed, 100);
     if (!exchanged)
     {
-      // About 0.3 of 1.3 turns lie twofold: those are named beside the 2 x BoundaryTriangles.
+      // About 0.3 of 1.3 turns overlap. These triangles are listed in addition to the 2 x
+      // BoundaryTriangles.
       EXPECT_NE(mapped.Warning.find(
                   std::to_string(2 * strip.BoundaryTriangles) + " triangles of the source"),
         std::string::npos)
@@ -554,8 +556,8 @@ TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
       EXPECT_LT(numberUsed, 300);
     }
 
-    // One to one: no image lies inside a second triangle that is used, in either mesh.
-    for (std::size_t i = 0; i < places.size(); ++i)
+    // Injectivity: no image lies inside a second unmasked triangle, in either mesh.
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       if (!mapped.Valid[i])
       {
@@ -566,20 +568,20 @@ TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
         if (used[t] && t != mapped.Triangles[i])
         {
           ASSERT_FALSE(IsStrictlyInside(pair.Target, t, mapped.Points[i])) << t;
-          ASSERT_FALSE(IsStrictlyInside(pair.Source, t, places[i])) << t;
+          ASSERT_FALSE(IsStrictlyInside(pair.Source, t, samples[i])) << t;
         }
       }
     }
 
-    // So the way back leads to where they came from.
+    // Hence the inverse returns to the start.
     std::vector<Point> images;
     std::vector<Point> origins;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       if (mapped.Valid[i])
       {
         images.push_back(mapped.Points[i]);
-        origins.push_back(places[i]);
+        origins.push_back(samples[i]);
       }
     }
     const Mapped back = MapPoints(pair, images, { Systems[0], true, true });
@@ -594,7 +596,7 @@ TEST(ExtremeScales, OverlapsThatShowWhenOthersAreLeftOut)
 
 TEST(ExtremeScales, AStripWoundLessThanATurnOverlapsNothing)
 {
-  // The same, not quite round: only what overlaps in the source is left out.
+  // Less than a full turn: only the overlaps of the source are masked.
   const WoundStrip strip = MakeWoundStrip(0.95);
   const Mapped mapped =
     MapPoints(strip.Pair, RandomPointsOf(strip.Pair.Source, 1, 82), { Systems[0], true });
@@ -608,8 +610,8 @@ TEST(ExtremeScales, AStripWoundLessThanATurnOverlapsNothing)
 //------------------------------------------------------------------------------------------------
 // Time.
 
-/// Seconds of processor time that a run took, of all its threads: what else the machine does does
-/// not count. Sanitizers slow everything down.
+/// Processor time of a run in seconds, of all its threads. Other processes do not count; sanitizers
+/// slow everything down.
 template <typename Run>
 double SecondsOf(Run&& run)
 {
@@ -625,7 +627,7 @@ double SecondsOf(Run&& run)
 
 constexpr int Many = 20000;
 
-/// Triangles around the point (0, 0), where the boxes around all of them meet.
+/// Triangles around the point (0, 0), where all their boxes overlap.
 vtkSmartPointer<vtkPolyData> MakeFan(int count, double phase)
 {
   std::vector<Point> points{ { 0, 0, 0 } };
@@ -650,13 +652,13 @@ TEST(ExtremeScales, AFanOfManyTriangles)
 
 TEST(ExtremeScales, AFanThatGoesRoundTwiceIsRefused)
 {
-  // The time must not be bought with the overlap of a fan with itself. (Fewer of them: to name what
-  // overlaps in a fan takes quadratic time.)
+  // Speed must not hide the overlap of a fan with itself. (Fewer triangles: listing the overlaps of
+  // a fan takes quadratic time.)
   const int count = 1000;
   const auto mesh = MakeFan(count, 0.0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    // The second time round between the points of the first.
+    // The points of the second turn lie between those of the first.
     const double step = static_cast<double>(i) + (2 * i >= count ? 0.5 : 0.0);
     const double angle = 4.0 * vtkMath::Pi() * step / count;
     mesh->GetPoints()->SetPoint(i + 1, std::cos(angle), std::sin(angle), 0.0);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// vtkDifferentiableHomeomorphism: the map's properties, the kinds of data it takes, the arrays it
-// adds, and when it works anew.
+// vtkDifferentiableHomeomorphism: the properties of the map, the supported kinds of data, the
+// output arrays, and caching.
 
 #include "FilterRuns.h"
 
@@ -38,8 +38,8 @@ class FilterInEverySystem : public ::testing::TestWithParam<System>
 
 INSTANTIATE_TEST_SUITE_P(All, FilterInEverySystem, ::testing::ValuesIn(AllSystems()), NameOfSystem);
 
-/// Pairs all of whose triangles are concordant: in the Contour system discordant triangles are
-/// carried by the Linear one, and which are differs from pair to pair.
+/// Pairs whose triangles are all concordant. In the Contour system discordant triangles are mapped
+/// by the Linear system, and they differ from pair to pair.
 MeshPair ConcordantPair(std::uint64_t seed)
 {
   return MakePlanarPair(12, seed, 0.06);
@@ -54,7 +54,7 @@ TEST_P(FilterInEverySystem, RoundTrip)
   for (const Pairing& pairing : AllPairings(20, 3, 100))
   {
     const MeshPair& pair = pairing.Meshes;
-    const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, pointsPerPair, 1));
+    const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, pointsPerPair, 1));
     const auto forward = MakeFilter(GetParam(), pair, cloud);
     const auto backward = MakeFilter(GetParam(), pair);
     backward->SetDataConnection(forward->GetOutputPort());
@@ -68,10 +68,9 @@ TEST_P(FilterInEverySystem, RoundTrip)
     EXPECT_EQ(forward->GetNumberOfOutsidePoints(), 0) << pairing.Name;
     EXPECT_EQ(backward->GetNumberOfOutsidePoints(), 0) << pairing.Name;
 
-    // The image cannot be stored better than to an ulp of the target's coordinates, and the way
-    // back stretches that by |J^-1|; where the map shrinks hard that is more than 1e-14. Either
-    // triangle's derivative counts at an edge, from which rounding may move the image to the other
-    // side.
+    // The image is rounded to an ulp of the target's coordinates, and the inverse magnifies this by
+    // |J^-1|, to more than 1e-14 where the map contracts strongly. At an edge the derivatives of
+    // both triangles count, because rounding may move the image to the other side.
     const double size = SizeOf(pair.Source);
     const double stored = Ulp * LargestCoordinate(pair.Target);
     vtkDataArray* jacobian = PointArray(Output(forward), "Jacobian");
@@ -98,12 +97,12 @@ TEST_P(FilterInEverySystem, RoundTrip)
   EXPECT_GE(total, 1000000);
 }
 
-TEST_P(FilterInEverySystem, InverseIsTheMapOfTheMeshesExchanged)
+TEST_P(FilterInEverySystem, InverseIsTheMapOfExchangedMeshes)
 {
   for (const Pairing& pairing : AllPairings(8, 2, 110))
   {
     const MeshPair& pair = pairing.Meshes;
-    const auto cloud = MakeCloud(pair.Target, RandomPlaces(pair.Target, 5000, 2));
+    const auto cloud = MakeCloud(pair.Target, RandomSamples(pair.Target, 5000, 2));
     const auto inverse = MakeFilter(GetParam(), pair, cloud);
     inverse->InverseOn();
     const auto exchanged = MakeFilter(GetParam(), { pair.Target, pair.Source }, cloud);
@@ -133,7 +132,7 @@ TEST_P(FilterInEverySystem, EqualMeshesGiveTheIdentity)
     const auto mesh = pairing.Meshes.Target;
     vtkNew<vtkPolyData> copy;
     copy->DeepCopy(mesh);
-    const auto cloud = MakeCloud(mesh, RandomPlaces(mesh, 5000, 3));
+    const auto cloud = MakeCloud(mesh, RandomSamples(mesh, 5000, 3));
     const auto filter = MakeFilter(GetParam(), { mesh, copy }, cloud);
     filter->ComputeJacobianOn();
     vtkPointSet* output = Output(filter);
@@ -173,7 +172,7 @@ TEST_P(FilterInEverySystem, MapsCompose)
     {
       continue;
     }
-    const auto cloud = MakeCloud(triple.P, RandomPlaces(triple.P, 20000, 4));
+    const auto cloud = MakeCloud(triple.P, RandomSamples(triple.P, 20000, 4));
     const auto toQ = MakeFilter(GetParam(), { triple.P, triple.Q }, cloud);
     const auto toR = MakeFilter(GetParam(), { triple.Q, triple.R });
     toR->SetDataConnection(toQ->GetOutputPort());
@@ -185,7 +184,7 @@ TEST_P(FilterInEverySystem, MapsCompose)
     Worst worst;
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
     {
-      // As in RoundTrip: what was rounded in Q is stretched by the second map.
+      // As in RoundTrip: the second map magnifies the rounding in Q.
       const double stretch = Norm(MatrixOf(PointArray(twoSteps, "Jacobian"), i));
       worst.Take(Distance(PointOf(twoSteps, i), PointOf(oneStep, i)),
         std::max(1e-14 * SizeOf(triple.R), 2.0 * stretch * Ulp * LargestCoordinate(triple.Q)));
@@ -194,7 +193,7 @@ TEST_P(FilterInEverySystem, MapsCompose)
   }
 }
 
-TEST_P(FilterInEverySystem, VerticesGoToVerticesExactly)
+TEST_P(FilterInEverySystem, VerticesMapToVerticesExactly)
 {
   for (const Pairing& pairing : AllPairings(10, 2, 150))
   {
@@ -211,7 +210,7 @@ TEST_P(FilterInEverySystem, VerticesGoToVerticesExactly)
   }
 }
 
-TEST_P(FilterInEverySystem, VerticesOfFloatMeshesGoToVerticesExactly)
+TEST_P(FilterInEverySystem, VerticesOfFloatMeshesMapToVerticesExactly)
 {
   for (const Pairing& pairing : AllPairings(6, 1, 155))
   {
@@ -240,7 +239,7 @@ TEST_P(FilterInEverySystem, EdgesAreMappedLinearly)
   {
     const MeshPair& pair = pairing.Meshes;
     Random random(5);
-    std::vector<ToSurfacePoint> places;
+    std::vector<MeshPoint> samples;
     for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
     {
       for (std::size_t k = 0; k < 3; ++k)
@@ -248,24 +247,24 @@ TEST_P(FilterInEverySystem, EdgesAreMappedLinearly)
         for (int i = 0; i < 8; ++i)
         {
           const double p = i < 4 ? random.Uniform() : std::pow(10.0, random.Uniform(-15.0, 0.0));
-          ToSurfacePoint surfacePoint{ t, {} };
+          MeshPoint surfacePoint{ t, {} };
           surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
           surfacePoint.Weights[(k + 2) % 3] = p;
-          places.push_back(surfacePoint);
+          samples.push_back(surfacePoint);
         }
       }
     }
-    const auto cloud = MakeCloud(pair.Source, places);
+    const auto cloud = MakeCloud(pair.Source, samples);
     const auto filter = MakeFilter(GetParam(), pair, cloud);
     filter->ComputeJacobianOn();
     vtkPointSet* output = Output(filter);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0) << pairing.Name;
     Worst worst;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const auto id = static_cast<vtkIdType>(i);
       const double stretch = Norm(MatrixOf(PointArray(output, "Jacobian"), id));
-      worst.Take(Distance(PointOf(output, id), PositionOf(pair.Target, places[i])),
+      worst.Take(Distance(PointOf(output, id), PositionOf(pair.Target, samples[i])),
         std::max(
           1e-14 * SizeOf(pair.Target), 2.0 * stretch * Ulp * LargestCoordinate(pair.Source)));
     }
@@ -277,7 +276,7 @@ TEST_P(FilterInEverySystem, MirroredPairs)
 {
   MeshPair pair = MakePlanarPair(12, 170);
   pair.Target = Moved(pair.Target, [](const Point& p) -> Point { return { -p[0], p[1], p[2] }; });
-  const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, 20000, 6));
+  const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 6));
   const auto forward = MakeFilter(GetParam(), pair, cloud);
   forward->ComputeJacobianOn();
   forward->ComputeJacobianDeterminantOn();
@@ -297,7 +296,7 @@ TEST_P(FilterInEverySystem, MirroredPairs)
   }
   EXPECT_LE(worst.OverBound, 1.0);
 
-  // A mirror image of the map is the mirrored map.
+  // The mirror image of the map is the map of the mirror images.
   const MeshPair straight = MakePlanarPair(12, 170);
   const auto unmirrored = MakeFilter(GetParam(), straight, cloud);
   vtkPointSet* image = Output(unmirrored);
@@ -310,23 +309,22 @@ TEST_P(FilterInEverySystem, MirroredPairs)
   }
   EXPECT_LE(largest, 1e-14 * SizeOf(pair.Target));
 
-  // On a surface the mirror image is another surface: areas have no sign there.
+  // On a surface the mirror image is another surface, where areas have no sign.
   MeshPair closed = MakeClosedPair(2, 172);
   closed.Target = Moved(closed.Target, [](const Point& p) -> Point {
     return { -p[0], p[1], p[2] };
   });
   const auto onSurface =
-    MakeFilter(GetParam(), closed, MakeCloud(closed.Source, RandomPlaces(closed.Source, 5000, 7)));
+    MakeFilter(GetParam(), closed, MakeCloud(closed.Source, RandomSamples(closed.Source, 5000, 7)));
   onSurface->ComputeJacobianDeterminantOn();
   PointArray(Output(onSurface), "JacobianDeterminant")->GetRange(range);
   EXPECT_EQ(onSurface->GetNumberOfOutsidePoints(), 0);
   EXPECT_GT(range[0], 0.0);
 }
 
-/// How well a Jacobian can be known: all systems but Linear are like cones around the vertices,
-/// where J depends on the direction from the vertex, and a point that is stored to an ulp of its
-/// coordinates is seen from there the worse the closer it is.
-double JacobianBound(vtkPolyData* mesh, const ToSurfacePoint& surfacePoint)
+/// The attainable accuracy of a Jacobian. In all systems except Linear, J depends on the direction
+/// from a vertex near it, and the relative accuracy of that direction decreases with the distance.
+double JacobianBound(vtkPolyData* mesh, const MeshPoint& surfacePoint)
 {
   const Point position = PositionOf(mesh, surfacePoint);
   double nearest = SizeOf(mesh);
@@ -339,7 +337,8 @@ double JacobianBound(vtkPolyData* mesh, const ToSurfacePoint& surfacePoint)
 
 TEST_P(FilterInEverySystem, AffinePairs)
 {
-  // A similarity for the Contour system, whose right angles no other affine map keeps.
+  // A similarity for the Contour system, because other affine maps do not preserve its right
+  // angles.
   const Matrix turn = Rotation({ 0.0, 0.0, 1.0 }, 2.1);
   const Matrix affine{ { { 1.5, 0.75, 0.0 }, { -0.25, 2.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
   const Matrix similarity{ { 2.5 * turn[0], 2.5 * turn[1], { 0.0, 0.0, 1.0 } } };
@@ -348,8 +347,8 @@ TEST_P(FilterInEverySystem, AffinePairs)
   const auto source = MakePlanarPair(10, 180).Source;
   const auto image = [&](const Point& p) { return matrix * p + shift; };
   const MeshPair pair{ source, Moved(source, image) };
-  const std::vector<ToSurfacePoint> places = RandomPlaces(source, 20000, 8);
-  const auto cloud = MakeCloud(source, places);
+  const std::vector<MeshPoint> samples = RandomSamples(source, 20000, 8);
+  const auto cloud = MakeCloud(source, samples);
   const auto filter = MakeFilter(GetParam(), pair, cloud);
   filter->ComputeJacobianOn();
   filter->ComputeJacobianDeterminantOn();
@@ -361,7 +360,7 @@ TEST_P(FilterInEverySystem, AffinePairs)
   {
     points.Take(
       Distance(PointOf(output, i), image(PointOf(cloud, i))), 1e-14 * SizeOf(pair.Target));
-    const double bound = JacobianBound(source, places[static_cast<std::size_t>(i)]);
+    const double bound = JacobianBound(source, samples[static_cast<std::size_t>(i)]);
     jacobians.Take(
       Distance(MatrixOf(PointArray(output, "Jacobian"), i), matrix), bound * Norm(matrix));
     jacobians.Take(
@@ -379,8 +378,8 @@ TEST_P(FilterInEverySystem, SurfacesThatAreMovedInSpace)
   for (const auto& source : { MakeSheet(8, 185, 0.7), MakeClosedPair(2, 186).Target })
   {
     const MeshPair pair{ source, Tilted(source, turn, shift) };
-    const std::vector<ToSurfacePoint> places = RandomPlaces(source, 10000, 9);
-    const auto cloud = MakeCloud(source, places);
+    const std::vector<MeshPoint> samples = RandomSamples(source, 10000, 9);
+    const auto cloud = MakeCloud(source, samples);
     const auto filter = MakeFilter(GetParam(), pair, cloud);
     filter->ComputeJacobianOn();
     filter->ComputeJacobianDeterminantOn();
@@ -391,7 +390,7 @@ TEST_P(FilterInEverySystem, SurfacesThatAreMovedInSpace)
     {
       worst.Take(Distance(PointOf(output, i), turn * PointOf(cloud, i) + shift),
         1e-14 * SizeOf(pair.Target));
-      const double bound = JacobianBound(source, places[static_cast<std::size_t>(i)]);
+      const double bound = JacobianBound(source, samples[static_cast<std::size_t>(i)]);
       worst.Take(Distance(MatrixOf(PointArray(output, "Jacobian"), i), turn), bound);
       worst.Take(
         std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0) - 1.0), bound);
@@ -403,7 +402,7 @@ TEST_P(FilterInEverySystem, SurfacesThatAreMovedInSpace)
 TEST_P(FilterInEverySystem, PlanesParallelToTwoAxesGiveTheSameBits)
 {
   const MeshPair pair = MakePlanarPair(10, 190);
-  const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, 10000, 10));
+  const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 10000, 10));
   const auto filter = MakeFilter(GetParam(), pair, cloud);
   filter->ComputeJacobianOn();
   vtkPointSet* flat = Output(filter);
@@ -446,13 +445,13 @@ TEST_P(FilterInEverySystem, PlanesParallelToTwoAxesGiveTheSameBits)
   }
 }
 
-TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
+TEST_P(FilterInEverySystem, RotatedPlanesGiveTheRotatedImageAndKeepHeights)
 {
   const MeshPair pair = MakePlanarPair(10, 200);
-  const auto places = RandomPlaces(pair.Source, 10000, 11);
+  const auto samples = RandomSamples(pair.Source, 10000, 11);
   Random random(12);
   std::vector<Point> positions;
-  for (const ToSurfacePoint& surfacePoint : places)
+  for (const MeshPoint& surfacePoint : samples)
   {
     Point p = PositionOf(pair.Source, surfacePoint);
     p[2] = random.Uniform(-5.0, 5.0);
@@ -470,7 +469,7 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
   }
   EXPECT_EQ(changedHeights, 0);
 
-  // Turned a little, onto its side, and upside down.
+  // Rotated a little, by a right angle, and upside down.
   const std::vector<Matrix> rotations{ Rotation({ 1.0, 1.0, 0.0 }, 0.4),
     Rotation({ -1.0, 2.0, 0.3 }, -0.6), Rotation({ 0.0, 1.0, 0.1 }, 1.4),
     Rotation({ 1.0, 0.1, 0.0 }, -1.3), Rotation({ 1.0, 0.3, 0.0 }, 2.8) };
@@ -480,7 +479,7 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
   {
     const Matrix& from = rotations[k];
     const Matrix& to = rotations[(k + 1) % rotations.size()];
-    // The target's up is less than a right angle from the source's.
+    // The normals of source and target make less than a right angle.
     const Point sourceUp = from * Point{ 0.0, 0.0, 1.0 };
     const Point targetUp = to * Point{ 0.0, 0.0, 1.0 };
     const double side = Dot(sourceUp, targetUp) < 0.0 ? -1.0 : 1.0;
@@ -493,7 +492,7 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
     tilted->ComputeJacobianOn();
     tilted->ComputeJacobianDeterminantOn();
     vtkPointSet* output = Output(tilted);
-    // A point outside by the rounding of a rotation is taken back in; heights must not spoil that.
+    // Points outside by the rounding of a rotation are moved inside. Heights must not disturb this.
     EXPECT_EQ(tilted->GetNumberOfOutsidePoints(), 0);
     Worst points;
     Worst jacobians;
@@ -502,10 +501,10 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
       const Matrix j = MatrixOf(PointArray(flat, "Jacobian"), i);
       points.Take(Distance(PointOf(output, i), to * (flip * PointOf(flat, i)) + shift),
         8.0 * Ulp * (1.0 + Norm(j)) * SizeOf(pair.Target));
-      const auto& weights = places[static_cast<std::size_t>(i)].Weights;
+      const auto& weights = samples[static_cast<std::size_t>(i)].Weights;
       if (*std::min_element(weights.begin(), weights.end()) > 1e-3)
       {
-        // At edges rounding decides from which triangle the limit is.
+        // At edges, rounding decides which triangle gives the limit.
         const Matrix expected = to * (flip * j) * Transposed(from);
         jacobians.Take(
           Distance(MatrixOf(PointArray(output, "Jacobian"), i), expected), 1e-9 * Norm(j));
@@ -522,7 +521,7 @@ TEST_P(FilterInEverySystem, AnyPlaneGivesTheTurnedAnswerAndKeepsHeights)
 
 TEST_P(FilterInEverySystem, HeightsAreLengths)
 {
-  // Whatever the sizes of the two meshes, in planes at any height.
+  // For any sizes of the two meshes, in planes at any height.
   const MeshPair pair = MakePlanarPair(6, 210);
   for (const double factor : { 1000.0, 0.001 })
   {
@@ -531,7 +530,7 @@ TEST_P(FilterInEverySystem, HeightsAreLengths)
     });
     Random random(13);
     std::vector<Point> positions;
-    for (const ToSurfacePoint& surfacePoint : RandomPlaces(pair.Source, 2000, 14))
+    for (const MeshPoint& surfacePoint : RandomSamples(pair.Source, 2000, 14))
     {
       positions.push_back(PositionOf(pair.Source, surfacePoint));
       positions.back()[2] = random.Uniform(-20.0, 20.0);
@@ -572,7 +571,7 @@ protected:
   static constexpr int N = 8;
   const MeshPair Pair = MakePlanarPair(N, 300);
 
-  /// Arrays of several kinds at the points, at the cells and beside them.
+  /// Arrays of several kinds: point data, cell data and field data.
   static void AddArrays(vtkDataSet* data)
   {
     const vtkIdType points = data->GetNumberOfPoints();
@@ -615,8 +614,8 @@ protected:
     }
   }
 
-  /// @a output must be @a input with its points moved as a cloud of them would be, nothing else
-  /// changed.
+  /// @a output must equal @a input except for its points, which are those of the mapped point
+  /// cloud.
   void ExpectMapped(vtkDataSet* input, vtkDataObject* outputObject)
   {
     auto* output = vtkPointSet::SafeDownCast(outputObject);
@@ -648,7 +647,7 @@ protected:
       output->GetCellPoints(i, after);
       if (isGrid)
       {
-        // Voxels number their points in another order than hexahedra.
+        // Voxels and hexahedra number their points differently.
         std::sort(before->begin(), before->end());
         std::sort(after->begin(), after->end());
       }
@@ -678,14 +677,14 @@ protected:
     }
   }
 
-  /// Inside the domain and a little beyond.
+  /// Inside the domain and slightly beyond.
   vtkSmartPointer<vtkImageData> MakeImage() const
   {
     auto image = vtkSmartPointer<vtkImageData>::New();
     image->SetExtent(-3, 17, 5, 30, 2, 4);
     image->SetOrigin(1.0, -0.25, 0.5);
     image->SetSpacing(0.37, 0.28, 0.125);
-    // Turned in the plane by a right triangle's angle.
+    // Rotated in the plane by an angle of the triangle with the sides 3, 4, 5.
     image->SetDirectionMatrix(0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0);
     AddArrays(image);
     return image;
@@ -733,10 +732,10 @@ protected:
   vtkSmartPointer<vtkUnstructuredGrid> MakeUnstructuredGrid() const
   {
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    const auto places = RandomPlaces(this->Pair.Source, 40, 26);
+    const auto samples = RandomSamples(this->Pair.Source, 40, 26);
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
-    for (const ToSurfacePoint& surfacePoint : places)
+    for (const MeshPoint& surfacePoint : samples)
     {
       Point p = PositionOf(this->Pair.Source, surfacePoint);
       p[2] = 0.25 * static_cast<double>(points->GetNumberOfPoints() % 7);
@@ -758,7 +757,7 @@ protected:
   vtkSmartPointer<vtkPolyData> MakePolyData() const
   {
     auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->ShallowCopy(MakeCloud(this->Pair.Source, RandomPlaces(this->Pair.Source, 60, 27)));
+    data->ShallowCopy(MakeCloud(this->Pair.Source, RandomSamples(this->Pair.Source, 60, 27)));
     vtkNew<vtkCellArray> verts;
     verts->InsertNextCell({ 0, 1, 2 });
     vtkNew<vtkCellArray> lines;
@@ -875,7 +874,7 @@ TEST_F(KindsOfData, MultiBlockDataSet)
   ASSERT_TRUE(output->GetFieldData()->GetArray("WholeTree"));
   ExpectArraysPassed(data->GetFieldData(), output->GetFieldData());
 
-  // The input is not touched, in particular not given the output's arrays.
+  // The input is not modified; in particular it does not get the arrays of the output.
   EXPECT_FALSE(PointArray(vtkDataSet::SafeDownCast(data->GetBlock(0)), "vtkValidPointMask"));
   EXPECT_TRUE(vtkImageData::SafeDownCast(data->GetBlock(0)));
 }
@@ -908,7 +907,7 @@ TEST_F(KindsOfData, PartitionedDataSetCollection)
   this->ExpectMapped(this->MakePolyData(), output->GetPartition(2, 0));
   EXPECT_STREQ(output->GetMetaData(2u)->Get(vtkCompositeDataSet::NAME()), "second");
 
-  // A single partitioned data set is a tree too.
+  // A partitioned data set is also a tree.
   filter->SetDataObject(first);
   filter->Update();
   auto* partitions = vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0));
@@ -963,9 +962,9 @@ TEST_F(KindsOfData, WithoutDataTheMeshIsMapped)
 TEST_F(KindsOfData, PrecisionOfPoints)
 {
   std::vector<Point> positions;
-  for (const ToSurfacePoint& surfacePoint : RandomPlaces(this->Pair.Source, 5000, 30))
+  for (const MeshPoint& surfacePoint : RandomSamples(this->Pair.Source, 5000, 30))
   {
-    // Points that are the same in both precisions.
+    // Points that are equal in both precisions.
     positions.push_back(RoundedToFloat(PositionOf(this->Pair.Source, surfacePoint)));
   }
   struct Case
@@ -994,7 +993,7 @@ TEST_F(KindsOfData, PrecisionOfPoints)
     {
       Point expected = PointOf(exact, i);
       expected = one.Output == VTK_FLOAT ? RoundedToFloat(expected) : expected;
-      // A float point may be outside by its own rounding, and is then not quite where it was.
+      // A float point may be outside by its own rounding; it is then moved slightly.
       different += Distance(PointOf(output, i), expected) >
         (one.Input == VTK_FLOAT ? 4e-7 : 0.0) * SizeOf(this->Pair.Target);
     }
@@ -1055,7 +1054,7 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     {
       const Point p = PointOf(image, i);
       const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0;
-      // Those of another piece are marked, but not counted.
+      // Ghost points are marked, but not counted.
       outside += isOutside && !(hasGhosts && i % 5 == 0);
       ASSERT_EQ(PointArray(output, "vtkValidPointMask")->GetComponent(i, 0), isOutside ? 0 : 1);
       ASSERT_EQ(PointArray(output, "TriangleId")->GetComponent(i, 0) < 0, isOutside);
@@ -1092,7 +1091,7 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
         before | (isOutside ? vtkDataSetAttributes::HIDDENCELL : 0));
       ASSERT_EQ(output->IsCellVisible(cell) != 0, !isOutside);
     }
-    // The input's own arrays are not written to.
+    // The input's arrays are not modified.
     EXPECT_EQ(Ghosts(image->GetPointData()) != nullptr, hasGhosts);
     for (vtkIdType i = 0; hasGhosts && i < pointGhosts->GetNumberOfTuples(); ++i)
     {
@@ -1112,7 +1111,7 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
   EXPECT_FALSE(Ghosts(output->GetCellData()));
 }
 
-TEST(HomeomorphismFilter, NothingIsBlankedIfNothingIsOutside)
+TEST(HomeomorphismFilter, NoGhostsIfAllPointsAreInside)
 {
   const MeshPair pair = MakePlanarPair(4, 315);
   const auto filter = MakeFilter(Smooth, pair);
@@ -1122,7 +1121,7 @@ TEST(HomeomorphismFilter, NothingIsBlankedIfNothingIsOutside)
   EXPECT_FALSE(Ghosts(output->GetCellData()));
 }
 
-TEST_P(FilterInEverySystem, ToleranceTakesPointsToTheNearestOfTheDomain)
+TEST_P(FilterInEverySystem, ToleranceMapsPointsLikeTheNearestPointOfTheDomain)
 {
   const MeshPair pair = MakePlanarPair(8, 316);
   // The image of the boundary point below, at three distances from it.
@@ -1150,8 +1149,8 @@ TEST_P(FilterInEverySystem, PointsOffASurfaceAreOutside)
     const MeshPair& pair = pairing.Meshes;
     const double size = SizeOf(pair.Source);
     std::vector<Point> positions;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 300, 33, 0.2);
-    for (const ToSurfacePoint& surfacePoint : places)
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 300, 33, 0.2);
+    for (const MeshPoint& surfacePoint : samples)
     {
       const std::array<Point, 3> c = CornersOf(pair.Source, surfacePoint.Triangle);
       const Point normal = Unit(Cross(c[1] - c[0], c[2] - c[0]));
@@ -1162,17 +1161,17 @@ TEST_P(FilterInEverySystem, PointsOffASurfaceAreOutside)
     vtkPointSet* output = Output(filter);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 300) << pairing.Name;
     EXPECT_EQ(CountDifferentPoints(output, cloud), 0) << pairing.Name;
-    // With a tolerance they go where the nearest points of the surface go.
+    // With a tolerance they map to the images of the nearest points of the surface.
     filter->SetTolerance(1.5e-4);
     output = Output(filter);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0) << pairing.Name;
-    const auto feet = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, places));
+    const auto feet = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, samples));
     vtkPointSet* expected = Output(feet);
     Worst worst;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const auto id = static_cast<vtkIdType>(i);
-      const std::array<Point, 3> c = CornersOf(pair.Target, places[i].Triangle);
+      const std::array<Point, 3> c = CornersOf(pair.Target, samples[i].Triangle);
       const Point normal = Unit(Cross(c[1] - c[0], c[2] - c[0]));
       worst.Take(std::abs(Dot(normal, PointOf(output, id) - c[0])), 1e-15 * size);
       worst.Take(Distance(PointOf(output, id), PointOf(expected, id)), 1e-13 * size);
@@ -1181,7 +1180,7 @@ TEST_P(FilterInEverySystem, PointsOffASurfaceAreOutside)
   }
 }
 
-TEST(HomeomorphismFilter, PointsThatAreNotFiniteAreOutside)
+TEST(HomeomorphismFilter, NonFinitePointsAreOutside)
 {
   const double infinity = std::numeric_limits<double>::infinity();
   const double nan = vtkMath::Nan();
@@ -1202,7 +1201,7 @@ TEST(HomeomorphismFilter, PointsThatAreNotFiniteAreOutside)
 
 // --- Arrays --------------------------------------------------------------------------------------
 
-TEST_P(FilterInEverySystem, TriangleIdIsTheCellOfTheSource)
+TEST_P(FilterInEverySystem, TriangleIdIsTheCellIdInTheSource)
 {
   for (const Pairing& pairing : AllPairings(8, 2, 320))
   {
@@ -1216,35 +1215,35 @@ TEST_P(FilterInEverySystem, TriangleIdIsTheCellOfTheSource)
       (*mesh)->SetVerts(verts);
     }
     Random random(34);
-    std::vector<ToSurfacePoint> places;
+    std::vector<MeshPoint> samples;
     for (int i = 0; i < 3000; ++i)
     {
-      places.push_back(
+      samples.push_back(
         { 2 + random.Below(pair.Source->GetNumberOfCells() - 2), RandomWeights(random, 1e-6) });
     }
     for (const bool inverse : { false, true })
     {
       const auto filter =
-        MakeFilter(GetParam(), pair, MakeCloud(inverse ? pair.Target : pair.Source, places));
+        MakeFilter(GetParam(), pair, MakeCloud(inverse ? pair.Target : pair.Source, samples));
       filter->SetInverse(inverse);
       filter->ComputeTriangleIdOn();
       vtkPointSet* output = Output(filter);
       vtkDataArray* ids = PointArray(output, "TriangleId");
       ASSERT_TRUE(vtkIdTypeArray::SafeDownCast(ids));
       vtkIdType wrong = 0;
-      for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t i = 0; i < samples.size(); ++i)
       {
         wrong += ids->GetComponent(static_cast<vtkIdType>(i), 0) !=
-          static_cast<double>(places[i].Triangle);
+          static_cast<double>(samples[i].Triangle);
       }
       EXPECT_EQ(wrong, 0) << pairing.Name << inverse;
     }
   }
 }
 
-/// Places at which a stencil around them has the same triangle and the same e throughout, so that
-/// no crease of the Linear and Contour systems lies between its points.
-std::vector<bool> HaveNoKink(
+/// Points whose surrounding stencil has the same triangle and the same e throughout, so that no
+/// crease of the Linear and Contour systems separates its points.
+std::vector<bool> HaveNoCrease(
   const System& system, const MeshPair& pair, vtkPolyData* stencils, vtkIdType pointsOfStencil)
 {
   vtkNew<vtkTriangularCoordinates> coordinates;
@@ -1275,8 +1274,8 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
   for (const Pairing& pairing : AllPairings(8, 2, 330))
   {
     const MeshPair& pair = pairing.Meshes;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 4000, 35, 1e-3);
-    const auto filter = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, places));
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 4000, 35, 1e-3);
+    const auto filter = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, samples));
     filter->ComputeJacobianOn();
     filter->ComputeJacobianDeterminantOn();
     vtkPointSet* output = Output(filter);
@@ -1286,17 +1285,17 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
     ASSERT_EQ(jacobian->GetNumberOfComponents(), 9);
     ASSERT_EQ(determinant->GetDataType(), VTK_DOUBLE);
 
-    // Steps along two of the triangle's edges: a point of the triangle stays in its plane.
+    // Steps along two edges of the triangle stay in its plane.
     constexpr double h = 2e-5;
     const double steps[] = { -2.0, -1.0, 1.0, 2.0 };
-    std::vector<ToSurfacePoint> stencils;
-    for (const ToSurfacePoint& surfacePoint : places)
+    std::vector<MeshPoint> stencils;
+    for (const MeshPoint& surfacePoint : samples)
     {
       for (const std::size_t direction : { 1u, 2u })
       {
         for (const double step : steps)
         {
-          ToSurfacePoint moved = surfacePoint;
+          MeshPoint moved = surfacePoint;
           moved.Weights[direction] += step * h;
           moved.Weights[0] -= step * h;
           stencils.push_back(moved);
@@ -1304,24 +1303,24 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
       }
     }
     const auto stencilCloud = MakeCloud(pair.Source, stencils);
-    const std::vector<bool> hasNoKink = HaveNoKink(GetParam(), pair, stencilCloud, 8);
+    const std::vector<bool> hasNoCrease = HaveNoCrease(GetParam(), pair, stencilCloud, 8);
     const auto stencilFilter = MakeFilter(GetParam(), pair, stencilCloud);
     vtkPointSet* images = Output(stencilFilter);
     std::vector<double> errors;
     Worst worst;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const auto id = static_cast<vtkIdType>(i);
       const Matrix j = MatrixOf(jacobian, id);
-      const std::array<Point, 3> from = CornersOf(pair.Source, places[i].Triangle);
-      const std::array<Point, 3> to = CornersOf(pair.Target, places[i].Triangle);
-      // Normal to normal; these pairs' planes have the winding's normal as theirs.
+      const std::array<Point, 3> from = CornersOf(pair.Source, samples[i].Triangle);
+      const std::array<Point, 3> to = CornersOf(pair.Target, samples[i].Triangle);
+      // The Jacobian maps normal to normal. The normals of these planes follow from the winding.
       const Point normal = Unit(Cross(from[1] - from[0], from[2] - from[0]));
       const Point image = Unit(Cross(to[1] - to[0], to[2] - to[0]));
       worst.Take(Distance(j * normal, image), 1e-11);
       worst.Take(std::abs(determinant->GetComponent(id, 0) - Determinant(j)),
         1e-11 * (1.0 + std::abs(Determinant(j))) * Norm(j));
-      if (!hasNoKink[i])
+      if (!hasNoCrease[i])
       {
         continue;
       }
@@ -1336,10 +1335,10 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
       }
     }
     EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
-    ASSERT_GT(errors.size(), places.size());
-    // Second derivatives jump at wing segments, third ones at the borders of strips, and around the
-    // centroid the Contour system is like a cone: the few stencils there are worse, by as much as
-    // they are wide compared with their distance.
+    ASSERT_GT(errors.size(), samples.size());
+    // Second derivatives jump at wing segments, third ones at the borders of strips, and the
+    // Contour system is homogeneous around the centroid. The error of the few stencils there grows
+    // with the ratio of their width to that distance.
     std::sort(errors.begin(), errors.end());
     const double nearlyAll = errors[errors.size() * 99 / 100];
     std::cout << GetParam().Name << ", " << pairing.Name << ": Jacobian against differences, 99 % "
@@ -1360,14 +1359,14 @@ TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
   {
     const bool isPlanar = pair.Source == planar.Source;
     constexpr double h = 1e-6;
-    std::vector<ToSurfacePoint> corners;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 2000, 36, 1e-3);
-    for (const ToSurfacePoint& surfacePoint : places)
+    std::vector<MeshPoint> corners;
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 2000, 36, 1e-3);
+    for (const MeshPoint& surfacePoint : samples)
     {
       corners.push_back(surfacePoint);
       for (const std::size_t direction : { 1u, 2u })
       {
-        ToSurfacePoint moved = surfacePoint;
+        MeshPoint moved = surfacePoint;
         moved.Weights[direction] += h;
         moved.Weights[0] -= h;
         corners.push_back(moved);
@@ -1377,11 +1376,11 @@ TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
     const auto filter = MakeFilter(GetParam(), pair, cloud);
     filter->ComputeJacobianDeterminantOn();
     vtkPointSet* output = Output(filter);
-    const std::vector<bool> hasNoKink = HaveNoKink(GetParam(), pair, cloud, 3);
+    const std::vector<bool> hasNoCrease = HaveNoCrease(GetParam(), pair, cloud, 3);
     Worst worst;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
-      if (!hasNoKink[i])
+      if (!hasNoCrease[i])
       {
         continue;
       }
@@ -1399,7 +1398,7 @@ TEST_P(FilterInEverySystem, JacobianDeterminantIsTheRatioOfAreas)
   }
 }
 
-TEST_P(FilterInEverySystem, UsedCoordinateSystemTellsWhereLinearStandsIn)
+TEST_P(FilterInEverySystem, UsedCoordinateSystemMarksTrianglesMappedByLinear)
 {
   // Discordant triangles in the source alone, in the target alone, and none.
   const MeshPair planar = MakePlanarPair(8, 343);
@@ -1410,7 +1409,7 @@ TEST_P(FilterInEverySystem, UsedCoordinateSystemTellsWhereLinearStandsIn)
   for (const MeshPair& pair :
     { MeshPair{ sheared, planar.Target }, MeshPair{ planar.Target, sheared }, concordant })
   {
-    const auto cloud = MakeCloud(pair.Source, InnerPlaces(pair.Source, 2000, 45, 1e-3));
+    const auto cloud = MakeCloud(pair.Source, InnerSamples(pair.Source, 2000, 45, 1e-3));
     cloud->GetPoints()->InsertNextPoint(-1000.0, 0.0, 0.0);
     const auto filter = MakeFilter(GetParam(), pair, cloud);
     filter->ComputeTriangleIdOn();
@@ -1430,7 +1429,7 @@ TEST_P(FilterInEverySystem, UsedCoordinateSystemTellsWhereLinearStandsIn)
         const std::array<Point, 3> c = CornersOf(mesh, t);
         for (std::size_t k = 0; k < 6; ++k)
         {
-          // For concordance, of each ordered pair of corners A, B and the third C.
+          // Concordance, for each ordered pair of corners A, B and the third C.
           const Point& a = c[k % 3];
           const Point& b = c[(k + 1 + k / 3) % 3];
           const Point& third = c[(k + 2 - k / 3) % 3];
@@ -1471,7 +1470,7 @@ TEST(HomeomorphismFilter, ArraysOfTheSameNameAreReplaced)
   vtkPointSet* output = Output(filter);
   EXPECT_EQ(PointArray(output, "vtkValidPointMask")->GetNumberOfComponents(), 1);
   EXPECT_EQ(PointArray(output, "vtkValidPointMask")->GetDataType(), VTK_UNSIGNED_CHAR);
-  // Only what is added replaces.
+  // Only added arrays replace others.
   EXPECT_EQ(PointArray(output, "Jacobian")->GetNumberOfComponents(), 2);
   filter->ComputeJacobianOn();
   filter->ComputeJacobianDeterminantOn();
@@ -1484,7 +1483,7 @@ TEST(HomeomorphismFilter, ArraysOfTheSameNameAreReplaced)
   EXPECT_EQ(data->GetPointData()->GetArray("Jacobian")->GetNumberOfComponents(), 2);
 }
 
-// --- When it works -------------------------------------------------------------------------------
+// --- Caching -------------------------------------------------------------------------------------
 
 /// Counts executions.
 class ExecutionCount
@@ -1504,8 +1503,8 @@ private:
 TEST(HomeomorphismFilter, MeshesAreReadOnlyWhenTheyChange)
 {
   const MeshPair pair = MakePlanarPair(6, 350);
-  const auto places = RandomPlaces(pair.Source, 100, 38);
-  const auto filter = MakeFilter(Smooth, pair, MakeCloud(pair.Source, places));
+  const auto samples = RandomSamples(pair.Source, 100, 38);
+  const auto filter = MakeFilter(Smooth, pair, MakeCloud(pair.Source, samples));
   ExecutionCount executions(filter);
   EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 0);
   filter->Update();
@@ -1513,8 +1512,8 @@ TEST(HomeomorphismFilter, MeshesAreReadOnlyWhenTheyChange)
   filter->Update();
   EXPECT_EQ(executions.Get(), 1);
 
-  // Other data, other questions about the same map.
-  filter->SetDataObject(MakeCloud(pair.Source, RandomPlaces(pair.Source, 200, 39)));
+  // Other data and other outputs of the same map.
+  filter->SetDataObject(MakeCloud(pair.Source, RandomSamples(pair.Source, 200, 39)));
   filter->Update();
   filter->InverseOn();
   filter->Update();
@@ -1522,7 +1521,7 @@ TEST(HomeomorphismFilter, MeshesAreReadOnlyWhenTheyChange)
   filter->ComputeJacobianOn();
   filter->SetTolerance(0.1);
   filter->Update();
-  // The meshes' own data is no part of them.
+  // Attributes of the meshes do not matter.
   pair.Source->GetPointData()->SetScalars(
     RandomArray("Temperature", 1, pair.Source->GetNumberOfPoints(), 40));
   filter->Update();
@@ -1535,7 +1534,7 @@ TEST(HomeomorphismFilter, MeshesAreReadOnlyWhenTheyChange)
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 1);
 
-  const auto data = MakeCloud(sameMesh, places);
+  const auto data = MakeCloud(sameMesh, samples);
   filter->SetDataObject(data);
   pair.Target->GetPoints()->SetPoint(24, 3.1, 3.2, 0.0);
   pair.Target->GetPoints()->Modified();
@@ -1553,15 +1552,15 @@ TEST(HomeomorphismFilter, MeshesAreReadOnlyWhenTheyChange)
   EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 4);
 }
 
-TEST(HomeomorphismFilter, MovedPointsOfAMeshAreSeen)
+TEST(HomeomorphismFilter, MovedPointsOfAMeshAreUsed)
 {
   const MeshPair pair = MakePlanarPair(6, 353);
-  const auto data = MakeCloud(pair.Source, RandomPlaces(pair.Source, 500, 41));
+  const auto data = MakeCloud(pair.Source, RandomSamples(pair.Source, 500, 41));
   const auto filter = MakeFilter(Smooth, pair, data);
   filter->Update();
   vtkNew<vtkPolyData> before;
   before->DeepCopy(Output(filter));
-  // Only the points are told, as vtkPoints::SetPoint users do.
+  // Only the points are marked as modified, as after vtkPoints::SetPoint.
   Point moved = PointOf(pair.Target, 24);
   moved[0] += 0.1;
   pair.Target->GetPoints()->SetPoint(24, moved.data());
@@ -1574,7 +1573,7 @@ TEST(HomeomorphismFilter, MovedPointsOfAMeshAreSeen)
 TEST(HomeomorphismFilter, UpdatingTwiceIsStable)
 {
   const MeshPair pair = MakeClosedPair(2, 355);
-  const auto data = MakeCloud(pair.Source, RandomPlaces(pair.Source, 500, 42));
+  const auto data = MakeCloud(pair.Source, RandomSamples(pair.Source, 500, 42));
   data->GetPointData()->SetVectors(RandomArray("Velocity", 3, 500, 43));
   const auto filter = MakeFilter(Smooth, pair, data);
   filter->ComputeJacobianOn();
@@ -1601,7 +1600,7 @@ TEST(HomeomorphismFilter, ChangingAPropertyExecutesAgain)
 {
   const MeshPair pair = MakePlanarPair(6, 356, 0.05);
   const auto filter =
-    MakeFilter(Smooth, pair, MakeCloud(pair.Source, RandomPlaces(pair.Source, 50, 44)));
+    MakeFilter(Smooth, pair, MakeCloud(pair.Source, RandomSamples(pair.Source, 50, 44)));
   using Filter = vtkDifferentiableHomeomorphism;
   const std::vector<std::function<void(Filter*)>> changes{ [](Filter* f) {
                                                             f->SetCoordinateSystemToLinear();
@@ -1629,7 +1628,7 @@ TEST(HomeomorphismFilter, ChangingAPropertyExecutesAgain)
     change(filter);
     filter->Update();
     EXPECT_EQ(executions.Get(), ++expected);
-    // The same again changes nothing.
+    // Setting an equal value changes nothing.
     filter->Update();
     EXPECT_EQ(executions.Get(), expected);
   }
@@ -1658,9 +1657,9 @@ TEST(HomeomorphismFilter, PropertiesAreClampedAndPrinted)
   }
 }
 
-// --- Nothing to do -------------------------------------------------------------------------------
+// --- Empty inputs --------------------------------------------------------------------------------
 
-TEST_P(FilterInEverySystem, EmptyInputsGiveEmptyOutputsQuietly)
+TEST_P(FilterInEverySystem, EmptyInputsGiveEmptyOutputsWithoutErrors)
 {
   const vtkNew<vtkPolyData> nothing;
   const vtkNew<vtkPolyData> noCells;
@@ -1691,7 +1690,7 @@ TEST_P(FilterInEverySystem, EmptyInputsGiveEmptyOutputsQuietly)
     EXPECT_EQ(
       run(concordant.Source, concordant.Target, empty)->GetNumberOfElements(vtkDataObject::POINT),
       0);
-    // Everything is outside an empty domain.
+    // All points are outside an empty domain.
     const auto output = run(empty, empty, pair.Source);
     auto* points = vtkPointSet::SafeDownCast(output);
     ASSERT_TRUE(points);

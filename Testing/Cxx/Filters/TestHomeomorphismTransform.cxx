@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// vtkHomeomorphismTransform: that it is the filter's map wherever VTK takes a transform.
+// vtkHomeomorphismTransform equals the map of the filter wherever VTK accepts a transform.
 
 #include "FilterRuns.h"
 
@@ -43,17 +43,17 @@ std::vector<MeshPair> PlanarPairs(std::uint64_t seed)
       }) } };
 }
 
-/// In the domain and around it, over and under its plane.
+/// In the domain and around it, above and below its plane.
 std::vector<Point> PositionsAround(vtkPolyData* mesh, std::uint64_t seed)
 {
   std::vector<Point> positions;
-  for (const ToSurfacePoint& surfacePoint : RandomPlaces(mesh, 4000, seed))
+  for (const MeshPoint& surfacePoint : RandomSamples(mesh, 4000, seed))
   {
     positions.push_back(PositionOf(mesh, surfacePoint));
   }
   Random random(seed + 1);
   const double size = SizeOf(mesh);
-  for (const ToSurfacePoint& surfacePoint : RandomPlaces(mesh, 1000, seed + 2))
+  for (const MeshPoint& surfacePoint : RandomSamples(mesh, 1000, seed + 2))
   {
     positions.push_back(PositionOf(mesh, surfacePoint) + 0.5 * size * random.Vector());
   }
@@ -148,7 +148,7 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
       EXPECT_EQ(different, 0);
       EXPECT_LE(derivatives.OverBound, 1.0);
 
-      // All at once; VTK appends.
+      // All points at once; VTK appends.
       vtkNew<vtkPoints> points;
       points->SetDataTypeToDouble();
       points->InsertNextPoint(7.0, 8.0, 9.0);
@@ -180,7 +180,7 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
 
 TEST_P(TransformInEverySystem, InsideAChainOfTransforms)
 {
-  // Turned into the mesh's place, mapped, and turned away.
+  // Rotated into the plane of the mesh, mapped, and rotated back.
   const MeshPair pair = MakePlanarPair(8, 510);
   const auto transform = MakeTransform(GetParam(), pair);
   vtkNew<vtkTransform> before;
@@ -263,7 +263,7 @@ TEST_P(TransformInEverySystem, FloatVersions)
       }
       EXPECT_EQ(different, 0);
       EXPECT_LE(derivatives.OverBound, 1.0);
-      // Points of the boundary that rounding to float moves out are inside all the same.
+      // Boundary points that rounding to float moves outside count as inside.
       EXPECT_GE(filter->GetNumberOfOutsidePoints(), 100);
       EXPECT_LE(filter->GetNumberOfOutsidePoints(), 1000);
     }
@@ -286,7 +286,7 @@ TEST_P(TransformInEverySystem, NormalsAndVectorsAgreeWithTheFilter)
       filter->TransformAllInputVectorsOn();
       vtkPointSet* mapped = Output(filter);
 
-      // GetInverse here, the flag elsewhere.
+      // GetInverse here, the inverse flag elsewhere.
       const auto transform = MakeTransform(GetParam(), pair);
       vtkNew<vtkTransformFilter> transformFilter;
       transformFilter->SetInputData(cloud);
@@ -317,10 +317,10 @@ TEST_P(TransformInEverySystem, Inverse)
     inverse->Update();
     EXPECT_NE(vtkHomeomorphismTransform::SafeDownCast(inverse)->GetInverseFlag(),
       transform->GetInverseFlag());
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 3000, 67, 1e-3);
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 67, 1e-3);
     Worst points;
     Worst derivatives;
-    for (const ToSurfacePoint& surfacePoint : places)
+    for (const MeshPoint& surfacePoint : samples)
     {
       const Point p = PositionOf(pair.Source, surfacePoint);
       double forward[3][3];
@@ -348,8 +348,9 @@ TEST_P(TransformInEverySystem, Inverse)
     EXPECT_LE(points.OverBound, 1.0);
     EXPECT_LE(derivatives.OverBound, 1.0);
 
-    // The flag turned twice is nothing; turned once it is the inverse, and so is the inverse then.
-    const Point p = PositionOf(pair.Source, places[0]);
+    // Setting the flag twice restores the map. Setting it once gives the inverse, and likewise for
+    // the inverse.
+    const Point p = PositionOf(pair.Source, samples[0]);
     const Point image = Transformed(transform, p);
     const Point back = Transformed(inverse, image);
     transform->Inverse();
@@ -390,7 +391,7 @@ TEST_P(TransformInEverySystem, CopiesAreEqual)
       different += Transformed(copy, p) != Transformed(transform, p);
     }
     EXPECT_EQ(different, 0);
-    // A copy lives on by itself.
+    // A copy is independent of the original.
     copy->SetSource(pair.Target);
     EXPECT_EQ(transform->GetSource(), pair.Source.Get());
     EXPECT_EQ(Transformed(copy, { 1.25, 2.5, 3.0 })[2], 3.0);
@@ -444,7 +445,7 @@ TEST(HomeomorphismTransform, FollowsItsMeshes)
     EXPECT_EQ(PointOf(inversePipeline->GetOutput(), 0), Transformed(fresh->GetInverse(), image));
   }
 
-  // Another system, and other meshes, reach the inverse as well.
+  // Another system and other meshes also apply to the inverse.
   transform->SetCoordinateSystemToLinear();
   const auto linear = MakeTransform(Linear, pair);
   inversePipeline->Update();
@@ -497,7 +498,7 @@ TEST_P(TransformInEverySystem, Outside)
   EXPECT_TRUE(large->IsInside(galaxy(inside).data()));
 }
 
-TEST(HomeomorphismTransform, WithoutUsableMeshesEverythingIsOutside)
+TEST(HomeomorphismTransform, WithoutValidMeshesAllPointsAreOutside)
 {
   const MeshPair pair = MakePlanarPair(4, 565);
   const Point p{ 1.0, 1.0, 0.0 };
@@ -510,7 +511,7 @@ TEST(HomeomorphismTransform, WithoutUsableMeshesEverythingIsOutside)
   EXPECT_FALSE(transform->IsInside(p.data()));
   EXPECT_NE(messages.Error().find("target"), std::string::npos);
   messages.Clear();
-  // Surfaces are no map of space.
+  // Surfaces do not define a map of space.
   transform->SetTarget(MakeSheet(4, 566, 0.5));
   EXPECT_FALSE(transform->IsInside(p.data()));
   EXPECT_NE(messages.Error().find("plane"), std::string::npos);
@@ -572,7 +573,7 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
 {
   const MeshPair pair = MakePlanarPair(12, 580);
   std::vector<Point> positions;
-  for (const ToSurfacePoint& surfacePoint : RandomPlaces(pair.Source, 60000, 70))
+  for (const MeshPoint& surfacePoint : RandomSamples(pair.Source, 60000, 70))
   {
     positions.push_back(PositionOf(pair.Source, surfacePoint));
   }
@@ -594,7 +595,7 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
     {
       vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, backend, false }, [&]() {
         EXPECT_STREQ(vtkSMPTools::GetBackend(), backend);
-        // Meshes are read anew, too.
+        // The meshes are read again, too.
         const auto transform = MakeTransform(GetParam(), pair);
         const auto points = vtkSmartPointer<vtkPoints>::New();
         points->SetDataTypeToDouble();
@@ -622,7 +623,7 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
   }
 }
 
-TEST_P(TransformInEverySystem, ManyThreadsMayAskAtOnce)
+TEST_P(TransformInEverySystem, ManyThreadsMayMapAtOnce)
 {
   const MeshPair pair = MakePlanarPair(10, 590);
   const std::vector<Point> positions = PositionsAround(pair.Source, 72);
@@ -630,29 +631,29 @@ TEST_P(TransformInEverySystem, ManyThreadsMayAskAtOnce)
   transform->Update();
   vtkAbstractTransform* inverse = transform->GetInverse();
   inverse->Update();
-  struct Answer
+  struct Result
   {
     Point Image;
     Point Back;
     double Derivative[3][3];
   };
-  const auto ask = [&](std::vector<Answer>& answers) {
-    answers.resize(positions.size());
+  const auto ask = [&](std::vector<Result>& results) {
+    results.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
     {
-      Answer& answer = answers[i];
-      transform->InternalTransformPoint(positions[i].data(), answer.Image.data());
-      inverse->InternalTransformPoint(answer.Image.data(), answer.Back.data());
+      Result& result = results[i];
+      transform->InternalTransformPoint(positions[i].data(), result.Image.data());
+      inverse->InternalTransformPoint(result.Image.data(), result.Back.data());
       Point ignored;
       transform->InternalTransformDerivative(
-        positions[i].data(), ignored.data(), answer.Derivative);
+        positions[i].data(), ignored.data(), result.Derivative);
     }
   };
-  std::vector<Answer> serial;
+  std::vector<Result> serial;
   ask(serial);
-  std::vector<std::vector<Answer>> answers(4);
+  std::vector<std::vector<Result>> results(4);
   std::vector<std::thread> threads;
-  for (auto& own : answers)
+  for (auto& own : results)
   {
     threads.emplace_back([&ask, &own]() { ask(own); });
   }
@@ -660,7 +661,7 @@ TEST_P(TransformInEverySystem, ManyThreadsMayAskAtOnce)
   {
     thread.join();
   }
-  for (const auto& own : answers)
+  for (const auto& own : results)
   {
     for (std::size_t i = 0; i < positions.size(); ++i)
     {
@@ -676,10 +677,10 @@ TEST_P(TransformInEverySystem, ManyThreadsMayAskAtOnce)
 
 // --- Images --------------------------------------------------------------------------------------
 
-/// An image carried by vtkImageReslice, with meshes and pixels of a size.
+/// An image mapped by vtkImageReslice, with given sizes of meshes and pixels.
 void TestResampling(const System& system, double size)
 {
-  // The target is no rectangle, so that the picture has outside pixels on all sides and inside its
+  // The target is not a rectangle, so the image has outside pixels on all sides and inside its
   // bounding box.
   MeshPair pair = MakePlanarPair(8, 600);
   pair.Target = Moved(pair.Target, [](const Point& p) -> Point {
@@ -702,7 +703,7 @@ void TestResampling(const System& system, double size)
   {
     vtkNew<vtkImageReslice> reslice;
     reslice->SetInputData(image);
-    // From the output's grid to the input.
+    // From the grid of the output to the input.
     reslice->SetResliceTransform(transform->GetInverse());
     linear ? reslice->SetInterpolationModeToLinear()
            : reslice->SetInterpolationModeToNearestNeighbor();
@@ -744,7 +745,7 @@ void TestResampling(const System& system, double size)
             ((1.0 - (x - i)) * pixel(int(i), int(j)) + (x - i) * pixel(int(i) + 1, int(j))) +
           (y - j) *
             ((1.0 - (x - i)) * pixel(int(i), int(j) + 1) + (x - i) * pixel(int(i) + 1, int(j) + 1));
-        // VTK works out places to about 2^-17 of a pixel, and pixels differ by up to 200.
+        // VTK rounds positions to about 2^-17 of a pixel, and pixels differ by up to 200.
         wrong += !(std::abs(value - expected) < 0.01);
       }
       else
@@ -756,7 +757,7 @@ void TestResampling(const System& system, double size)
     }
     EXPECT_EQ(wrong, 0) << (linear ? "linear" : "nearest");
 
-    // Source and target exchanged is the same.
+    // Exchanging source and target is equivalent.
     vtkNew<vtkImageData> first;
     first->DeepCopy(output);
     const auto exchanged = MakeTransform(system, { pair.Target, pair.Source });
@@ -775,7 +776,7 @@ TEST_P(TransformInEverySystem, ImagesAreResampled)
 
 TEST_P(TransformInEverySystem, TinyImagesAreResampled)
 {
-  // Where the place of outside points, counted in pixels, is beyond what a float can hold.
+  // The position of outside points, in pixels, exceeds the range of float.
   TestResampling(GetParam(), 1e-12);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Whether the instrument sees creases where mathematics puts them, and none elsewhere.
+// The filter finds creases exactly where they are.
 
 #include "MeasuredMaps.h"
 #include "TestMeshes.h"
@@ -61,8 +61,8 @@ vtkDataArray* SampleArray(vtkJacobianContinuity* filter, const char* name)
   return filter->GetOutput()->GetPointData()->GetArray(name);
 }
 
-/// Every estimate is within its own bound of the closed form. Returns the median of the bounds over
-/// the jumps, where there is one.
+/// Every estimate is within its own bound of the closed form. Returns the median of bound over jump
+/// where there is a jump.
 double ExpectAgreementWithClosedForm(vtkJacobianContinuity* filter)
 {
   vtkDataArray* jump = SampleArray(filter, "JacobianJump");
@@ -164,7 +164,7 @@ TEST(JacobianContinuity, SimilarMeshesHaveNoJump)
   }
 }
 
-TEST(JacobianContinuity, OurTransformIsAnyTransform)
+TEST(JacobianContinuity, AHomeomorphismTransformIsMeasuredLikeAnyTransform)
 {
   const MeshPair pair = MakePlanarPair(10, 6);
   vtkNew<vtkHomeomorphismTransform> transform;
@@ -178,7 +178,7 @@ TEST(JacobianContinuity, OurTransformIsAnyTransform)
     const auto byTarget = Measure(pair.Source, pair.Target, system);
     EXPECT_EQ(byTransform->GetNumberOfCreases(), byTarget->GetNumberOfCreases());
     ExpectAgreementWithClosedForm(byTransform);
-    // Measured on a copy of the mesh, nothing is known of the map but its values.
+    // On a copy of the mesh, only the values of the map are available.
     vtkNew<vtkPolyData> copy;
     copy->DeepCopy(pair.Source);
     const auto fromOutside = Measure(copy, transform);
@@ -196,8 +196,8 @@ TEST(JacobianContinuity, ThinPlateSplinesAreDifferentiable)
   EXPECT_LE(filter->GetNumberOfUndecidedEdges(), filter->GetOutput()->GetNumberOfCells() / 100);
 }
 
-/// The edges on the line x = 7 of a grid of n x n squares, and no others, should have the verdict.
-void ExpectKinksOnTheLineOnly(vtkJacobianContinuity* filter, const char* verdictName, int n)
+/// Exactly the edges on the line x = 7 of a grid of n x n squares should have the verdict.
+void ExpectCreasesOnTheLineOnly(vtkJacobianContinuity* filter, const char* verdictName, int n)
 {
   vtkDataArray* verdict = EdgeArray(filter, verdictName);
   vtkIdType onLine = 0;
@@ -213,15 +213,15 @@ void ExpectKinksOnTheLineOnly(vtkJacobianContinuity* filter, const char* verdict
   EXPECT_EQ(onLine, n);
 }
 
-TEST(JacobianContinuity, SmallKinksAreSeen)
+TEST(JacobianContinuity, SmallCreasesAreFound)
 {
   vtkNew<PiecewiseMap> map;
   map->Amount = 1e-6;
   const auto filter = Measure(RegularGrid(14), map);
-  ExpectKinksOnTheLineOnly(filter, "Verdict", 14);
+  ExpectCreasesOnTheLineOnly(filter, "Verdict", 14);
 }
 
-TEST(JacobianContinuity, OnceDifferentiableIsNotTwice)
+TEST(JacobianContinuity, OnceDifferentiableMapsAreDifferentiable)
 {
   vtkNew<PiecewiseMap> map;
   map->Amount = 0.1;
@@ -229,7 +229,7 @@ TEST(JacobianContinuity, OnceDifferentiableIsNotTwice)
   const auto once = Measure(RegularGrid(14), map, true);
   EXPECT_EQ(once->GetNumberOfCreases(), 0);
   EXPECT_EQ(once->GetNumberOfUndecidedEdges(), 0);
-  ExpectKinksOnTheLineOnly(once, "SecondDerivativeVerdict", 14);
+  ExpectCreasesOnTheLineOnly(once, "SecondDerivativeVerdict", 14);
 
   map->Exponent = 3;
   map->Modified();
@@ -241,10 +241,10 @@ TEST(JacobianContinuity, OnceDifferentiableIsNotTwice)
   }
 }
 
-TEST(JacobianContinuity, TheJumpIsTheOneOfAKnownMap)
+TEST(JacobianContinuity, JumpsOfAKnownMapAreExact)
 {
   // Two squares, the second stretched along x by 1 + a and sheared by b: across the edge x = 1 the
-  // derivative in its direction goes from (1, 0) to (1 + a, b).
+  // derivative in its direction changes from (1, 0) to (1 + a, b).
   const double a = 0.5;
   const double b = 0.25;
   const std::vector<Triangle> triangles{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 } };
@@ -276,7 +276,7 @@ TEST(JacobianContinuity, TheJumpIsTheOneOfAKnownMap)
   }
 }
 
-TEST(JacobianContinuity, TrianglesAndPointsCarryTheLargestJump)
+TEST(JacobianContinuity, TrianglesAndPointsHaveTheLargestJumpOfTheirEdges)
 {
   const MeshPair pair = MakePlanarPair(6, 2);
   const auto filter = Measure(pair.Source, pair.Target, vtkJacobianContinuity::LINEAR);
@@ -303,7 +303,7 @@ TEST(JacobianContinuity, TrianglesAndPointsCarryTheLargestJump)
     3 * pair.Source->GetNumberOfCells());
 }
 
-/// A map with something done to its values.
+/// A map with modified values.
 class AlteredMap : public PiecewiseMap
 {
 public:
@@ -323,7 +323,7 @@ protected:
 };
 vtkStandardNewMacro(AlteredMap);
 
-TEST(JacobianContinuity, ValuesOfFewDigitsAreNotTakenForKinks)
+TEST(JacobianContinuity, ValuesOfFewDigitsAreNotMistakenForCreases)
 {
   vtkNew<AlteredMap> map;
   for (const std::function<double(double)>& alter :
@@ -340,7 +340,7 @@ TEST(JacobianContinuity, ValuesOfFewDigitsAreNotTakenForKinks)
   }
 }
 
-TEST(JacobianContinuity, WhatIsNotANumberIsUndecided)
+TEST(JacobianContinuity, NonFiniteValuesAreUndecided)
 {
   vtkNew<AlteredMap> map;
   map->Alter = [](double x) { return x > 3.5 ? std::numeric_limits<double>::quiet_NaN() : x; };
@@ -358,7 +358,7 @@ TEST(JacobianContinuity, WhatIsNotANumberIsUndecided)
 
 TEST(JacobianContinuity, NationalGridsAreMeasured)
 {
-  // Seven digits before the point: much is left open, nothing is wrong.
+  // Seven digits before the decimal point: many verdicts are undecided, none is wrong.
   const MeshPair near = MakePlanarPair(12, 3, 0.2);
   MeshPair far;
   for (auto side : { &MeshPair::Source, &MeshPair::Target })
@@ -424,7 +424,7 @@ TEST(JacobianContinuity, ScaleDoesNotMatter)
   }
 }
 
-TEST(JacobianContinuity, OurTransformIsMeasuredOnOtherTrianglesOfItsPoints)
+TEST(JacobianContinuity, AHomeomorphismTransformIsMeasuredOnOtherTriangles)
 {
   const MeshPair pair = MakePlanarPair(5, 6);
   vtkNew<vtkHomeomorphismTransform> transform;
@@ -443,7 +443,7 @@ TEST(JacobianContinuity, OurTransformIsMeasuredOnOtherTrianglesOfItsPoints)
   EXPECT_EQ(filter->GetErrorCode(), 0u);
 }
 
-TEST(JacobianContinuity, StretchAlongTheEdgeHidesNoKink)
+TEST(JacobianContinuity, StretchAlongTheEdgeHidesNoCrease)
 {
   // The map stretches by 1 and 3 across an edge, and by 1e8 along it.
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 0, 3 } };

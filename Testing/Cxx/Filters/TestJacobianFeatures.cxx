@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Whether the instrument says of every kind of place what mathematics says, and the pairs of
-// Documentation/differentiability.md, with the numbers that stand there.
+// The verdicts of the filter agree with the theorems for every kind of feature, and with the
+// numbers of Documentation/differentiability.md.
 
 #include "FilterRuns.h"
 #include "MeasuredMaps.h"
@@ -58,21 +58,21 @@ double CellValue(Continuity* filter, const char* name, vtkIdType cell)
   return filter->GetOutput()->GetCellData()->GetArray(name)->GetTuple1(cell);
 }
 
-/// The numbers of places of a type with each verdict.
-std::array<vtkIdType, 3> Count(Continuity* filter, int placeType)
+/// The numbers of features of a type with each verdict.
+std::array<vtkIdType, 3> Count(Continuity* filter, int featureType)
 {
-  return { filter->GetNumberOfFeatures(placeType, Continuity::DIFFERENTIABLE),
-    filter->GetNumberOfFeatures(placeType, Continuity::CREASE),
-    filter->GetNumberOfFeatures(placeType, Continuity::UNDECIDED) };
+  return { filter->GetNumberOfFeatures(featureType, Continuity::DIFFERENTIABLE),
+    filter->GetNumberOfFeatures(featureType, Continuity::CREASE),
+    filter->GetNumberOfFeatures(featureType, Continuity::UNDECIDED) };
 }
 
 /// Cells of a type.
-std::vector<vtkIdType> CellsOf(Continuity* filter, int placeType)
+std::vector<vtkIdType> CellsOf(Continuity* filter, int featureType)
 {
   std::vector<vtkIdType> cells;
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
   {
-    if (CellValue(filter, "PlaceType", i) == placeType)
+    if (CellValue(filter, "PlaceType", i) == featureType)
     {
       cells.push_back(i);
     }
@@ -94,9 +94,9 @@ void ExpectAllDifferentiable(Continuity* filter)
   }
 }
 
-// --- Which places there are ----------------------------------------------------------------------
+// --- Features ------------------------------------------------------------------------------------
 
-TEST(JacobianPlaces, EveryPlaceIsThere)
+TEST(JacobianFeatures, AllFeaturesAreListed)
 {
   const MeshPair pair = MakePlanarPair(6, 5, 0.15);
   const auto filter = MeasureEverything(pair.Source, pair.Target, Continuity::SMOOTH);
@@ -112,7 +112,7 @@ TEST(JacobianPlaces, EveryPlaceIsThere)
   EXPECT_EQ(CellsOf(filter, Continuity::STRIP_BORDER).size(), 2u * interior);
   EXPECT_EQ(CellsOf(filter, Continuity::TRIANGLE_CENTER).size(), 1u * triangles);
   EXPECT_EQ(CellsOf(filter, Continuity::VERTEX).size(), 49u);
-  // The cells are of the kind that the place is: points come first.
+  // The cells have the dimension of their feature; points come first.
   vtkPolyData* output = filter->GetOutput();
   for (vtkIdType i = 0; i < output->GetNumberOfCells(); ++i)
   {
@@ -125,7 +125,7 @@ TEST(JacobianPlaces, EveryPlaceIsThere)
   }
 }
 
-TEST(JacobianPlaces, BoundaryEdgesHaveNoJumpAndSaySo)
+TEST(JacobianFeatures, BoundaryEdgesHaveNoJump)
 {
   const MeshPair pair = MakePlanarPair(4, 5, 0.15);
   const auto filter = MeasureEverything(pair.Source, pair.Target, Continuity::LINEAR);
@@ -146,7 +146,7 @@ TEST(JacobianPlaces, BoundaryEdgesHaveNoJumpAndSaySo)
   }
 }
 
-TEST(JacobianPlaces, ALoneTriangleHasNoJump)
+TEST(JacobianFeatures, ALoneTriangleHasNoJump)
 {
   const auto triangle = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } });
   vtkNew<Continuity> filter;
@@ -159,9 +159,9 @@ TEST(JacobianPlaces, ALoneTriangleHasNoJump)
   EXPECT_TRUE(std::isnan(colored->GetPointData()->GetArray("JacobianJump")->GetTuple1(0)));
 }
 
-TEST(JacobianPlaces, LinesLieWhereTheyShould)
+TEST(JacobianFeatures, LinesHaveTheirPositions)
 {
-  // The centroid is (1, 1); its feet are (1, 0), (0, 1) and (1.5, 1.5).
+  // The centroid is (1, 1). Its feet are (1, 0), (0, 1) and (1.5, 1.5).
   const auto triangle = MakeMesh({ { 0, 0, 0 }, { 3, 0, 0 }, { 0, 3, 0 } }, { { 0, 1, 2 } });
   const auto filter = MeasureEverything(triangle, triangle, Continuity::CONTOUR);
   const auto ends = [&filter](vtkIdType cell) {
@@ -195,7 +195,7 @@ TEST(JacobianPlaces, LinesLieWhereTheyShould)
   EXPECT_TRUE(all(Continuity::STRIP_BORDER).empty());
 }
 
-TEST(JacobianPlaces, NoFootNoSegment)
+TEST(JacobianFeatures, ATriangleWithoutAFootHasNoSegment)
 {
   // The foot on the first edge is outside it.
   const auto triangle = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 4, 1, 0 } }, { { 0, 1, 2 } });
@@ -215,9 +215,9 @@ TEST(JacobianPlaces, NoFootNoSegment)
   EXPECT_EQ(CellsOf(filter, Continuity::CENTER_SEGMENT).size(), 3u);
 }
 
-// --- What is found there -------------------------------------------------------------------------
+// --- Verdicts ------------------------------------------------------------------------------------
 
-TEST(JacobianPlaces, SimilarPairsAreDifferentiableEverywhere)
+TEST(JacobianFeatures, SimilarPairsAreDifferentiableEverywhere)
 {
   const auto source = MakeMesh(GridPoints(8, 4, 0.15), GridTriangles(8));
   const auto turned = Moved(source, [](const Point& p) -> Point {
@@ -230,7 +230,7 @@ TEST(JacobianPlaces, SimilarPairsAreDifferentiableEverywhere)
   }
 }
 
-TEST(JacobianPlaces, AffinePairsAreDifferentiableInLinearAndSmoothOnly)
+TEST(JacobianFeatures, AffinePairsAreDifferentiableInLinearAndSmoothOnly)
 {
   const auto source = MakeMesh(GridPoints(8, 4, 0.15), GridTriangles(8));
   const auto stretched = Moved(source, [](const Point& p) -> Point {
@@ -246,7 +246,7 @@ TEST(JacobianPlaces, AffinePairsAreDifferentiableInLinearAndSmoothOnly)
   }
 }
 
-TEST(JacobianPlaces, AnyTransformCanBeMeasuredEverywhere)
+TEST(JacobianFeatures, AnyTransformIsMeasuredAtAllFeatures)
 {
   const MeshPair pair = MakePlanarPair(8, 9, 0.15);
   vtkNew<Continuity> filter;
@@ -256,14 +256,14 @@ TEST(JacobianPlaces, AnyTransformCanBeMeasuredEverywhere)
   filter->Update();
   ExpectAllDifferentiable(filter);
 
-  // A crease along a line of the grid, and so at the points on it.
+  // A crease along a line of the grid, hence at the points on it.
   vtkNew<PiecewiseMap> pieces;
   pieces->Amount = 0.2;
   filter->SetSourceData(RegularGrid(9));
   filter->SetTransform(pieces);
   filter->Update();
   EXPECT_EQ(Count(filter, Continuity::EDGE)[Continuity::CREASE], 9);
-  // The ends of the line as well: half of each direction around them is inside.
+  // Also at the ends of the line, where half of the directions are inside.
   EXPECT_EQ(Count(filter, Continuity::VERTEX)[Continuity::CREASE], 10);
   for (const int type : { Continuity::SPOKE, Continuity::WING_SEGMENT, Continuity::CENTER_SEGMENT,
          Continuity::STRIP_BORDER, Continuity::TRIANGLE_CENTER })
@@ -272,7 +272,7 @@ TEST(JacobianPlaces, AnyTransformCanBeMeasuredEverywhere)
   }
 }
 
-TEST(JacobianPlaces, ContourIsOnceDifferentiableAcrossWingSegmentsOnly)
+TEST(JacobianFeatures, ContourIsOnceDifferentiableAcrossWingSegmentsOnly)
 {
   const MeshPair pair = MakePlanarPair(6, 5, 0.15);
   vtkNew<Continuity> filter;
@@ -289,11 +289,11 @@ TEST(JacobianPlaces, ContourIsOnceDifferentiableAcrossWingSegmentsOnly)
     EXPECT_NE(CellValue(filter, "Verdict", cell), Continuity::CREASE);
     creases += CellValue(filter, "SecondDerivativeVerdict", cell) == Continuity::CREASE;
   }
-  // All but those of the two triangles that are the same in both meshes.
+  // Except in the two triangles that are the same in both meshes.
   EXPECT_GT(creases, 0.9 * static_cast<double>(wings.size()));
 }
 
-TEST(JacobianPlaces, SmoothIsTwiceDifferentiableWithinTriangles)
+TEST(JacobianFeatures, SmoothIsTwiceDifferentiableWithinTriangles)
 {
   const MeshPair pair = MakePlanarPair(6, 5);
   vtkNew<Continuity> filter;
@@ -313,7 +313,7 @@ TEST(JacobianPlaces, SmoothIsTwiceDifferentiableWithinTriangles)
   EXPECT_GE(100 * decided, 98 * filter->GetOutput()->GetNumberOfCells());
 }
 
-TEST(JacobianPlaces, VerticesOfSurfacesHaveNothingToCompare)
+TEST(JacobianFeatures, VerticesOfSurfacesAreNotMeasured)
 {
   const MeshPair pair = MakeClosedPair(1, 3);
   vtkNew<Continuity> filter;
@@ -336,7 +336,7 @@ TEST(JacobianPlaces, VerticesOfSurfacesHaveNothingToCompare)
     3 * pair.Source->GetNumberOfCells());
 }
 
-TEST(JacobianPlaces, ResultsDoNotDependOnThreads)
+TEST(JacobianFeatures, ResultsDoNotDependOnThreads)
 {
   const MeshPair pair = MakePlanarPair(8, 5, 0.15);
   const auto values = [&pair](int threads) {
@@ -356,7 +356,7 @@ TEST(JacobianPlaces, ResultsDoNotDependOnThreads)
 
 // --- The second output of vtkDifferentiableHomeomorphism -----------------------------------------
 
-TEST(JacobianPlaces, TheHomeomorphismOffersTheSame)
+TEST(JacobianFeatures, TheHomeomorphismFilterMeasuresTheSame)
 {
   const MeshPair pair = MakePlanarPair(5, 2, 0.15);
   for (const bool inverse : { false, true })
@@ -402,7 +402,7 @@ TEST(JacobianPlaces, TheHomeomorphismOffersTheSame)
     }
     EXPECT_EQ(map->GetJacobianContinuity()->GetNumberOfCreases(), alone->GetNumberOfCreases());
 
-    // New data leaves the measurement alone; a setting of the inner filter does not.
+    // New data does not repeat the measurement. An option of the inner filter does.
     const vtkMTimeType before = map->GetJacobianContinuity()->GetOutput()->GetMTime();
     map->SetDataObject(filter_runs::MakeCloud({ { 1.0, 1.0, 0.0 } }));
     map->Update();
@@ -415,7 +415,7 @@ TEST(JacobianPlaces, TheHomeomorphismOffersTheSame)
   }
 }
 
-TEST(JacobianPlaces, AnAbortedMeasurementIsMadeAgain)
+TEST(JacobianFeatures, AnAbortedMeasurementIsRepeated)
 {
   const MeshPair pair = MakePlanarPair(40, 2);
   const auto map = filter_runs::MakeFilter(filter_runs::Smooth, pair);
@@ -435,7 +435,7 @@ TEST(JacobianPlaces, AnAbortedMeasurementIsMadeAgain)
   EXPECT_EQ(map->GetOutputDataObject(1)->GetNumberOfElements(vtkDataObject::CELL), 3 * 1600 - 80);
 }
 
-TEST(JacobianPlaces, TheHomeomorphismDoesNotRunTwiceForNothing)
+TEST(JacobianFeatures, TheHomeomorphismIsNotComputedTwice)
 {
   const MeshPair pair = MakePlanarPair(3, 2);
   const auto map = filter_runs::MakeFilter(filter_runs::Smooth, pair);

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestMalformedData.cxx
-/// Data whose arrays and cells do not fit together, meshes that number their triangles differently,
-/// and requests for pieces. Some of it is wrong, some only unusual; none of it may be read past its
-/// end.
+/// Malformed and unusual input: arrays and cells that do not match, meshes with different cell
+/// numbering, and requests for pieces. Nothing may be read out of bounds.
 
 #include "TestMeshes.h"
 
@@ -37,7 +36,7 @@ using namespace test_meshes;
 
 constexpr auto Linear = vtkDifferentiableHomeomorphism::LINEAR;
 
-/// The square [0, n] x [0, n], and the same with all coordinates doubled: J is twice the identity
+/// The square [0, n] x [0, n] and the same square with doubled coordinates: J is twice the identity
 /// in the plane.
 MeshPair MakeDoublingPair(int n)
 {
@@ -50,7 +49,7 @@ MeshPair MakeDoublingPair(int n)
   return { source, MakeMesh(points, GridTriangles(n)) };
 }
 
-/// The centroids of a mesh's triangles, in the order of the triangles.
+/// The centroids of the triangles of a mesh, in their order.
 std::vector<Point> Centroids(vtkPolyData* mesh)
 {
   std::vector<Point> result;
@@ -75,7 +74,7 @@ std::vector<Point> Centroids(vtkPolyData* mesh)
   return result;
 }
 
-/// Puts vertex and line cells before a mesh's triangles, which moves their cell ids.
+/// Puts vertex and line cells before the triangles of a mesh, which shifts their cell ids.
 void AddVertsAndLines(vtkPolyData* mesh, int verts, int lines)
 {
   vtkNew<vtkCellArray> vertCells;
@@ -106,7 +105,7 @@ vtkSmartPointer<vtkUnsignedCharArray> MakeGhosts(vtkIdType tuples, vtkIdType hid
   return ghosts;
 }
 
-/// Numbers that tell their place: tuple i, component k is 10 i + k + 1.
+/// Values that encode their position: component k of tuple i is 10 i + k + 1.
 vtkSmartPointer<vtkDoubleArray> MakeNumbers(const char* name, int components, vtkIdType tuples)
 {
   const auto numbers = vtkSmartPointer<vtkDoubleArray>::New();
@@ -123,8 +122,8 @@ vtkSmartPointer<vtkDoubleArray> MakeNumbers(const char* name, int components, vt
   return numbers;
 }
 
-/// The filter with meshes, linear so that results are plain.
-class Doubling : public ::testing::Test
+/// The filter with a Linear map, so that results are simple.
+class MalformedData : public ::testing::Test
 {
 protected:
   void SetUp() override { this->SetMeshes(this->Pair); }
@@ -140,7 +139,7 @@ protected:
   {
     this->Filter->SetDataObject(data);
     this->Filter->Update();
-    EXPECT_FALSE(this->Told.HasError()) << this->Told.Error();
+    EXPECT_FALSE(this->Log.HasError()) << this->Log.Error();
     return vtkPointSet::SafeDownCast(this->Filter->GetOutputDataObject(0));
   }
 
@@ -157,17 +156,18 @@ protected:
 
   MeshPair Pair = MakeDoublingPair(2);
   vtkNew<vtkDifferentiableHomeomorphism> Filter;
-  Messages Told{ this->Filter };
+  Messages Log{ this->Filter };
 };
 
 //------------------------------------------------------------------------------------------------
 // Hidden cells of meshes that have other vertices and lines.
 
-TEST_F(Doubling, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
+TEST_F(MalformedData, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
 {
   for (const bool onTarget : { true, false })
   {
-    // Vertices and lines beside the triangles of either mesh, the hidden cell always in the first.
+    // Vertices and lines in addition to the triangles of either mesh. The hidden cell is in the
+    // first mesh.
     for (const auto& counts : std::vector<std::array<int, 4>>{
            { 0, 0, 1, 0 }, { 1, 0, 0, 0 }, { 0, 0, 2, 3 }, { 2, 3, 1, 1 }, { 0, 2, 0, 0 } })
     {
@@ -179,7 +179,7 @@ TEST_F(Doubling, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
         vtkPolyData* other = onTarget ? pair.Source : pair.Target;
         AddVertsAndLines(mesh, counts[0], counts[1]);
         AddVertsAndLines(other, counts[2], counts[3]);
-        // As long as the mesh's own cells: the other's cell ids would lead past its end.
+        // As long as the array of the mesh itself: cell ids of the other mesh would exceed it.
         const vtkIdType cell = counts[0] + counts[1] + hidden;
         mesh->GetCellData()->AddArray(
           MakeGhosts(mesh->GetNumberOfCells(), cell, vtkDataSetAttributes::HIDDENCELL));
@@ -192,7 +192,7 @@ TEST_F(Doubling, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
   }
 }
 
-TEST_F(Doubling, GhostArraysOfAnotherLengthOnTheMeshesHideNothing)
+TEST_F(MalformedData, GhostArraysOfAnotherLengthOnTheMeshesHideNothing)
 {
   for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
   {
@@ -214,7 +214,7 @@ vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
     { { 0, 1, 2 }, { 3, 4, 5 } });
 }
 
-TEST_F(Doubling, GhostArraysOfAnotherLengthOnTheDataAreReplaced)
+TEST_F(MalformedData, GhostArraysOfAnotherLengthOnTheDataAreReplaced)
 {
   for (const vtkIdType points : { 0, 1, 3, 5, 7, 100 })
   {
@@ -235,13 +235,13 @@ TEST_F(Doubling, GhostArraysOfAnotherLengthOnTheDataAreReplaced)
       }
       EXPECT_EQ(cellGhosts->GetTuple1(0), 0.0);
       EXPECT_EQ(cellGhosts->GetTuple1(1), double(vtkDataSetAttributes::HIDDENCELL));
-      // The data is not the filter's to change.
+      // The filter must not modify its input.
       EXPECT_EQ(data->GetPointData()->GetArray("vtkGhostType")->GetNumberOfTuples(), points);
     }
   }
 }
 
-TEST_F(Doubling, GhostArraysThatFitAreKept)
+TEST_F(MalformedData, GhostArraysThatFitAreKept)
 {
   const auto data = MakeDataPartlyOutside();
   data->GetPointData()->AddArray(MakeGhosts(6, 1, vtkDataSetAttributes::DUPLICATEPOINT));
@@ -255,7 +255,7 @@ TEST_F(Doubling, GhostArraysThatFitAreKept)
     double(vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
 }
 
-TEST_F(Doubling, ArraysOfAnotherLengthPassUntouched)
+TEST_F(MalformedData, ArraysOfAnotherLengthPassUntouched)
 {
   for (const vtkIdType tuples : { 0, 1, 2, 5, 7, 5000 })
   {
@@ -267,7 +267,7 @@ TEST_F(Doubling, ArraysOfAnotherLengthPassUntouched)
     const auto gradients = MakeNumbers("Gradients", 3, tuples);
     this->Filter->SetAttributeTransformation(
       "Gradients", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
-    // 2 tuples are right for the cells, and wrong for the points.
+    // 2 tuples match the number of cells, but not that of points.
     for (vtkDataSetAttributes* attributes :
       std::initializer_list<vtkDataSetAttributes*>{ data->GetPointData(), data->GetCellData() })
     {
@@ -293,7 +293,7 @@ TEST_F(Doubling, ArraysOfAnotherLengthPassUntouched)
   }
 }
 
-TEST_F(Doubling, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
+TEST_F(MalformedData, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
 {
   const auto data = MakeDataPartlyOutside();
   const auto tooLong = MakeNumbers("TooLong", 3, 7);
@@ -302,14 +302,14 @@ TEST_F(Doubling, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
   this->Filter->TransformAllInputVectorsOn();
   vtkPointSet* output = this->Run(data);
   EXPECT_EQ(output->GetPointData()->GetArray("TooLong"), tooLong);
-  vtkDataArray* carried = output->GetPointData()->GetVectors();
-  ASSERT_NE(carried, nullptr);
-  EXPECT_NEAR(carried->GetComponent(2, 0), 42.0, 1e-13);
-  EXPECT_NEAR(carried->GetComponent(2, 1), 44.0, 1e-13);
-  EXPECT_NEAR(carried->GetComponent(2, 2), 23.0, 1e-13);
+  vtkDataArray* mapped = output->GetPointData()->GetVectors();
+  ASSERT_NE(mapped, nullptr);
+  EXPECT_NEAR(mapped->GetComponent(2, 0), 42.0, 1e-13);
+  EXPECT_NEAR(mapped->GetComponent(2, 1), 44.0, 1e-13);
+  EXPECT_NEAR(mapped->GetComponent(2, 2), 23.0, 1e-13);
 }
 
-TEST_F(Doubling, ArraysOfAnotherLengthOnImagesPassUntouched)
+TEST_F(MalformedData, ArraysOfAnotherLengthOnImagesPassUntouched)
 {
   const vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 1);
@@ -323,8 +323,8 @@ TEST_F(Doubling, ArraysOfAnotherLengthOnImagesPassUntouched)
   }
 }
 
-/// Ids of points that do not exist: just past the end, negative, and so far off that reading there
-/// cannot but crash.
+/// Ids of points that do not exist: just past the end, negative, and so far off that an access
+/// would crash.
 const std::vector<vtkIdType> NoPoints{ 6, 7, -1, -1000, vtkIdType(1) << 44, -(vtkIdType(1) << 44),
   std::numeric_limits<vtkIdType>::max() };
 
@@ -333,13 +333,13 @@ void ExpectCorruptCellHandled(vtkPointSet* output)
   ASSERT_NE(output, nullptr);
   ASSERT_EQ(output->GetNumberOfPoints(), 6);
   ASSERT_EQ(output->GetNumberOfCells(), 3);
-  // Only whole cells inside are shown.
+  // Only whole cells inside are visible.
   vtkDataArray* ghosts = output->GetCellData()->GetArray("vtkGhostType");
   ASSERT_NE(ghosts, nullptr);
   EXPECT_EQ(ghosts->GetTuple1(0), 0.0);
   EXPECT_EQ(ghosts->GetTuple1(1), double(vtkDataSetAttributes::HIDDENCELL));
   EXPECT_EQ(ghosts->GetTuple1(2), double(vtkDataSetAttributes::HIDDENCELL));
-  // Cell vectors are carried where the cell's middle is, and there is none.
+  // Cell vectors are transformed at the center of the cell, which does not exist.
   vtkDataArray* vectors = output->GetCellData()->GetVectors();
   ASSERT_NE(vectors, nullptr);
   EXPECT_NEAR(vectors->GetComponent(0, 0), 2.0, 1e-13);
@@ -347,13 +347,13 @@ void ExpectCorruptCellHandled(vtkPointSet* output)
   EXPECT_TRUE(std::isnan(vectors->GetComponent(2, 0)));
 }
 
-TEST_F(Doubling, CellsOfAGridWithPointsThatDoNotExist)
+TEST_F(MalformedData, CellsOfAGridWithPointsThatDoNotExist)
 {
   for (const vtkIdType noPoint : NoPoints)
   {
     SCOPED_TRACE(noPoint);
     const auto whole = MakeDataPartlyOutside();
-    // InsertNextCell of the grid would look at the points: the cell array by hand does not.
+    // InsertNextCell of the grid would access the points, so the cell array is filled directly.
     const vtkNew<vtkCellArray> cells;
     for (const Triangle& triangle :
       std::vector<Triangle>{ { 0, 1, 2 }, { 0, noPoint, 2 }, { 3, 4, 5 } })
@@ -368,7 +368,7 @@ TEST_F(Doubling, CellsOfAGridWithPointsThatDoNotExist)
   }
 }
 
-TEST_F(Doubling, CellsOfPolyDataWithPointsThatDoNotExist)
+TEST_F(MalformedData, CellsOfPolyDataWithPointsThatDoNotExist)
 {
   for (const vtkIdType noPoint : NoPoints)
   {
@@ -386,9 +386,9 @@ TEST_F(Doubling, CellsOfPolyDataWithPointsThatDoNotExist)
   }
 }
 
-TEST_F(Doubling, CoordinatesOfDataWithPointsThatDoNotExist)
+TEST_F(MalformedData, CoordinatesOfDataWithPointsThatDoNotExist)
 {
-  // Coordinates belong to points; the cells are none of that filter's business.
+  // Coordinates belong to points; the filter does not read the cells.
   for (const vtkIdType noPoint : NoPoints)
   {
     const auto data = MakeDataPartlyOutside();
@@ -402,11 +402,11 @@ TEST_F(Doubling, CoordinatesOfDataWithPointsThatDoNotExist)
   }
 }
 
-TEST_F(Doubling, MeshesWithPointsThatDoNotExistAreRefused)
+TEST_F(MalformedData, MeshesWithPointsThatDoNotExistAreRefused)
 {
   for (const vtkIdType noPoint : { vtkIdType(9), vtkIdType(-1), vtkIdType(1) << 44 })
   {
-    // What is left of the id in 32 bits must not count.
+    // Truncating the id to 32 bits must not make it valid.
     const MeshPair pair = MakeDoublingPair(2);
     const Triangle corrupt{ 0, noPoint, 4 };
     pair.Source->GetPolys()->ReplaceCellAtId(3, 3, corrupt.data());
@@ -424,7 +424,7 @@ TEST_F(Doubling, MeshesWithPointsThatDoNotExistAreRefused)
 //------------------------------------------------------------------------------------------------
 // Arrays without a name.
 
-TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
+TEST_F(MalformedData, UnnamedAttributesAreReplacedNotDoubled)
 {
   for (const bool onCells : { false, true })
   {
@@ -435,7 +435,7 @@ TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
       input = data->GetCellData();
     }
     const vtkIdType tuples = onCells ? 2 : 6;
-    // An unnamed array that is no attribute stays, whatever happens to the others.
+    // An unnamed array without a role is kept.
     const auto plain = MakeNumbers(nullptr, 1, tuples);
     input->AddArray(plain);
     input->SetVectors(MakeNumbers(nullptr, 3, tuples));
@@ -457,7 +457,7 @@ TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
       vtkAbstractArray* array = result->GetAbstractArray(i);
       unnamed += array->GetName() == nullptr;
       kept += array == plain;
-      // None of the arrays that were carried is there as it was.
+      // No transformed array remains in its original form.
       EXPECT_NE(array, input->GetVectors());
       EXPECT_NE(array, input->GetNormals());
       EXPECT_NE(array, input->GetTensors());
@@ -473,13 +473,13 @@ TEST_F(Doubling, UnnamedAttributesAreReplacedNotDoubled)
       std::hypot(result->GetNormals()->GetComponent(0, 0), result->GetNormals()->GetComponent(0, 1),
         result->GetNormals()->GetComponent(0, 2)),
       1.0, 1e-13);
-    // And the input's are as they were.
+    // The arrays of the input are unchanged.
     EXPECT_EQ(input->GetNumberOfArrays(), arrays);
     EXPECT_EQ(input->GetVectors()->GetComponent(0, 0), 1.0);
   }
 }
 
-TEST_F(Doubling, UnnamedArraysWithoutARoleAreReplacedToo)
+TEST_F(MalformedData, UnnamedArraysWithoutARoleAreReplacedToo)
 {
   const auto data = MakeDataPartlyOutside();
   const auto vectors = MakeNumbers(nullptr, 3, 6);
@@ -499,9 +499,9 @@ TEST_F(Doubling, UnnamedArraysWithoutARoleAreReplacedToo)
   EXPECT_NEAR(unnamed[0]->GetComponent(1, 0), 22.0, 1e-13);
 }
 
-TEST_F(Doubling, AnArrayKeepsAllItsRoles)
+TEST_F(MalformedData, AnArrayKeepsAllItsRoles)
 {
-  // Velocities are often the active vectors, and the active scalars as well, to be colored by.
+  // Velocities are often both the active vectors and the active scalars, for coloring.
   const auto data = MakeDataPartlyOutside();
   const auto velocities = MakeNumbers("Velocities", 3, 6);
   data->GetPointData()->SetScalars(velocities);
@@ -517,7 +517,7 @@ TEST_F(Doubling, AnArrayKeepsAllItsRoles)
 //------------------------------------------------------------------------------------------------
 // Pieces.
 
-/// Asks for a piece of an output, as who reads that port does. Returns its number of cells.
+/// Requests a piece of an output, as a consumer of that port does. Returns its number of cells.
 vtkIdType UpdatePort(vtkAlgorithm* filter, int port, int piece, int pieces)
 {
   filter->UpdateInformation();
@@ -529,7 +529,7 @@ vtkIdType UpdatePort(vtkAlgorithm* filter, int port, int piece, int pieces)
   return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells();
 }
 
-/// How many cells an output has in each of some pieces.
+/// Number of cells of an output in each of some pieces.
 std::vector<vtkIdType> CellsOfPieces(vtkAlgorithm* filter, int port, int pieces)
 {
   std::vector<vtkIdType> cells;
@@ -542,7 +542,7 @@ std::vector<vtkIdType> CellsOfPieces(vtkAlgorithm* filter, int port, int pieces)
 
 using Counts = std::vector<vtkIdType>;
 
-TEST_F(Doubling, PiecesOfTheMeshItself)
+TEST_F(MalformedData, PiecesOfTheMeshItself)
 {
   EXPECT_EQ(CellsOfPieces(this->Filter, 0, 1), (Counts{ 8 }));
   EXPECT_EQ(CellsOfPieces(this->Filter, 0, 2), (Counts{ 8, 0 }));
@@ -557,7 +557,7 @@ TEST_F(Doubling, PiecesOfTheMeshItself)
   EXPECT_EQ(vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(0))->GetNumberOfCells(), 8);
 }
 
-TEST_F(Doubling, PiecesOfTheCoordinatesOfTheMeshItself)
+TEST_F(MalformedData, PiecesOfTheCoordinatesOfTheMeshItself)
 {
   for (int port = 0; port < 3; ++port)
   {
@@ -571,10 +571,10 @@ TEST_F(Doubling, PiecesOfTheCoordinatesOfTheMeshItself)
   }
 }
 
-TEST_F(Doubling, PiecesOfAllOutputsTogether)
+TEST_F(MalformedData, PiecesOfAllOutputsTogether)
 {
-  // Readers of several outputs, each asking for its piece of its port in turn, as in a program that
-  // runs in several processes.
+  // Consumers of several outputs that request their pieces in turn, as in a program with several
+  // processes.
   const vtkNew<vtkTriangularCoordinates> filter;
   filter->SetInputData(0, this->Pair.Source);
   filter->Update();
@@ -595,10 +595,10 @@ TEST_F(Doubling, PiecesOfAllOutputsTogether)
   EXPECT_EQ(sums, whole);
 }
 
-TEST_F(Doubling, PiecesAskedOfTheFirstOutputSettleTheOthers)
+TEST_F(MalformedData, PiecesAskedOfTheFirstOutputSettleTheOthers)
 {
-  // UpdatePiece asks for a piece of output 0. What the same execution puts into the others is
-  // marked as the same piece, so it must be that.
+  // UpdatePiece requests a piece of output 0. The other outputs of the same execution are marked as
+  // the same piece, and must be that piece.
   for (const bool ownData : { false, true })
   {
     SCOPED_TRACE(ownData);
@@ -629,7 +629,7 @@ TEST_F(Doubling, PiecesAskedOfTheFirstOutputSettleTheOthers)
 //------------------------------------------------------------------------------------------------
 // Cell ids in messages.
 
-/// What a pair is told, where the source has 1 vertex and the target 2 vertices and 3 lines.
+/// The messages for a pair whose source has 1 vertex and whose target has 2 vertices and 3 lines.
 std::string Message(
   const std::function<void(const MeshPair&)>& spoil, int system = Linear, bool mask = false)
 {
@@ -651,7 +651,7 @@ std::string Message(
 TEST(CellIdsInMessages, TrianglesWithoutArea)
 {
   const auto flatten = [](vtkPolyData* mesh) {
-    // Point 2, which triangle 2 (points 1, 2, 5) has for its own, into the opposite edge.
+    // Move point 2, which only triangle 2 (points 1, 2, 5) uses, onto the opposite edge.
     double a[3];
     double b[3];
     mesh->GetPoint(1, a);
@@ -674,7 +674,7 @@ TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
   const auto spoil = [](vtkPolyData* mesh) {
     mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
   };
-  // Point 2 is a corner of triangle 2 alone.
+  // Point 2 is a corner of triangle 2 only.
   EXPECT_NE(Message([&](const MeshPair& pair) {
     spoil(pair.Source);
   }).find("1 triangle of the source (cell 3) has a coordinate that is not finite"),
@@ -685,8 +685,8 @@ TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
     std::string::npos);
 }
 
-/// What is said of three triangles that have no point in common, the last two of which lie on top
-/// of each other in one of the meshes.
+/// The messages for three triangles without common points, the last two of which coincide in one of
+/// the meshes.
 std::string OverlapMessage(bool inTarget)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 3, 4, 5 }, { 6, 7, 8 } };
@@ -721,7 +721,8 @@ TEST(CellIdsInMessages, TrianglesThatOverlap)
 
 TEST(CellIdsInMessages, DiscordantTriangles)
 {
-  // Corner 2, of triangle 2 alone, pulled far out: its foot on the opposite edge leaves that edge.
+  // Corner 2 of triangle 2, used by no other triangle, is moved far out: its foot on the opposite
+  // edge leaves that edge.
   const auto pull = [](vtkPolyData* mesh) {
     double p[3];
     mesh->GetPoint(2, p);

@@ -1045,8 +1045,8 @@ TEST(MeshRefusals, DiscordantTriangles)
   // Carried by the Linear system, if the user asks for it: so without a warning.
   const std::vector<Point> points = SamplePoints(pair.Source, GridTriangles(4), 5, 39);
   options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
-  const MappedPoints carried = MapPoints(pair, points, options);
-  EXPECT_EQ("", carried.Error + carried.Warning);
+  const MappedPoints mapped = MapPoints(pair, points, options);
+  EXPECT_EQ("", mapped.Error + mapped.Warning);
   vtkNew<vtkDifferentiableHomeomorphism> filter;
   filter->SetSourceData(pair.Source);
   filter->SetTargetData(pair.Target);
@@ -1070,15 +1070,15 @@ TEST(MeshRefusals, DiscordantTriangles)
   options.CoordinateSystem = vtkDifferentiableHomeomorphism::LINEAR;
   const MappedPoints linear = MapPoints(pair, points, options);
   EXPECT_EQ("", linear.Error + linear.Warning);
-  ASSERT_EQ(points.size(), carried.Images.size());
+  ASSERT_EQ(points.size(), mapped.Images.size());
   double otherwise = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     if (i < 10)
     {
-      EXPECT_EQ(linear.Images[i], carried.Images[i]);
+      EXPECT_EQ(linear.Images[i], mapped.Images[i]);
     }
-    otherwise = std::max(otherwise, DistanceOf(linear.Images[i], carried.Images[i]));
+    otherwise = std::max(otherwise, DistanceOf(linear.Images[i], mapped.Images[i]));
   }
   EXPECT_GT(otherwise, 1e-4);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestMeshes.h
-/// Pairs of triangulations for the tests, and a way to read the messages of algorithms.
+/// Pairs of triangulations, and a collector of messages of algorithms.
 
 #ifndef TestMeshes_h
 #define TestMeshes_h
@@ -57,7 +57,7 @@ inline vtkSmartPointer<vtkPolyData> MakeMesh(
   return mesh;
 }
 
-/// The triangles of a grid of n x n unit squares, whose points are numbered row by row.
+/// The triangles of a grid of n x n unit squares whose points are numbered row by row.
 inline std::vector<Triangle> GridTriangles(int n)
 {
   std::vector<Triangle> triangles;
@@ -74,8 +74,8 @@ inline std::vector<Triangle> GridTriangles(int n)
   return triangles;
 }
 
-/// The points of that grid, those inside moved at random by up to jitter (at most 0.25 keeps all
-/// triangles' orientation). The boundary is the square [0, n] x [0, n].
+/// The points of that grid. Interior points are moved at random by up to jitter (at most 0.25 keeps
+/// the orientation of all triangles). The boundary is the square [0, n] x [0, n].
 inline std::vector<Point> GridPoints(int n, std::uint64_t seed, double jitter)
 {
   std::mt19937_64 generator(seed);
@@ -94,7 +94,7 @@ inline std::vector<Point> GridPoints(int n, std::uint64_t seed, double jitter)
   return points;
 }
 
-/// That grid with no point moved.
+/// That grid with unmoved points.
 inline vtkSmartPointer<vtkPolyData> RegularGrid(int n)
 {
   return MakeMesh(GridPoints(n, 0, 0.0), GridTriangles(n));
@@ -107,7 +107,7 @@ inline MeshPair MakePlanarPair(int n, std::uint64_t seed, double jitter = 0.25)
     MakeMesh(GridPoints(n, seed + 1, jitter), GridTriangles(n)) };
 }
 
-/// A sheet over that square, bent into waves of height @a wave.
+/// A surface over that square with waves of height @a wave.
 inline vtkSmartPointer<vtkPolyData> MakeSheet(int n, std::uint64_t seed, double wave)
 {
   std::vector<Point> points = GridPoints(n, seed, 0.25);
@@ -118,8 +118,8 @@ inline vtkSmartPointer<vtkPolyData> MakeSheet(int n, std::uint64_t seed, double 
   return MakeMesh(points, GridTriangles(n));
 }
 
-/// Two different closed surfaces like a sphere: an octahedron whose triangles are divided into four
-/// @a divisions times, its points put on two ellipsoids and moved at random along them.
+/// Two different closed surfaces: an octahedron subdivided @a divisions times, with its points on
+/// two ellipsoids and moved at random along them.
 inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
 {
   std::vector<Point> points{ { 1, 0, 0 }, { 0, 1, 0 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 },
@@ -159,8 +159,8 @@ inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
   std::uniform_real_distribution<double> offset(-0.2, 0.2);
   const double spacing = std::pow(0.5, divisions);
   const auto surfacePoint = [&](const Point& axes) {
-    std::vector<Point> placed = points;
-    for (Point& p : placed)
+    std::vector<Point> moved = points;
+    for (Point& p : moved)
     {
       for (double& x : p)
       {
@@ -172,7 +172,7 @@ inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
         p[k] *= axes[k] / length;
       }
     }
-    return MakeMesh(placed, triangles);
+    return MakeMesh(moved, triangles);
   };
   const auto source = surfacePoint({ 1.0, 1.0, 1.0 });
   const auto target = surfacePoint({ 2.0, 1.2, 0.7 });

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // FindOverlapping compares only triangles at the boundary unless the mesh is folded. Here every
-// triangle of many small meshes is compared with every other, in integers.
+// triangle of many small meshes is compared with every other one in integer arithmetic.
 
 #include "TestMeshes.h"
 
@@ -132,8 +132,8 @@ public:
   std::array<int, 3> Inside;
 };
 
-/// Whether the common part of two triangles has an area: it is the convex hull of the corners of
-/// one that are in the other and of the crossings of their edges.
+/// Whether the intersection of two triangles has a positive area. It is the convex hull of the
+/// corners of each inside the other and of the crossings of their edges.
 bool CommonPartHasArea(const ExactTriangle& first, const ExactTriangle& second)
 {
   std::vector<RationalPoint> hull;
@@ -204,7 +204,7 @@ TriangleList FindOverlappingExactly(const Complex& complex)
   return list;
 }
 
-/// The same by the code under test, the integer grid being the xy plane's or a finer one.
+/// The same result from FindOverlapping, with the integer grid in the xy plane, or a finer one.
 TriangleList FindOverlappingQuickly(const Complex& complex, const std::array<int, 3>& axes)
 {
   vtkNew<vtkPoints> points;
@@ -249,7 +249,7 @@ public:
     return std::uniform_real_distribution<double>(0.0, 1.0)(this->Generator) < probability;
   }
 
-  /// A grid of squares of the given size, its inner points moved by up to jitter.
+  /// A grid of squares of the given size, with interior points moved by up to jitter.
   Complex Grid(int squares, int size, int jitter, int atX, int atY)
   {
     Complex grid;
@@ -271,7 +271,7 @@ public:
     return grid;
   }
 
-  /// Takes triangles away: holes, islands, and vertices where only corners meet.
+  /// Removes triangles: holes, islands, and vertices at which only corners meet.
   void Pierce(Complex& complex, double probability)
   {
     std::vector<Triangulation::Corners> rest;
@@ -285,8 +285,8 @@ public:
     complex.Triangles = rest;
   }
 
-  /// Gives corners of triangles points of their own in the same place: slits, and pieces that touch
-  /// along edges without sharing points.
+  /// Duplicates points of some corners: slits, and pieces that touch along edges without sharing
+  /// points.
   void Slit(Complex& complex, double probability)
   {
     for (auto& t : complex.Triangles)
@@ -302,7 +302,7 @@ public:
     }
   }
 
-  /// Draws some points about, so that there may be folds.
+  /// Moves some points, so that there may be folds.
   void Disturb(Complex& complex, int count, int by)
   {
     for (int n = 0; n < count; ++n)
@@ -314,7 +314,7 @@ public:
     }
   }
 
-  /// A fan around a point that goes round some number of times, closed or not.
+  /// A fan around a point with some number of turns, closed or not.
   Complex Fan(int triangles, int turns, bool closed)
   {
     const double pi = std::acos(-1.0);
@@ -335,7 +335,7 @@ public:
     return fan;
   }
 
-  /// A strip along a circle, which may run over its own beginning.
+  /// A strip along a circle, which may overlap its own beginning.
   Complex Strip(int squares, double turns, bool closed)
   {
     const double pi = std::acos(-1.0);
@@ -360,7 +360,7 @@ public:
     return strip;
   }
 
-  /// Triangles over any points.
+  /// Triangles over arbitrary points.
   Complex Soup(int points, int triangles, int size)
   {
     Complex soup;
@@ -380,7 +380,7 @@ public:
     return soup;
   }
 
-  /// Leaves only triangles with an area, numbers and winds them at random, and masks some.
+  /// Keeps only non-degenerate triangles, numbers and orients them at random, and masks some.
   void Finish(Complex& complex, double masked)
   {
     std::vector<Triangulation::Corners> rest;
@@ -411,7 +411,7 @@ struct Tally
   int Overlapping = 0;
 };
 
-/// Compares the two lists for complexes of one family; both answers must occur often enough.
+/// Compares the two results for meshes of one family. Both results must occur often enough.
 void Compare(const char* family, int count, std::uint64_t seed,
   const std::function<Complex(RandomComplexes&)>& make, double leastFree, double leastOverlapping)
 {
@@ -481,7 +481,7 @@ TEST(Overlap, FoldedGrids)
 
 TEST(Overlap, PiecesThatTouchWithoutSharingPoints)
 {
-  // Cut apart completely or partly, and perhaps one piece pushed by a single unit.
+  // Cut apart completely or partly, with one piece possibly moved by one unit.
   Compare(
     "pieces", 2000, 3,
     [](RandomComplexes& random) {
@@ -497,8 +497,8 @@ TEST(Overlap, PiecesThatTouchWithoutSharingPoints)
 
 TEST(Overlap, NestedPieces)
 {
-  // A small grid in the hole of a larger one, fitting exactly, with room, or not at all; or covered
-  // completely where there is no hole.
+  // A small grid in the hole of a larger one, fitting exactly, with a gap, or overlapping; or
+  // covered completely where there is no hole.
   Compare(
     "nested", 2000, 4,
     [](RandomComplexes& random) {
@@ -559,9 +559,9 @@ TEST(Overlap, StripsThatRunOverThemselves)
     0.3, 0.2);
 }
 
-TEST(Overlap, TwoFansAtOneVertex)
+TEST(Overlap, TwoFansAtOneVertexMayOverlap)
 {
-  // Corners that meet at a shared point, beside each other or not.
+  // Corners that meet at a shared point, adjacent or not.
   Compare(
     "two fans", 2000, 7,
     [](RandomComplexes& random) {
@@ -582,7 +582,7 @@ TEST(Overlap, TwoFansAtOneVertex)
 
 TEST(Overlap, AnyTriangles)
 {
-  // Edges with many triangles too, which count as boundary; few points on a coarse grid, so that
+  // Also edges with many triangles, which count as boundary. Few points on a coarse grid, so that
   // corners touch edges and triangles coincide.
   Compare(
     "soups", 6000, 8,
@@ -603,7 +603,7 @@ TEST(Overlap, NothingToCompare)
 
 TEST(Overlap, OneUlpOfOverlapCounts)
 {
-  // Beyond what integers show: a corner that pierces an edge by the least that can be stored.
+  // Beyond the integer grid: a corner that crosses an edge by one ulp.
   for (const double x : { 1.0, std::nextafter(1.0, 0.0) })
   {
     const auto mesh = test_meshes::MakeMesh(
@@ -617,9 +617,10 @@ TEST(Overlap, OneUlpOfOverlapCounts)
   }
 }
 
-TEST(Overlap, ALargeSoundMeshTakesLittleTime)
+TEST(Overlap, ALargeMeshTakesNearlyLinearTime)
 {
-  // Nearly linear: 720,000 triangles in well under a second, where comparing all pairs takes hours.
+  // The time is nearly linear: 720,000 triangles take well under a second, where comparing all
+  // pairs would take hours.
   constexpr int n = 600;
   const auto mesh = test_meshes::MakeMesh(test_meshes::GridPoints(n, 9, 0.2), {});
   std::vector<Triangulation::Corners> triangles;

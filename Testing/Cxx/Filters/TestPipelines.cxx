@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The filters inside pipelines: data in pieces and extents, time steps, and being aborted.
+// The filters inside pipelines: data in pieces and extents, time steps, and aborts.
 
 #include "FilterRuns.h"
 
@@ -50,7 +50,7 @@ MeshPair MakeWidePair(std::uint64_t seed)
   return { Moved(pair.Source, widen), Moved(pair.Target, widen) };
 }
 
-/// Both filters, which share how they treat pipelines.
+/// Both filters, which share their pipeline behavior.
 struct BothFilters
 {
   BothFilters(const MeshPair& pair, vtkAlgorithmOutput* data)
@@ -72,7 +72,7 @@ vtkDataSet* DataOf(vtkAlgorithm* filter)
   return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
 }
 
-/// Only that of the two which a filter adds is there.
+/// Only one of the two arrays exists, the one that the filter adds.
 vtkDataArray* ResultOf(vtkAlgorithm* filter)
 {
   vtkDataArray* result = PointArray(DataOf(filter), "EdgeParameter");
@@ -83,7 +83,7 @@ vtkDataArray* ResultOf(vtkAlgorithm* filter)
 
 TEST(Pipelines, PiecesOfASurface)
 {
-  // A sphere over the planar domain, made in pieces by its source.
+  // A sphere over the planar domain, whose source makes pieces.
   const auto makeSphere = []() {
     auto sphere = vtkSmartPointer<vtkSphereSource>::New();
     sphere->SetRadius(9.0);
@@ -103,14 +103,14 @@ TEST(Pipelines, PiecesOfASurface)
     for (int piece = 0; piece < 3; ++piece)
     {
       ASSERT_TRUE(filter->UpdatePiece(piece, 3, 0));
-      // The data is asked for by pieces.
+      // The data is requested in pieces.
       EXPECT_EQ(sphere->GetOutputInformation(0)->Get(Pipeline::UPDATE_PIECE_NUMBER()), piece);
       EXPECT_EQ(sphere->GetOutputInformation(0)->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 3);
       vtkDataSet* output = DataOf(filter);
       EXPECT_LT(output->GetNumberOfCells(), 32 * 2 * 16 / 2);
       EXPECT_GT(output->GetNumberOfCells(), 0);
       cells += output->GetNumberOfCells();
-      // A piece is what comes of the piece as a data set of its own.
+      // The output for a piece equals that for the piece as a data set of its own.
       alone->UpdatePiece(piece, 3, 0);
       vtkNew<vtkPolyData> copy;
       copy->DeepCopy(alone->GetOutput());
@@ -127,13 +127,13 @@ TEST(Pipelines, PiecesOfASurface)
     vtkAlgorithm* whole = wholes.All()[which];
     whole->UpdatePiece(0, 1, 0);
     EXPECT_EQ(cells, DataOf(whole)->GetNumberOfCells());
-    // Asked for as a whole again it is the whole.
+    // Requesting the whole again gives the whole.
     filter->UpdatePiece(0, 1, 0);
     EXPECT_EQ(CountDifferentValues(ResultOf(filter), ResultOf(whole)), 0);
   }
   EXPECT_EQ(filters.Map->GetNumberOfMeshBuilds(), 1);
 
-  // VTK's own streaming filter behind it.
+  // Followed by VTK's own streaming filter.
   vtkNew<vtkPolyDataStreamer> streamer;
   streamer->SetInputConnection(filters.Map->GetOutputPort());
   streamer->SetNumberOfStreamDivisions(4);
@@ -174,7 +174,7 @@ TEST(Pipelines, PiecesAndExtentsOfAnImage)
     EXPECT_TRUE(
       std::equal(wholeExtent.begin(), wholeExtent.end(), info->Get(Pipeline::WHOLE_EXTENT())));
 
-    // What is at i, j, k of a part must be what is there in the whole.
+    // Point i, j, k of a part must equal point i, j, k of the whole.
     const auto countDifferent = [&](vtkDataSet* part) {
       const std::array<int, 6> e = extentOf(part);
       vtkDataArray* results = ResultOf(filter);
@@ -202,7 +202,7 @@ TEST(Pipelines, PiecesAndExtentsOfAnImage)
       return different;
     };
 
-    // Once the whole has been made it would do for every piece.
+    // The whole, once made, would also serve for every piece.
     wavelet->Modified();
     vtkIdType cells = 0;
     for (int piece = 0; piece < 4; ++piece)
@@ -226,9 +226,9 @@ TEST(Pipelines, PiecesAndExtentsOfAnImage)
   }
 }
 
-TEST(Pipelines, MeshesAreAskedForAsAWhole)
+TEST(Pipelines, MeshesAreRequestedWhole)
 {
-  // Two spheres that are made in pieces if one asks for pieces.
+  // Two spheres whose sources make pieces on request.
   const auto makeSphere = [](double radius) {
     auto sphere = vtkSmartPointer<vtkSphereSource>::New();
     sphere->SetRadius(radius);
@@ -273,9 +273,9 @@ TEST(Pipelines, MeshesAreAskedForAsAWhole)
   EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
 }
 
-TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
+TEST(Pipelines, OutputOfMeshesAloneIsPartOfTheFirstPiece)
 {
-  // So that the pieces together, say of several processes, are one mesh and not several.
+  // All pieces together, for example of several processes, form one mesh.
   const MeshPair pair = MakeWidePair(915);
   const auto map = MakeFilter(Smooth, pair);
   for (const int piece : { 0, 1, 2, 0 })
@@ -302,7 +302,7 @@ TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
     }
   }
 
-  // With data the pieces are the data's.
+  // With data, the pieces are those of the data.
   const auto sphere = vtkSmartPointer<vtkSphereSource>::New();
   map->SetDataConnection(sphere->GetOutputPort());
   map->UpdatePiece(1, 2, 0);
@@ -311,8 +311,8 @@ TEST(Pipelines, WhatIsMadeOfTheMeshesAloneIsPartOfTheFirstPiece)
 
 TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
 {
-  // One source of the mesh and the data cannot be asked for both whole and in pieces. The mesh is a
-  // sphere, mapped onto itself, whose source makes any piece.
+  // One source of both mesh and data cannot be requested both whole and in pieces. The mesh is a
+  // sphere mapped onto itself, whose source makes any piece.
   const auto counts = [](vtkAlgorithm* filter) {
     std::vector<vtkIdType> cells;
     for (const int piece : { 0, 1, 2, 0 })
@@ -365,8 +365,8 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
     EXPECT_EQ(resample->GetNumberOfMeshBuilds(), 1);
   }
 
-  // What a map made of independent data with the same meshes comes in pieces nevertheless: the
-  // first map asks for its meshes whole as well.
+  // The output of a map of independent data with the same meshes comes in pieces nevertheless: the
+  // first map requests its meshes whole, too.
   vtkNew<vtkDifferentiableHomeomorphism> forth;
   forth->SetSourceConnection(mesh->GetOutputPort());
   forth->SetTargetConnection(same->GetOutputPort());
@@ -382,7 +382,7 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
   EXPECT_EQ(back->GetNumberOfMeshBuilds(), 1);
 }
 
-TEST(Pipelines, WhatIsMeasuredIsPartOfTheFirstPiece)
+TEST(Pipelines, MeasurementsArePartOfTheFirstPiece)
 {
   const MeshPair pair = MakeWidePair(918);
   vtkNew<vtkJacobianContinuity> continuity;
@@ -451,7 +451,7 @@ TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
   map->Update();
   coordinates->Update();
   resample->Update();
-  // With one process there is nothing to reduce, with a controller or without.
+  // With one process, ReduceStatistics changes nothing, with a controller or without.
   vtkNew<vtkDummyController> controller;
   for (vtkMultiProcessController* reduced : { static_cast<vtkMultiProcessController*>(controller),
          static_cast<vtkMultiProcessController*>(nullptr) })
@@ -476,7 +476,7 @@ TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
 
 TEST(Pipelines, MeshesMayComeFromFilters)
 {
-  // A target that is the source moved by a pipeline, which is changed.
+  // The target is the source moved by a pipeline, which then changes.
   const auto source = MakeClosedPair(2, 920).Source;
   vtkNew<vtkTransform> move;
   move->RotateX(40.0);
@@ -484,7 +484,7 @@ TEST(Pipelines, MeshesMayComeFromFilters)
   vtkNew<vtkTransformPolyDataFilter> target;
   target->SetInputData(source);
   target->SetTransform(move);
-  const auto cloud = MakeCloud(source, RandomPlaces(source, 1000, 60));
+  const auto cloud = MakeCloud(source, RandomSamples(source, 1000, 60));
   vtkNew<vtkDifferentiableHomeomorphism> map;
   map->SetSourceData(source);
   map->SetTargetConnection(target->GetOutputPort());
@@ -559,12 +559,12 @@ TEST(Pipelines, TimeStepsOfTheData)
     }
     EXPECT_LT(smallest, largest);
   }
-  // The meshes stand still.
+  // The meshes are static.
   EXPECT_EQ(filters.Map->GetNumberOfMeshBuilds(), 1);
 }
 
-/// A mesh that is another one at each of its times: the points of @a base moved by the time, along
-/// x for points inside the square of MakeWidePair.
+/// A mesh that depends on time: the points of @a base moved by the time, along x for points inside
+/// the square of MakeWidePair.
 class MovingMesh : public vtkPolyDataAlgorithm
 {
 public:
@@ -615,9 +615,9 @@ std::vector<double> TimesOf(vtkAlgorithm* filter, int port)
 
 TEST(Pipelines, TimeStepsOfTheMeshes)
 {
-  // Either mesh moves, the other and the data stand still.
+  // One mesh moves; the other one and the data are static.
   const MeshPair pair = MakeWidePair(935);
-  const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, 500, 61));
+  const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 500, 61));
   for (const int moving : { 0, 1 })
   {
     SCOPED_TRACE(moving);
@@ -636,7 +636,7 @@ TEST(Pipelines, TimeStepsOfTheMeshes)
     continuity->SetTargetData(pair.Target);
     continuity->SetInputConnection(moving, mesh->GetOutputPort());
     vtkIdType builds = 0;
-    // Back again, too: only what was made last is kept.
+    // Also backward in time, because only the last result is kept.
     for (const double time : { 0.0, 1.0, 2.5, 1.0 })
     {
       SCOPED_TRACE(time);
@@ -650,7 +650,7 @@ TEST(Pipelines, TimeStepsOfTheMeshes)
       expected->MeasureContinuityOn();
       expected->Update();
       ++builds;
-      // Asked again for the same time, nothing is done.
+      // A repeated request for the same time does nothing.
       for (int again = 0; again < 2; ++again)
       {
         ASSERT_TRUE(map->UpdateTimeStep(time));
@@ -669,14 +669,14 @@ TEST(Pipelines, TimeStepsOfTheMeshes)
           measured->GetCellData()->GetArray("JacobianJump")),
         0);
     }
-    // Each filter asked once for each time, and all asked for the same times.
+    // Each filter executes once per time, and all for the same times.
     EXPECT_EQ(mesh->Executions, 4);
   }
 }
 
 TEST(Pipelines, TimeStepsOfAllInputs)
 {
-  // The data and the target have different times; the data is a tree.
+  // The data and the target have different times, and the data is a tree.
   const MeshPair pair = MakeWidePair(936);
   vtkNew<vtkTimeSourceExample> source;
   source->SetXAmplitude(3.0);
@@ -700,14 +700,14 @@ TEST(Pipelines, TimeStepsOfAllInputs)
       leaves->InitTraversal();
       return PointOf(vtkDataSet::SafeDownCast(leaves->GetCurrentDataObject()), 0);
     };
-    std::set<Point> places;
+    std::set<Point> samples;
     for (const double time : expected)
     {
       ASSERT_TRUE(map->UpdateTimeStep(time));
-      places.insert(pointOf());
+      samples.insert(pointOf());
       EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
     }
-    EXPECT_GT(places.size(), expected.size() / 2);
+    EXPECT_GT(samples.size(), expected.size() / 2);
 
     vtkNew<MovingMesh> target;
     target->Base = pair.Target;
@@ -727,7 +727,7 @@ TEST(Pipelines, TimeStepsOfAllInputs)
   }
 }
 
-/// A grid inside the square of more points than the filters take in one go.
+/// A grid inside the square with more points than one block.
 vtkSmartPointer<vtkImageData> MakeLargeImage()
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -739,7 +739,7 @@ vtkSmartPointer<vtkImageData> MakeLargeImage()
 
 // --- Aborting ------------------------------------------------------------------------------------
 
-/// Asks to abort as soon as an algorithm's progress has reached some value.
+/// Requests an abort when the progress of an algorithm has reached some value.
 class AbortAt
 {
 public:
@@ -802,7 +802,7 @@ TEST(Pipelines, AnAbortedMapIsMarkedAsIncomplete)
   EXPECT_LT(mapped, image->GetNumberOfPoints());
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - mapped);
 
-  // The next execution is a new beginning.
+  // The next execution starts again.
   filter->Modified();
   EXPECT_EQ(CountDifferentPoints(Output(filter), whole), 0);
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestPlanes.cxx
-/// What counts as a plane, which side of it is up, and where points beside a plane or surface go.
+/// Planarity, the orientation of normals, and the images of points near a plane or surface.
 
 #include "TestMeshes.h"
 
@@ -52,8 +52,8 @@ Point Cross(const Point& a, const Point& b)
   return c;
 }
 
-/// Not of a parameter by value, changed in place through a pointer: GCC 12's -fipa-modref may drop
-/// what the caller writes into it, which it did in the build with the thread sanitizer.
+/// Not a parameter by value modified through a pointer: GCC 12's -fipa-modref may drop the caller's
+/// writes to it, and did so in the build with the thread sanitizer.
 Point Unit(const Point& a)
 {
   const double length = vtkMath::Norm(a.data());
@@ -82,7 +82,7 @@ std::vector<Point> PointsOf(vtkDataSet* data)
   return points;
 }
 
-/// A plane's origin, and right-handed axes: two in the plane and the normal.
+/// The origin of a plane and right-handed axes: two in the plane, and the normal.
 struct Plane
 {
   Point Origin;
@@ -98,14 +98,14 @@ Plane PlaneWithNormal(const Point& origin, const Point& normal, const Point& hel
   return { origin, Cross(v, n), v, n };
 }
 
-/// Turns vectors by an angle about an axis.
+/// Rotates vectors by an angle about an axis.
 Point Turned(const Point& a, const Point& axis, double angle)
 {
   return Combine(Combine({}, std::cos(angle), a, std::sin(angle), Cross(axis, a)),
     (1.0 - std::cos(angle)) * Dot(axis, a), axis);
 }
 
-/// A mesh of the xy plane, put into another.
+/// A mesh of the xy plane, moved into another plane.
 vtkSmartPointer<vtkPolyData> InPlane(vtkPolyData* mesh, const Plane& plane)
 {
   const auto result = vtkSmartPointer<vtkPolyData>::New();
@@ -135,7 +135,7 @@ vtkSmartPointer<vtkPolyData> AsFloats(vtkPolyData* mesh)
   return result;
 }
 
-/// The points with these weights of each triangle's corners.
+/// The points with these weights in each triangle.
 std::vector<Point> PointsInTriangles(vtkPolyData* mesh, const std::vector<Point>& weights)
 {
   std::vector<Point> result;
@@ -159,7 +159,7 @@ std::vector<Point> PointsInTriangles(vtkPolyData* mesh, const std::vector<Point>
 const std::vector<Point> InsideWeights{ { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 }, { 0.5, 0.4, 0.1 },
   { 0.02, 0.08, 0.9 }, { 0.25, 0.7, 0.05 } };
 
-/// What the filter makes of points.
+/// The output of the filter for some points.
 struct Mapped
 {
   std::vector<Point> Points;
@@ -225,7 +225,7 @@ Mapped MapPoints(
 //------------------------------------------------------------------------------------------------
 // Thin surfaces.
 
-/// Half a tube along the x axis, of length 1, bulging upwards.
+/// Half a tube along the x axis, of length 1, convex upwards.
 vtkSmartPointer<vtkPolyData> MakeHalfTube(double radius)
 {
   const int n = 8;
@@ -238,35 +238,35 @@ vtkSmartPointer<vtkPolyData> MakeHalfTube(double radius)
   return AsFloats(MakeMesh(points, GridTriangles(n)));
 }
 
-TEST(ThinSurfaces, AHalfTubeIsNoPlane)
+TEST(ThinSurfaces, AHalfTubeIsNotPlanar)
 {
-  // Flattened, its height would pass unchanged and the ratio of areas would be about 2 only where
-  // it is steep. The tolerance is what a float's last place is to the smallest edge.
+  // If it were flattened, heights would pass unchanged, and the ratio of areas would be about 2
+  // only where it is steep. The tolerance is a float ulp relative to the shortest edge.
   for (const double radius : { 2e-4, 3e-4, 4.5e-4, 6e-4 })
   {
     const MeshPair pair{ MakeHalfTube(radius), MakeHalfTube(2.0 * radius) };
     for (const int system :
       { vtkDifferentiableHomeomorphism::LINEAR, vtkDifferentiableHomeomorphism::SMOOTH })
     {
-      std::vector<Point> places = PointsOf(pair.Source);
+      std::vector<Point> samples = PointsOf(pair.Source);
       const std::vector<Point> inside = PointsInTriangles(pair.Source, InsideWeights);
-      places.insert(places.end(), inside.begin(), inside.end());
-      const Mapped mapped = MapData(pair, AsFloats(MakeMesh(places, {})), { system });
+      samples.insert(samples.end(), inside.begin(), inside.end());
+      const Mapped mapped = MapData(pair, AsFloats(MakeMesh(samples, {})), { system });
       ASSERT_TRUE(mapped.AllValid()) << "radius " << radius;
-      for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t i = 0; i < samples.size(); ++i)
       {
         EXPECT_NEAR(mapped.Determinants[i], 2.0, 2e-2) << "radius " << radius;
-        // A float near 1 is known to 6e-8, which moves a place by as much across the tube, too.
-        const Point expected{ places[i][0], 2.0 * places[i][1], 2.0 * places[i][2] };
+        // A float near 1 is accurate to 6e-8, which moves a point by as much across the tube.
+        const Point expected{ samples[i][0], 2.0 * samples[i][1], 2.0 * samples[i][2] };
         EXPECT_LT(Distance(mapped.Points[i], expected), 1e-6) << "radius " << radius;
       }
     }
   }
 }
 
-TEST(ThinSurfaces, RoundedPlanesStayPlanes)
+TEST(ThinSurfaces, RoundedPlanesArePlanar)
 {
-  // The other side of the same decision: what float rounding does to a tilted plane is no surface.
+  // The converse: a tilted plane rounded to float is still a plane.
   std::mt19937_64 generator(5);
   for (int round = 0; round < 100; ++round)
   {
@@ -286,41 +286,41 @@ TEST(ThinSurfaces, RoundedPlanesStayPlanes)
 }
 
 //------------------------------------------------------------------------------------------------
-// Which side is up.
+// Orientation of normals.
 
-/// Maps points at heights over one plane, and expects them at the same heights over the other.
+/// Maps points at heights above one plane, and expects them at the same heights above the other.
 void ExpectHeightsKept(
   const MeshPair& pair, const Plane& from, const Plane& to, int system, bool inverse)
 {
   const std::vector<double> heights{ 0.0, 0.25, -0.25, 3.0, -7.5 };
-  std::vector<Point> places;
+  std::vector<Point> samples;
   for (const Point& foot : PointsInTriangles(inverse ? pair.Target : pair.Source, InsideWeights))
   {
     for (const double height : heights)
     {
-      places.push_back(Combine(foot, height, from.Normal));
+      samples.push_back(Combine(foot, height, from.Normal));
     }
   }
-  const Mapped mapped = MapPoints(pair, places, { system, 0.0, inverse });
+  const Mapped mapped = MapPoints(pair, samples, { system, 0.0, inverse });
   ASSERT_TRUE(mapped.AllValid());
-  // A few ulp of the meshes' coordinates and of the heights.
+  // A few ulp of the coordinates of the meshes and of the heights.
   const double rounding = 1000.0 * Epsilon;
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < samples.size(); ++i)
   {
     const double height = heights[i % heights.size()];
     ASSERT_NEAR(Dot(Combine(mapped.Points[i], -1.0, to.Origin), to.Normal), height, rounding);
-    // The image is above its foot's image, which is the first of these heights. The foot itself is
-    // known to rounding, and what is made of it depends on where it is.
+    // The image lies above the image of its foot, which is the first of these heights. The foot is
+    // known up to rounding, which the map magnifies.
     const Point& foot = mapped.Points[i - i % heights.size()];
     ASSERT_LT(Distance(mapped.Points[i], Combine(foot, height, to.Normal)), 1e3 * rounding);
     ASSERT_GT(mapped.Determinants[i], 0.0);
-    Point carried;
+    Point normal;
     for (int row = 0; row < 3; ++row)
     {
       const auto* j = &mapped.Jacobians[i][3 * row];
-      carried[row] = Dot({ j[0], j[1], j[2] }, from.Normal);
+      normal[row] = Dot({ j[0], j[1], j[2] }, from.Normal);
     }
-    ASSERT_LT(Distance(carried, to.Normal), 1e-11);
+    ASSERT_LT(Distance(normal, to.Normal), 1e-11);
   }
 }
 
@@ -330,8 +330,8 @@ void ExpectHeightsKept(const MeshPair& pair, const Plane& source, const Plane& t
   ExpectHeightsKept(pair, target, source, system, true);
 }
 
-/// A pair in the xy plane, each mesh turned, scaled and moved at random, so that the points that
-/// tell the plane are nowhere the same. All triangles keep their orientation.
+/// A pair in the xy plane, each mesh rotated, scaled and moved at random, so that the points that
+/// determine the plane differ. All triangles keep their orientation.
 MeshPair MakeScatteredPair(int n, std::mt19937_64& generator)
 {
   std::uniform_real_distribution<double> random(-1.0, 1.0);
@@ -354,8 +354,8 @@ MeshPair MakeScatteredPair(int n, std::mt19937_64& generator)
 
 TEST(TiltedPlanes, TiesBetweenAxesDoNotFlipHeights)
 {
-  // The two or three largest components of these normals are equally large, so that rounding, which
-  // differs between the two meshes, would decide which one makes the normal point up.
+  // The two or three largest components of these normals are equal, so that rounding, which differs
+  // between the two meshes, would decide their orientation.
   const std::vector<Point> normals{ { 1, -1, 0 }, { 1, 1, 0 }, { 0, 1, -1 }, { 0, -1, -1 },
     { 1, 0, -1 }, { -1, 0, -1 }, { 1, 1, -1 }, { -1, 1, 1 }, { 2, -2, 1 } };
   std::mt19937_64 generator(17);
@@ -377,9 +377,9 @@ TEST(TiltedPlanes, TiesBetweenAxesDoNotFlipHeights)
   }
 }
 
-TEST(TiltedPlanes, ThePlaneWhereYIsXPlusThreeTenths)
+TEST(TiltedPlanes, APlaneWithInexactCoordinatesKeepsHeights)
 {
-  // Written down as a user would, with y computed from x.
+  // As a user would write it, with y computed from x.
   std::mt19937_64 generator(18);
   std::uniform_real_distribution<double> height(-2.0, 2.0);
   const Point normal = Unit({ -1, 1, 0 });
@@ -394,16 +394,16 @@ TEST(TiltedPlanes, ThePlaneWhereYIsXPlusThreeTenths)
         mesh->GetPoints()->SetPoint(i, p[0], p[0] + 0.3, p[1]);
       }
     }
-    std::vector<Point> places = PointsInTriangles(pair.Source, InsideWeights);
+    std::vector<Point> samples = PointsInTriangles(pair.Source, InsideWeights);
     std::vector<double> heights;
-    for (Point& p : places)
+    for (Point& p : samples)
     {
       heights.push_back(height(generator));
       p = Combine(p, heights.back(), normal);
     }
-    const Mapped mapped = MapPoints(pair, places);
+    const Mapped mapped = MapPoints(pair, samples);
     ASSERT_TRUE(mapped.AllValid()) << round;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       ASSERT_NEAR(
         Dot(Combine(mapped.Points[i], -1.0, { 0.0, 0.3, 0.0 }), normal), heights[i], 64.0 * Epsilon)
@@ -411,23 +411,23 @@ TEST(TiltedPlanes, ThePlaneWhereYIsXPlusThreeTenths)
       ASSERT_GT(mapped.Determinants[i], 0.0) << round;
     }
 
-    // P = Q, in arrays of their own, is the identity, off the plane as well.
+    // P = Q, in separate arrays, gives the identity, off the plane as well.
     const auto copy = vtkSmartPointer<vtkPolyData>::New();
     copy->DeepCopy(pair.Source);
-    const Mapped same = MapPoints({ pair.Source, copy }, places);
+    const Mapped same = MapPoints({ pair.Source, copy }, samples);
     ASSERT_TRUE(same.AllValid()) << round;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
-      ASSERT_LT(Distance(same.Points[i], places[i]), 64.0 * Epsilon) << round;
+      ASSERT_LT(Distance(same.Points[i], samples[i]), 64.0 * Epsilon) << round;
       ASSERT_NEAR(same.Determinants[i], 1.0, 64.0 * Epsilon) << round;
     }
   }
 }
 
-TEST(TiltedPlanes, ARotatedTargetKeepsSidesUpToARightAngle)
+TEST(TiltedPlanes, NormalsAgreeUpToARightAngle)
 {
-  // The rotated normal's largest component often has another sign or axis: the target's side must
-  // come from the source's.
+  // The largest component of the rotated normal often has another sign or axis. The orientation of
+  // the target must follow from the source.
   std::mt19937_64 generator(19);
   std::uniform_real_distribution<double> angle(0.0, vtkMath::RadiansFromDegrees(89.0));
   for (int round = 0; round < 200; ++round)
@@ -461,7 +461,7 @@ Plane AxisPlane(int normalAxis, double distance, double sign)
 
 TEST(TiltedPlanes, ATargetParallelToAxesFollowsATiltedSource)
 {
-  // Planes x, y or z = constant have exact coordinates, and a normal of either sign.
+  // The planes x, y or z = constant have exact coordinates, and a normal of either sign.
   std::mt19937_64 generator(20);
   std::uniform_real_distribution<double> angle(
     vtkMath::RadiansFromDegrees(5.0), vtkMath::RadiansFromDegrees(85.0));
@@ -487,7 +487,8 @@ TEST(TiltedPlanes, ATargetParallelToAxesFollowsATiltedSource)
 
 TEST(TiltedPlanes, PlanesParallelToAxesInAllCombinations)
 {
-  // At right angles neither side is nearer: each plane's normal points along its axis.
+  // At right angles neither orientation is closer, and the normal of each plane points along its
+  // axis.
   std::mt19937_64 generator(27);
   for (int from = 0; from < 3; ++from)
   {
@@ -501,7 +502,7 @@ TEST(TiltedPlanes, PlanesParallelToAxesInAllCombinations)
         const Plane target = AxisPlane(to, 1.75, 1.0);
         const MeshPair pair{ InPlane(flat.Source, source), InPlane(flat.Target, target) };
         ExpectHeightsKept(pair, source, target, system);
-        // Coordinates of dyadic heights are exact there.
+        // Coordinates at dyadic heights are exact there.
         std::vector<Point> raised = PointsInTriangles(pair.Source, InsideWeights);
         for (Point& p : raised)
         {
@@ -517,7 +518,7 @@ TEST(TiltedPlanes, PlanesParallelToAxesInAllCombinations)
   }
 }
 
-TEST(TiltedPlanes, TheTransformKeepsSidesToo)
+TEST(TiltedPlanes, TheTransformAgreesOnNormals)
 {
   std::mt19937_64 generator(21);
   std::uniform_real_distribution<double> angle(0.0, vtkMath::RadiansFromDegrees(89.0));
@@ -571,7 +572,7 @@ int CountDifferent(const std::vector<Point>& a, const std::vector<Point>& b)
   return different;
 }
 
-TEST(TiltedPlanes, CornersGoToTheStoredCorners)
+TEST(TiltedPlanes, CornersMapToTheStoredCorners)
 {
   std::mt19937_64 generator(23);
   for (int round = 0; round < 60; ++round)
@@ -593,9 +594,9 @@ TEST(TiltedPlanes, CornersGoToTheStoredCorners)
   }
 }
 
-TEST(TiltedPlanes, CornersOfFloatMeshesGoToTheStoredCorners)
+TEST(TiltedPlanes, CornersOfFloatMeshesMapToTheStoredCorners)
 {
-  // Float corners lie off the plane by their rounding, each by another amount.
+  // Corners in float lie off the plane by individual rounding errors.
   std::mt19937_64 generator(24);
   for (int round = 0; round < 40; ++round)
   {
@@ -611,7 +612,7 @@ TEST(TiltedPlanes, CornersOfFloatMeshesGoToTheStoredCorners)
   }
 }
 
-TEST(TiltedPlanes, CornersOfPlanesGoToTheStoredCornersOfSurfaces)
+TEST(TiltedPlanes, CornersOfPlanesMapToTheStoredCornersOfSurfaces)
 {
   std::mt19937_64 generator(25);
   for (int round = 0; round < 20; ++round)
@@ -629,7 +630,7 @@ TEST(TiltedPlanes, CornersOfPlanesGoToTheStoredCornersOfSurfaces)
 }
 
 //------------------------------------------------------------------------------------------------
-// Points beside a surface.
+// Points near a surface.
 
 /// Distance of a point from the nearest triangle of a mesh.
 double DistanceFromMesh(vtkPolyData* mesh, const Point& p)
@@ -647,7 +648,7 @@ double DistanceFromMesh(vtkPolyData* mesh, const Point& p)
     const double area = Dot(normal, normal);
     const double u = Dot(Cross(ap, ac), normal) / area;
     const double v = Dot(Cross(ab, ap), normal) / area;
-    // Images are inside a triangle or on its edge, so edges need no distance of their own.
+    // Images are inside a triangle or on its edge, so edges need no separate distance.
     if (u > -1e-12 && v > -1e-12 && u + v < 1.0 + 1e-12)
     {
       least = std::min(least, std::abs(Dot(ap, normal)) / std::sqrt(area));
@@ -657,19 +658,19 @@ double DistanceFromMesh(vtkPolyData* mesh, const Point& p)
 }
 
 void ExpectLandingOn(
-  const MeshPair& pair, const std::vector<Point>& places, double tolerance, bool inverse = false)
+  const MeshPair& pair, const std::vector<Point>& samples, double tolerance, bool inverse = false)
 {
   vtkPolyData* goal = inverse ? pair.Source : pair.Target;
   for (const int system : Systems)
   {
-    const Mapped mapped = MapPoints(pair, places, { system, tolerance, inverse });
+    const Mapped mapped = MapPoints(pair, samples, { system, tolerance, inverse });
     ASSERT_TRUE(mapped.AllValid());
     for (const Point& image : mapped.Points)
     {
       EXPECT_LT(DistanceFromMesh(goal, image), 1e-13);
     }
-    // And without the tolerance they are outside.
-    const Mapped strict = MapPoints(pair, places, { system, 0.0, inverse });
+    // Without the tolerance they are outside.
+    const Mapped strict = MapPoints(pair, samples, { system, 0.0, inverse });
     EXPECT_EQ(std::count(strict.Valid.begin(), strict.Valid.end(), true), 0);
   }
 }
@@ -683,7 +684,7 @@ std::vector<Point> Raised(std::vector<Point> points, double height)
   return points;
 }
 
-TEST(BesideSurfaces, PointsWithinTheToleranceLandOnTheOtherSurface)
+TEST(PointsNearSurfaces, PointsWithinTheToleranceMapOntoTheOtherSurface)
 {
   const MeshPair pair{ MakeSheet(4, 41, 0.5), MakeSheet(4, 42, 0.9) };
   for (const double height : { 0.05, -0.05 })
@@ -693,9 +694,9 @@ TEST(BesideSurfaces, PointsWithinTheToleranceLandOnTheOtherSurface)
   }
 }
 
-TEST(BesideSurfaces, PointsBesideAPlaneLandOnTheSurface)
+TEST(PointsNearSurfaces, PointsNearAPlaneMapOntoTheSurface)
 {
-  // A pair of a plane and a surface is a pair of surfaces: heights over the plane are not kept.
+  // A pair of a plane and a surface is a pair of surfaces: heights above the plane are not kept.
   const MeshPair pair{ MakePlanarPair(4, 43).Source, MakeSheet(4, 44, 0.9) };
   for (const double height : { 0.05, -0.05 })
   {
@@ -704,25 +705,25 @@ TEST(BesideSurfaces, PointsBesideAPlaneLandOnTheSurface)
   }
 }
 
-TEST(BesideSurfaces, PointsOnBothSidesOfTheRimLandOnTheOtherSurface)
+TEST(PointsNearSurfaces, PointsNearTheBoundaryMapOntoTheOtherSurface)
 {
-  // Beside the boundary the nearest point is on an edge or corner.
+  // Near the boundary the nearest point is on an edge or corner.
   const MeshPair pair{ MakePlanarPair(4, 45).Source, MakeSheet(4, 46, 0.9) };
-  std::vector<Point> places;
+  std::vector<Point> samples;
   for (const double t : { 0.3, 1.7, 3.9 })
   {
     for (const double z : { 0.0, 0.03 })
     {
-      places.insert(places.end(),
+      samples.insert(samples.end(),
         { { t, -0.04, z }, { t, 4.04, z }, { -0.04, t, z }, { 4.04, t, z }, { -0.02, -0.03, z } });
     }
   }
-  ExpectLandingOn(pair, places, 0.1);
+  ExpectLandingOn(pair, samples, 0.1);
 }
 
-TEST(BesideSurfaces, TheMapIsContinuousAtCorners)
+TEST(PointsNearSurfaces, TheMapIsContinuousAtCorners)
 {
-  // A corner has a rule of its own; it must agree with what is around it.
+  // Corners are mapped by a separate rule, which must agree with the map around them.
   const MeshPair sheets{ MakeSheet(3, 47, 0.5), MakeSheet(3, 48, 0.9) };
   const MeshPair lifted{ MakePlanarPair(3, 49).Source, sheets.Target };
   const double step = 1e-9;
@@ -730,7 +731,7 @@ TEST(BesideSurfaces, TheMapIsContinuousAtCorners)
   {
     const std::vector<Point> corners = PointsOf(pair.Source);
     const std::vector<Point> images = PointsOf(pair.Target);
-    // Straight above a plane's corner, and close to any corner, the corner is the nearest point.
+    // Straight above a corner of a plane, and close to any corner, the corner is the nearest point.
     const std::vector<double> heights = pair.Source == lifted.Source
       ? std::vector<double>{ 0.0, step, 0.05, -0.05 }
       : std::vector<double>{ 0.0, step };
@@ -741,12 +742,12 @@ TEST(BesideSurfaces, TheMapIsContinuousAtCorners)
         for (const Point& offset : std::vector<Point>{ {}, { step, 0, 0 }, { -step, 0, 0 },
                { 0, step, 0 }, { 0, -step, 0 }, { 0, 0, step } })
         {
-          std::vector<Point> places = Raised(corners, height);
-          for (Point& p : places)
+          std::vector<Point> samples = Raised(corners, height);
+          for (Point& p : samples)
           {
             p = Combine(p, 1.0, offset);
           }
-          const Mapped mapped = MapPoints(pair, places, { system, 0.1 });
+          const Mapped mapped = MapPoints(pair, samples, { system, 0.1 });
           ASSERT_TRUE(mapped.AllValid());
           for (std::size_t i = 0; i < corners.size(); ++i)
           {

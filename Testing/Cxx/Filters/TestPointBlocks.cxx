@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Points that are mapped many at a time go where each goes by itself, to the last bit, in whatever
-// order and company they come.
+// Mapping points in blocks gives the same bits as mapping each point alone, for any order of
+// points.
 
 #include "MappedPoints.h"
 
@@ -36,14 +36,14 @@ std::shared_ptr<const Homeomorphism> Make(
   return Homeomorphism::Make(pair.Source, pair.Target, options, problems);
 }
 
-/// Equal to the last bit, the sign of zero and the kind of what is no number included.
+/// Equal to the last bit, including the sign of zero and NaN.
 bool IsSame(const double* a, const double* b, int count)
 {
   return std::memcmp(a, b, static_cast<std::size_t>(count) * sizeof(double)) == 0;
 }
 
-/// Points of the mesh, of its edges, rounded, of its triangles, row by row and anywhere, outside,
-/// far outside, and none at all.
+/// Points of the mesh, of its edges, rounded, of its triangles, in rows and at random, outside, far
+/// outside, and NaN.
 std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
 {
   const std::vector<Point> corners = PointsOf(mesh);
@@ -65,7 +65,7 @@ std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
     };
     for (int i = 0; i < 40; ++i)
     {
-      // Runs of points in one triangle, close to each other and at last not.
+      // Runs of points in one triangle, at first close to each other.
       const double a = i < 30 ? 0.02 * i + 0.1 : proportion(generator);
       const double b = i < 30 ? 0.2 : (1.0 - a) * proportion(generator);
       queries.push_back(combine(a, b, 1.0 - a - b));
@@ -171,20 +171,20 @@ MeshPair Moved(const MeshPair& pair, double (*height)(double, double))
   return moved;
 }
 
-TEST(PointBlocks, InAPlane)
+TEST(PointBlocks, BlocksEqualSinglePointsInAPlane)
 {
   ExpectBlocksLikePoints(MakePlanarPair(9, 21), "a plane");
   ExpectBlocksLikePoints(MakePlanarPair(1, 22), "two triangles");
 }
 
-TEST(PointBlocks, InATiltedPlane)
+TEST(PointBlocks, BlocksEqualSinglePointsInATiltedPlane)
 {
   ExpectBlocksLikePoints(
     Moved(MakePlanarPair(9, 23), [](double x, double y) { return 0.5 * x - 0.25 * y; }),
     "a tilted plane");
 }
 
-TEST(PointBlocks, OnSurfaces)
+TEST(PointBlocks, BlocksEqualSinglePointsOnSurfaces)
 {
   ExpectBlocksLikePoints(MakeClosedPair(4, 24), "a closed surface");
   MeshPair mixed = MakePlanarPair(6, 25);
@@ -192,7 +192,7 @@ TEST(PointBlocks, OnSurfaces)
   ExpectBlocksLikePoints(mixed, "a plane and a surface");
 }
 
-TEST(PointBlocks, AnImageIsItsPoints)
+TEST(PointBlocks, AnImageIsMappedLikeItsPoints)
 {
   // Rows and slices end anywhere in a block.
   const MeshPair pair = MakePlanarPair(9, 26);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Every point of the closed domain is found, no other is, and the answer depends on the point
-// alone: in any plane, on surfaces, and at any size of the coordinates.
+// Exactly the points of the closed domain are found, and the result depends on the point alone: in
+// any plane, on surfaces, and at any size of the coordinates.
 
 #include "MappedPoints.h"
 
@@ -36,7 +36,7 @@ std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* targ
   return map;
 }
 
-double ReachOf(const Homeomorphism& map, double tolerance = 0.0)
+double ToleranceOf(const Homeomorphism& map, double tolerance = 0.0)
 {
   return map.GetAbsoluteTolerance(Domain::Source, tolerance, 0.5 * Epsilon);
 }
@@ -44,11 +44,11 @@ double ReachOf(const Homeomorphism& map, double tolerance = 0.0)
 SurfacePoint Locate(
   const Homeomorphism& map, const Point& point, TriangleIndex hint = -1, double tolerance = 0.0)
 {
-  return map.Locate(Domain::Source, point.data(), ReachOf(map, tolerance), hint);
+  return map.Locate(Domain::Source, point.data(), ToleranceOf(map, tolerance), hint);
 }
 
-/// The place found, back in the coordinates of the input.
-Point PlaceOf(const Homeomorphism& map, const SurfacePoint& location)
+/// The surface point in coordinates of the input.
+Point PositionOf(const Homeomorphism& map, const SurfacePoint& location)
 {
   const MeshGeometry& geometry = map.GetPair().GetGeometry(Domain::Source);
   Point point;
@@ -66,7 +66,7 @@ void ExpectSameLocation(const SurfacePoint& a, const SurfacePoint& b)
 }
 
 //------------------------------------------------------------------------------------------------
-// In the plane, against exact arithmetic.
+// In the plane, compared with exact arithmetic.
 
 struct GridPoint
 {
@@ -80,7 +80,7 @@ int Turn(const GridPoint& a, const GridPoint& b, const GridPoint& c)
   return area > 0 ? 1 : (area < 0 ? -1 : 0);
 }
 
-/// A mesh whose points lie on the integer grid, with holes and bays.
+/// A mesh whose points lie on the integer grid, with holes and concave boundary.
 struct GridMesh
 {
   std::vector<GridPoint> Points;
@@ -112,8 +112,8 @@ struct GridMesh
     std::shuffle(this->Triangles.begin(), this->Triangles.end(), generator);
   }
 
-  /// The triangle of lowest number that the point is in, its boundary included; -1 if there is
-  /// none.
+  /// The triangle with the lowest number that contains the point, including its boundary; -1 if
+  /// there is none.
   TriangleIndex Find(const GridPoint& p) const
   {
     for (std::size_t t = 0; t < this->Triangles.size(); ++t)
@@ -146,18 +146,18 @@ struct GridMesh
     return -1;
   }
 
-  /// The mesh with a unit of the grid of the given length, in the plane of two of the axes.
+  /// The mesh with the given grid spacing, in the plane of two of the axes.
   vtkSmartPointer<vtkPolyData> ToMesh(double unit, int normalAxis = 2) const
   {
     std::vector<Point> points;
     for (const GridPoint& p : this->Points)
     {
-      points.push_back(ToSurfacePoint(p, unit, normalAxis));
+      points.push_back(MeshPoint(p, unit, normalAxis));
     }
     return MakeMesh(points, this->Triangles);
   }
 
-  static Point ToSurfacePoint(const GridPoint& p, double unit, int normalAxis)
+  static Point MeshPoint(const GridPoint& p, double unit, int normalAxis)
   {
     Point point;
     point[(normalAxis + 1) % 3] = static_cast<double>(p.X) * unit;
@@ -166,7 +166,7 @@ struct GridMesh
     return point;
   }
 
-  /// Vertices, points on edges, points of a line with an edge beyond it, and points anywhere.
+  /// Vertices, points on edges, points of a line beyond an edge, and points anywhere.
   std::vector<GridPoint> Queries(int anywhere, std::uint64_t seed) const
   {
     std::mt19937_64 generator(seed);
@@ -184,7 +184,7 @@ struct GridMesh
         const GridPoint& b = this->Points[t[(k + 1) % 3]];
         for (const std::int64_t quarter : { -1, 1, 2, 3, 5 })
         {
-          // Points of the grid because all coordinates are multiples of four.
+          // Points of the grid, because all coordinates are multiples of four.
           queries.push_back({ a.X + (b.X - a.X) / 4 * quarter, a.Y + (b.Y - a.Y) / 4 * quarter });
         }
       }
@@ -198,7 +198,7 @@ struct GridMesh
   }
 };
 
-/// A mesh of multiples of four.
+/// A mesh with coordinates that are multiples of four.
 GridMesh FourfoldMesh(int squares, double holes, std::uint64_t seed)
 {
   GridMesh mesh(squares, 16, 4, holes, seed);
@@ -223,7 +223,7 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
     for (const GridPoint& query : grid.Queries(200, n))
     {
       const TriangleIndex expected = grid.Find(query);
-      const Point point = GridMesh::ToSurfacePoint(query, unit, n % 3);
+      const Point point = GridMesh::MeshPoint(query, unit, n % 3);
       const SurfacePoint location = Locate(*map, point);
       ASSERT_EQ(expected, location.Triangle) << n << ": " << query.X << " " << query.Y;
       ASSERT_EQ(grid.CornerAt(expected, query), location.Corner);
@@ -234,7 +234,7 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
       }
       if (expected >= 0)
       {
-        ASSERT_LE(DistanceOf(point, PlaceOf(*map, location)), 2e-13 * unit);
+        ASSERT_LE(DistanceOf(point, PositionOf(*map, location)), 2e-13 * unit);
       }
     }
   }
@@ -249,13 +249,13 @@ TEST(PointLocation, AgreesWithExactArithmeticInALargerMesh)
   TriangleIndex hint = -1;
   for (const GridPoint& query : grid.Queries(3000, 2))
   {
-    const SurfacePoint location = Locate(*map, GridMesh::ToSurfacePoint(query, 0.25, 2), hint);
+    const SurfacePoint location = Locate(*map, GridMesh::MeshPoint(query, 0.25, 2), hint);
     ASSERT_EQ(grid.Find(query), location.Triangle);
     hint = location.Triangle;
   }
 }
 
-TEST(PointLocation, AllOfASquareIsFound)
+TEST(PointLocation, AllPointsOfASquareAreFound)
 {
   // No point of the closed square falls between triangles, wherever their edges are.
   const auto mesh = MakePlanarPair(30, 3).Source;
@@ -278,8 +278,8 @@ TEST(PointLocation, AllOfASquareIsFound)
 
 TEST(PointLocation, PointsOnRoundedEdgesAreFound)
 {
-  // Edges with corners that are not short numbers: the points computed lie beside them by rounding,
-  // on either side.
+  // Edges whose corners are not exactly representable: computed points lie on either side by
+  // rounding.
   const MeshPair pair = MakePlanarPair(20, 4);
   const std::vector<Point> points = PointsOf(pair.Source);
   const auto map = Make(pair.Source, nullptr);
@@ -326,11 +326,11 @@ TEST(PointLocation, CornersAreFoundExactly)
 }
 
 //------------------------------------------------------------------------------------------------
-// The edge of the domain.
+// The boundary of the domain.
 
-TEST(PointLocation, OnlyRoundingIsForgivenOutside)
+TEST(PointLocation, PointsOutsideByRoundingAreFound)
 {
-  // The largest coordinate is 8, whose last place is 1.8e-15.
+  // The largest coordinate is 8, with an ulp of 1.8e-15.
   const auto mesh = MakeMesh(GridPoints(8, 0, 0.0), GridTriangles(8));
   const auto map = Make(mesh, mesh);
   const double ulp = 8.0 * Epsilon;
@@ -350,7 +350,7 @@ TEST(PointLocation, OnlyRoundingIsForgivenOutside)
         {
           const SurfacePoint location = Locate(*map, at(near));
           ASSERT_GE(location.Triangle, 0) << near;
-          // Taken to the boundary: to no point outside of it.
+          // The result lies on the boundary, not outside.
           Point image;
           map->MapPoint(Domain::Source, location, image.data());
           EXPECT_NEAR(high ? 8.0 : 0.0, image[axis], ulp);
@@ -365,9 +365,9 @@ TEST(PointLocation, OnlyRoundingIsForgivenOutside)
   }
 }
 
-TEST(PointLocation, PointsStoredAsFloatAreRoundedAsSuch)
+TEST(PointLocation, FloatPointsHaveFloatPrecision)
 {
-  // Their own precision counts, whatever that of the mesh is.
+  // The precision of the points counts, independently of that of the mesh.
   const auto mesh = MakeMesh(GridPoints(8, 0, 0.0), GridTriangles(8));
   for (const bool isFloat : { false, true })
   {
@@ -386,7 +386,7 @@ TEST(PointLocation, PointsStoredAsFloatAreRoundedAsSuch)
   }
 }
 
-TEST(PointLocation, CoordinatesThatAreNotFiniteAreOutside)
+TEST(PointLocation, NonFiniteCoordinatesAreOutside)
 {
   const MeshPair sheets{ MakeSheet(4, 6, 0.3), MakeSheet(4, 7, 0.3) };
   const MeshPair planes = MakePlanarPair(4, 6);
@@ -423,7 +423,7 @@ TEST(PointLocation, CoordinatesThatAreNotFiniteAreOutside)
   }
 }
 
-TEST(PointLocation, HugeCoordinatesAreOutsideWhateverTheHint)
+TEST(PointLocation, HugeCoordinatesAreOutsideForEveryHint)
 {
   // Products of such coordinates overflow.
   for (const double unit : { 1.0, 1e-300, 1e300 })
@@ -455,8 +455,8 @@ TEST(PointLocation, HugeCoordinatesAreOutsideWhateverTheHint)
 
 TEST(PointLocation, AHugePointAfterOneInsideIsOutside)
 {
-  // The same through the filter, which takes the triangle of each point as the hint for the next.
-  // Enough points that some stay together when they are dealt out to threads.
+  // The same through the filter, which uses the triangle of each point as the hint for the next
+  // one. With this many points, some neighbors stay together when they are distributed to threads.
   const MeshPair pair = MakePlanarPair(3, 9);
   std::vector<Point> points;
   for (const double huge : { 1e20, 1e155, 1e160, 1e300 })
@@ -480,7 +480,7 @@ TEST(PointLocation, AHugePointAfterOneInsideIsOutside)
 }
 
 //------------------------------------------------------------------------------------------------
-// Tolerance, and the nearest point, against every triangle in turn.
+// Tolerance and nearest point, compared with all triangles.
 
 using Real = long double;
 using RealPoint = std::array<Real, 3>;
@@ -523,7 +523,8 @@ Real DistanceToTriangle(const Point& point, const std::array<Point, 3>& corners)
   const RealPoint u = Minus(b, a);
   const RealPoint v = Minus(c, a);
   const RealPoint d = Minus(p, a);
-  // Weights of the foot in the triangle's plane, as ratios of areas: accurate for needles too.
+  // Weights of the foot in the plane of the triangle, as ratios of areas, which are accurate for
+  // needles too.
   const RealPoint normal = Cross(u, v);
   const Real s = Dot(normal, Cross(d, v)) / Dot(normal, normal);
   const Real t = Dot(normal, Cross(u, d)) / Dot(normal, normal);
@@ -550,8 +551,8 @@ std::vector<Triangle> TrianglesOf(vtkPolyData* mesh)
   return triangles;
 }
 
-/// Queries near and far from a mesh: found if and only if some triangle is within the tolerance;
-/// the place is on the nearest one, at the right distance.
+/// Queries near and far from a mesh. A point is found if and only if some triangle is within the
+/// tolerance; the surface point is on the nearest triangle, at the correct distance.
 void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queries,
   std::uint64_t seed, int leastFound, int leastOutside)
 {
@@ -596,10 +597,10 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
     }
     ++found;
     worst = std::max(worst, static_cast<double>(distances[location.Triangle] - least));
-    // The place without its distance from the surface is on the triangle, that far away.
+    // The surface point without its offset lies on the triangle, at that distance.
     SurfacePoint foot = location;
     foot.Point.Offset = 0.0;
-    const Point surfacePoint = PlaceOf(*map, foot);
+    const Point surfacePoint = PositionOf(*map, foot);
     const Triangle& t = triangles[location.Triangle];
     const double off = static_cast<double>(
       DistanceToTriangle(surfacePoint, { points[t[0]], points[t[1]], points[t[2]] }));
@@ -617,7 +618,7 @@ TEST(PointLocation, ToleranceInThePlane)
   GridMesh grid(8, 16, 4, 0.3, 10);
   ExpectNearest(grid.ToMesh(1.0 / 16.0), 0.01, 0.8, 3000, 10, 1500, 200);
   ExpectNearest(grid.ToMesh(1.0 / 16.0), 0.001, 0.8, 3000, 11, 1000, 300);
-  // So much that everything is taken to the domain.
+  // A tolerance so large that every point is inside.
   ExpectNearest(grid.ToMesh(1.0 / 16.0), 1e3, 50.0, 1000, 12, 990, 0);
 }
 
@@ -638,7 +639,7 @@ TEST(PointLocation, ToleranceOnSurfaces)
   ExpectNearest(MakeClosedPair(2, 16).Source, 1e3, 3.0, 1000, 16, 990, 0);
 }
 
-TEST(PointLocation, TheLargestToleranceTakesEverything)
+TEST(PointLocation, WithTheLargestToleranceAllPointsAreInside)
 {
   for (const bool planar : { true, false })
   {
@@ -687,7 +688,7 @@ void ExpectOnSurface(const MeshPair& pair)
       {
         worst = std::max(worst, std::abs(found[k] - w[k]));
       }
-      // Off the surface, but for rounding, is outside.
+      // Points off the surface by more than rounding are outside.
       const RealPoint normal =
         Cross(Minus(Widen(points[triangles[t][1]]), Widen(points[triangles[t][0]])),
           Minus(Widen(points[triangles[t][2]]), Widen(points[triangles[t][0]])));
@@ -726,7 +727,7 @@ TEST(PointLocation, PointsOfAClosedSurface)
 
 TEST(PointLocation, PointsOnEdgesOfSurfaces)
 {
-  // On a shared edge the lower number counts if both are equally near, and one of the two in any
+  // On a shared edge the lower number is used if both are equally near, and one of the two in any
   // case.
   const MeshPair pair = MakeClosedPair(3, 23);
   const auto map = Make(pair.Source, pair.Target);
@@ -774,7 +775,7 @@ TEST(PointLocation, TheOrderOfPointsDoesNotMatter)
     const MeshPair pair = planar ? MakePlanarPair(15, 27) : MakeClosedPair(3, 27);
     const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
     std::vector<Point> points = SamplePoints(pair.Source, triangles, 20, 27);
-    // Points on edges and at corners too, where several triangles compete.
+    // Also points on edges and at corners, which belong to several triangles.
     const std::vector<Point> corners = PointsOf(pair.Source);
     for (const Triangle& t : triangles)
     {
@@ -825,7 +826,7 @@ MeshPair Scaled(const MeshPair& pair, double source, double target)
   return { scaled(pair.Source, source), scaled(pair.Target, target) };
 }
 
-TEST(PointLocation, PowersOfTwoChangeNothing)
+TEST(PointLocation, ScalingByPowersOfTwoIsExact)
 {
   for (const bool planar : { true, false })
   {
@@ -883,9 +884,9 @@ TEST(PointLocation, AnySize)
   }
 }
 
-TEST(PointLocation, FromAnAtomToAGalaxyAndBack)
+TEST(PointLocation, RoundTripsBetweenExtremeSizes)
 {
-  // The two meshes of very different size: neither sizes nor their ratio may overflow.
+  // Two meshes of very different size: neither the sizes nor their ratio may overflow.
   for (const bool planar : { true, false })
   {
     const MeshPair pair = planar ? MakePlanarPair(4, 32) : MakeClosedPair(1, 32);
@@ -918,9 +919,9 @@ TEST(PointLocation, FromAnAtomToAGalaxyAndBack)
   }
 }
 
-TEST(PointLocation, SurfacesOfDifferentSizesThereAndBack)
+TEST(PointLocation, RoundTripsBetweenSurfacesOfDifferentSizes)
 {
-  // What is off the larger surface by rounding alone must not be off the smaller one by more: it
+  // A point off the larger surface by rounding alone must not be farther off the smaller one, or it
   // would be outside on the way back.
   const MeshPair pair = MakeClosedPair(2, 35);
   const std::vector<Point> points = SamplePoints(pair.Source, TrianglesOf(pair.Source), 20, 35);
@@ -944,7 +945,7 @@ TEST(PointLocation, SurfacesOfDifferentSizesThereAndBack)
   }
 }
 
-TEST(PointLocation, TheSmallestNumbersThereAre)
+TEST(PointLocation, SubnormalCoordinates)
 {
   // Multiples of the least positive number, which are exact.
   const GridMesh grid = FourfoldMesh(3, 0.2, 33);
@@ -954,14 +955,14 @@ TEST(PointLocation, TheSmallestNumbersThereAre)
   ASSERT_TRUE(map);
   for (const GridPoint& query : grid.Queries(500, 33))
   {
-    const SurfacePoint location = Locate(*map, GridMesh::ToSurfacePoint(query, unit, 2));
+    const SurfacePoint location = Locate(*map, GridMesh::MeshPoint(query, unit, 2));
     ASSERT_EQ(grid.Find(query), location.Triangle);
     ASSERT_EQ(grid.CornerAt(location.Triangle, query), location.Corner);
     if (location.Triangle >= 0)
     {
       Point image;
       map->MapPoint(Domain::Source, location, image.data());
-      ASSERT_EQ(GridMesh::ToSurfacePoint(query, unit, 2), image);
+      ASSERT_EQ(GridMesh::MeshPoint(query, unit, 2), image);
     }
   }
 }
@@ -978,7 +979,7 @@ TEST(PointLocation, NationalGrid)
     const std::vector<Point> points = PointsOf(mesh);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
-      // Rounded to the millimeter as surveyors do, so that both versions are the same shape.
+      // Rounded to the millimeter, so that both versions have the same shape.
       Point p{ std::round(1e3 * points[i][0]) / 1e3, std::round(1e3 * points[i][1]) / 1e3, 0.0 };
       MovePoint(
         mesh == pair.Source.Get() ? local.Source : local.Target, static_cast<vtkIdType>(i), p);
@@ -1004,9 +1005,9 @@ TEST(PointLocation, NationalGrid)
     worst = std::max(worst, DistanceOf(expected.Images[i], back));
   }
   std::cout << "worst difference " << worst << " m\n";
-  // A unit in the last place is a nanometre.
+  // An ulp is about a nanometer.
   EXPECT_LT(worst, 1e-8);
-  // A millimeter, and a micrometre, outside are outside.
+  // Points a millimeter, and a micrometer, outside are outside.
   for (const double off : { 1e-3, 1e-6 })
   {
     const MappedPoints outside = MapPoints(pair,
@@ -1021,13 +1022,13 @@ TEST(PointLocation, NationalGrid)
 //------------------------------------------------------------------------------------------------
 // Planes in space.
 
-/// A frame: the axes of the plane, and the normal along which heights count.
+/// A frame: the axes of the plane, and the normal along which heights are measured.
 struct Frame
 {
   std::array<Point, 3> Axes;
   Point Origin;
 
-  Point ToSurfacePoint(const Point& p) const
+  Point MeshPoint(const Point& p) const
   {
     Point q = this->Origin;
     for (int k = 0; k < 3; ++k)
@@ -1041,18 +1042,18 @@ struct Frame
   }
 };
 
-vtkSmartPointer<vtkPolyData> PlacedIn(const Frame& frame, vtkPolyData* mesh)
+vtkSmartPointer<vtkPolyData> MovedInto(const Frame& frame, vtkPolyData* mesh)
 {
   std::vector<Point> points = PointsOf(mesh);
   for (Point& p : points)
   {
-    p = frame.ToSurfacePoint(p);
+    p = frame.MeshPoint(p);
   }
   return MakeMesh(points, TrianglesOf(mesh));
 }
 
-/// The map between two frames is that of the xy plane; heights count in the target in the direction
-/// that is less than a right angle from the source's normal.
+/// The map between two frames equals that of the xy plane. The normal of the target is the one that
+/// makes less than a right angle with the source's normal.
 void ExpectSameInFrames(const Frame& from, Frame to, double tolerance)
 {
   const Point& up = from.Axes[2];
@@ -1063,7 +1064,7 @@ void ExpectSameInFrames(const Frame& from, Frame to, double tolerance)
     normal = { -normal[0], -normal[1], -normal[2] };
   }
   const MeshPair pair = MakePlanarPair(8, 40);
-  const MeshPair placed{ PlacedIn(from, pair.Source), PlacedIn(to, pair.Target) };
+  const MeshPair moved{ MovedInto(from, pair.Source), MovedInto(to, pair.Target) };
   std::vector<Point> points = SamplePoints(pair.Source, GridTriangles(8), 10, 40);
   const std::size_t corners = points.size();
   for (const Point& p : PointsOf(pair.Source))
@@ -1079,14 +1080,14 @@ void ExpectSameInFrames(const Frame& from, Frame to, double tolerance)
   std::vector<Point> inFrame;
   for (const Point& p : points)
   {
-    inFrame.push_back(from.ToSurfacePoint(p));
+    inFrame.push_back(from.MeshPoint(p));
   }
   const MappedPoints expected = MapPoints(pair, points);
-  const MappedPoints mapped = MapPoints(placed, inFrame);
+  const MappedPoints mapped = MapPoints(moved, inFrame);
   ASSERT_EQ("", mapped.Error + mapped.Warning);
   MapOptions backwards;
   backwards.Inverse = true;
-  const MappedPoints back = MapPoints(placed, mapped.Images, backwards);
+  const MappedPoints back = MapPoints(moved, mapped.Images, backwards);
   double worst = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
@@ -1099,7 +1100,7 @@ void ExpectSameInFrames(const Frame& from, Frame to, double tolerance)
     {
       ASSERT_EQ(expected.Triangles[i], mapped.Triangles[i]);
     }
-    worst = std::max({ worst, DistanceOf(to.ToSurfacePoint(expected.Images[i]), mapped.Images[i]),
+    worst = std::max({ worst, DistanceOf(to.MeshPoint(expected.Images[i]), mapped.Images[i]),
       DistanceOf(inFrame[i], back.Images[i]) });
   }
   EXPECT_LE(worst, tolerance);
@@ -1112,7 +1113,7 @@ TEST(PointLocation, PlanesParallelToTwoAxes)
   const Frame yz{ { Point{ 0, 1, 0 }, Point{ 0, 0, 1 }, Point{ 1, 0, 0 } }, { 0, 0, 0 } };
   const Frame zx{ { Point{ 0, 0, 1 }, Point{ 1, 0, 0 }, Point{ 0, 1, 0 } }, { 0, 0, 0 } };
   const Frame shifted{ { Point{ 0, 1, 0 }, Point{ 0, 0, 1 }, Point{ 1, 0, 0 } }, { 2.5, 0, 0 } };
-  // The axes exchanged: the same plane and normal, seen as a mirrored mesh.
+  // Exchanged axes: the same plane and normal, with a mirrored mesh.
   const Frame yx{ { Point{ 0, 1, 0 }, Point{ 1, 0, 0 }, Point{ 0, 0, 1 } }, { 0, 0, 0 } };
   for (const Frame& from : { PlaneXY, yz, zx, shifted, yx })
   {
@@ -1132,7 +1133,7 @@ TEST(PointLocation, AnyPlane)
     std::array<Frame, 2> frames;
     for (Frame& frame : frames)
     {
-      // Gram and Schmidt; the normal points along the axis it is closest to, as heights do.
+      // Gram-Schmidt. The normal points along the axis closest to it, as for heights.
       Point a{ normal(generator), normal(generator), normal(generator) };
       Point b{ normal(generator), normal(generator), normal(generator) };
       const auto normalize = [](Point& p) {
@@ -1160,7 +1161,8 @@ TEST(PointLocation, AnyPlane)
 
 TEST(PointLocation, NormalsOfAPlaneAndASurfaceFollowTheWinding)
 {
-  // Where one of the two is a surface, the normal of a flat mesh is that of its triangles, too.
+  // If one of the two meshes is a surface, the normal of a flat mesh follows from its triangles,
+  // too.
   const MeshPair pair = MakePlanarPair(4, 43);
   for (int normalAxis = 0; normalAxis < 3; ++normalAxis)
   {
@@ -1187,7 +1189,7 @@ TEST(PointLocation, NormalsOfAPlaneAndASurfaceFollowTheWinding)
       {
         const Point point = CentroidOf(MakeMesh(flat, {}), t);
         const Jacobian jacobian = map->GetJacobian(Domain::Source, Locate(*map, point));
-        // The image of the flat mesh's upper normal; the grid runs counterclockwise seen from
+        // The image of the upper normal of the flat mesh. The grid is counterclockwise seen from
         // above.
         Point image;
         for (int row = 0; row < 3; ++row)
@@ -1208,7 +1210,7 @@ TEST(PointLocation, CornersOfATiltedPlaneAreFoundExactly)
   const Frame tilted{ { Point{ 0.6, 0.0, 0.8 }, Point{ 0.0, 1.0, 0.0 }, Point{ -0.8, 0.0, 0.6 } },
     { 0.1, 0.2, 0.3 } };
   const MeshPair pair = MakePlanarPair(8, 42);
-  const auto mesh = PlacedIn(tilted, pair.Source);
+  const auto mesh = MovedInto(tilted, pair.Source);
   const auto map = Make(mesh, nullptr);
   for (const Point& p : PointsOf(mesh))
   {

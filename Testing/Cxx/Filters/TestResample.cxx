@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Whether data resampled through the homeomorphism is the data at the points that the grid's points
-// come from.
+// Resampled data equals the data at the preimages of the grid's points.
 
 #include "FilterRuns.h"
 #include "TestMeshes.h"
@@ -45,7 +44,7 @@ double Field(const double p[3])
   return 3.0 * p[0] - 2.0 * p[1] + 0.5;
 }
 
-/// An image over the source's domain, and beyond it, with a scalar that interpolation reproduces, a
+/// An image over the source's domain and beyond, with a scalar that interpolation reproduces, a
 /// vector, and cell data.
 vtkSmartPointer<vtkImageData> MakeImage()
 {
@@ -128,7 +127,8 @@ void ExpectPulledBack(vtkDataSet* output, const MeshPair& pair)
       map->InternalTransformDerivative(origin, image, jacobian);
       for (int k = 0; k < 2; ++k)
       {
-        // On an edge of the triangulation the map is once differentiable, so either side will do.
+        // On an edge of the triangulation the map is once differentiable, so either side is
+        // accepted.
         EXPECT_NEAR(wind->GetComponent(i, k), jacobian[k][0] + 2.0 * jacobian[k][1], 1e-9);
       }
     }
@@ -137,7 +137,7 @@ void ExpectPulledBack(vtkDataSet* output, const MeshPair& pair)
   EXPECT_LT(inside, output->GetNumberOfPoints());
 }
 
-TEST(Resample, AnImageIsPulledBack)
+TEST(Resample, ImagesAreSampledAtPreimages)
 {
   const MeshPair pair = MakePair();
   const auto filter = MakeResample(pair, MakeImage());
@@ -165,7 +165,7 @@ TEST(Resample, AnImageIsPulledBack)
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - valid);
 }
 
-TEST(Resample, AnyGridAndAnyDataWillDo)
+TEST(Resample, AnyGridAndAnyDataAreSupported)
 {
   const MeshPair pair = MakePair();
   const auto filter = MakeResample(pair, MakeImage());
@@ -210,7 +210,7 @@ TEST(Resample, AnyGridAndAnyDataWillDo)
 
 TEST(Resample, ImagesAreSampledLikeOtherData)
 {
-  // In a tree an image is data like any other, which VTK's own cells interpolate.
+  // In a tree an image is treated like any other data, and interpolated by VTK's cells.
   std::mt19937_64 generator(12);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
   const MeshPair pair = MakePair();
@@ -303,7 +303,7 @@ TEST(Resample, TheMeshIsItsOwnData)
   ExpectPulledBack(filter->GetOutput(), pair);
 }
 
-TEST(Resample, InverseIsSourceAndTargetExchanged)
+TEST(Resample, InverseExchangesSourceAndTarget)
 {
   const MeshPair pair = MakePair();
   const auto image = MakeImage();
@@ -321,7 +321,7 @@ TEST(Resample, InverseIsSourceAndTargetExchanged)
   }
 }
 
-TEST(Resample, PiecesMakeTheWhole)
+TEST(Resample, PiecesFormTheWhole)
 {
   const MeshPair pair = MakePair();
   const auto whole = MakeResample(pair, MakeImage());
@@ -346,7 +346,7 @@ TEST(Resample, PiecesMakeTheWhole)
   EXPECT_EQ(pieces->GetNumberOfMeshBuilds(), 1);
 }
 
-TEST(Resample, NewDataDoesNotBuildTheMeshesAgain)
+TEST(Resample, NewDataDoesNotRebuildTheMap)
 {
   const MeshPair pair = MakePair();
   const auto filter = MakeResample(pair, MakeImage());
@@ -360,7 +360,7 @@ TEST(Resample, NewDataDoesNotBuildTheMeshesAgain)
 
 TEST(Resample, DataMayBeReplacedInPlace)
 {
-  // VTK keeps lists of each point's cells from the first search.
+  // VTK keeps lists of the cells of each point from the first search.
   const MeshPair pair = MakePair();
   const auto toGrid = [](vtkPolyData* mesh) {
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -370,7 +370,7 @@ TEST(Resample, DataMayBeReplacedInPlace)
     return grid;
   };
   const auto withField = [](int side) {
-    // Larger than the domain, so that no point of it is outside by rounding.
+    // Larger than the domain, so that none of its points is outside by rounding.
     const auto mesh = MakePlanarPair(side, 5).Source;
     vtkNew<vtkDoubleArray> field;
     field->SetName("Field");
@@ -430,7 +430,7 @@ TEST(Resample, RefusalsAreReported)
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
 }
 
-TEST(Resample, AnImageNeedsAPlaneToLieOn)
+TEST(Resample, ImagesNeedAPlaneParallelToXY)
 {
   const auto sheet = MakeSheet(4, 1, 0.5);
   const auto filter = MakeResample({ sheet, sheet }, nullptr);

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// vtkTriangularCoordinates: the coordinates, the lines that show them, and what it tells about the
-// triangles.
+// vtkTriangularCoordinates: the coordinates, their lines, and the properties of the triangles.
 
 #include "FilterRuns.h"
 
@@ -86,7 +85,7 @@ std::vector<std::pair<const char*, vtkSmartPointer<vtkPolyData>>> AllMeshes(std:
   return meshes;
 }
 
-/// The center of a triangle in a system: where its contours start.
+/// The center of a triangle in a system: the start of its contours.
 Point CenterOf(const System& system, vtkPolyData* mesh, vtkIdType triangle)
 {
   const std::array<Point, 3> c = CornersOf(mesh, triangle);
@@ -113,7 +112,7 @@ TEST_P(CoordinatesInEverySystem, ArraysHaveTheirTypesAndRanges)
   for (const auto& mesh : AllMeshes(700))
   {
     const auto filter = MakeCoordinates(
-      GetParam(), mesh.second, MakeCloud(mesh.second, RandomPlaces(mesh.second, 5000, 60)));
+      GetParam(), mesh.second, MakeCloud(mesh.second, RandomSamples(mesh.second, 5000, 60)));
     vtkDataSet* output = Output(filter);
     const Coordinates found(output);
     ASSERT_TRUE(vtkIdTypeArray::SafeDownCast(found.Triangle));
@@ -134,21 +133,21 @@ TEST_P(CoordinatesInEverySystem, ArraysHaveTheirTypesAndRanges)
   }
 }
 
-TEST(TriangularCoordinates, LinearOnesFollowTheirDefinition)
+TEST(TriangularCoordinates, LinearCoordinatesFollowTheirDefinition)
 {
   for (const auto& mesh : AllMeshes(710))
   {
-    const std::vector<ToSurfacePoint> places = InnerPlaces(mesh.second, 5000, 61, 1e-4);
-    const auto filter = MakeCoordinates(Linear, mesh.second, MakeCloud(mesh.second, places));
+    const std::vector<MeshPoint> samples = InnerSamples(mesh.second, 5000, 61, 1e-4);
+    const auto filter = MakeCoordinates(Linear, mesh.second, MakeCloud(mesh.second, samples));
     const Coordinates found(Output(filter));
     vtkIdType wrong = 0;
     Worst worst;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const auto id = static_cast<vtkIdType>(i);
-      const Point& l = places[i].Weights;
-      wrong += found.T(id) != places[i].Triangle;
-      // The edge opposite the corner of least weight.
+      const Point& l = samples[i].Weights;
+      wrong += found.T(id) != samples[i].Triangle;
+      // The edge opposite the corner with the least weight.
       const auto least = static_cast<std::size_t>(std::min_element(l.begin(), l.end()) - l.begin());
       const double next = l[(least + 1) % 3] - l[least];
       const double previous = l[(least + 2) % 3] - l[least];
@@ -166,32 +165,32 @@ TEST(TriangularCoordinates, LinearOnesFollowTheirDefinition)
   }
 }
 
-TEST_P(CoordinatesInEverySystem, EdgesAreNumberedAsTheHeaderSays)
+TEST_P(CoordinatesInEverySystem, EdgesAreNumberedAsDocumented)
 {
   // Points on the edges: edge k is opposite the k-th point, and p runs from the next point to the
-  // one after, which is where an edge point's contour ends: c = 1.
+  // one after it. The contour of an edge point ends at the point itself: c = 1.
   for (const auto& mesh : AllMeshes(720))
   {
     Random random(62);
-    std::vector<ToSurfacePoint> places;
+    std::vector<MeshPoint> samples;
     for (vtkIdType t = 0; t < mesh.second->GetNumberOfCells(); ++t)
     {
       for (std::size_t k = 0; k < 3; ++k)
       {
-        ToSurfacePoint surfacePoint{ t, {} };
+        MeshPoint surfacePoint{ t, {} };
         const double p = random.Uniform(0.01, 0.99);
         surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
         surfacePoint.Weights[(k + 2) % 3] = p;
-        places.push_back(surfacePoint);
+        samples.push_back(surfacePoint);
       }
     }
-    const auto filter = MakeCoordinates(GetParam(), mesh.second, MakeCloud(mesh.second, places));
+    const auto filter = MakeCoordinates(GetParam(), mesh.second, MakeCloud(mesh.second, samples));
     const Coordinates found(Output(filter));
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0) << mesh.first;
     Worst worst;
     vtkIdType own = 0;
     vtkNew<vtkIdList> ids;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const auto id = static_cast<vtkIdType>(i);
       worst.Take(1.0 - found.C(id), 1e-12);
@@ -201,15 +200,15 @@ TEST_P(CoordinatesInEverySystem, EdgesAreNumberedAsTheHeaderSays)
       const Point start = PointOf(mesh.second, ids->GetId((k + 1) % 3));
       const Point end = PointOf(mesh.second, ids->GetId((k + 2) % 3));
       const double p = found.P(id);
-      worst.Take(Distance((1.0 - p) * start + p * end, PositionOf(mesh.second, places[i])), 1e-12);
-      if (found.T(id) == places[i].Triangle)
+      worst.Take(Distance((1.0 - p) * start + p * end, PositionOf(mesh.second, samples[i])), 1e-12);
+      if (found.T(id) == samples[i].Triangle)
       {
         ++own;
         EXPECT_EQ(k, static_cast<int>(i % 3));
       }
     }
     EXPECT_LE(worst.OverBound, 1.0) << mesh.first;
-    EXPECT_GT(own, static_cast<vtkIdType>(places.size() / 3));
+    EXPECT_GT(own, static_cast<vtkIdType>(samples.size() / 3));
   }
 }
 
@@ -241,9 +240,8 @@ TEST_P(CoordinatesInEverySystem, TheCenterIsAtZeroAndVerticesAreAtOne)
 
 TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
 {
-  // That is what the homeomorphism is. The pairs are concordant where the Contour system would
-  // otherwise let the Linear one stand in, in different triangles of P alone, of Q alone and of
-  // both.
+  // By definition of the homeomorphism. The pairs are concordant wherever the Contour system would
+  // otherwise be replaced by Linear in different triangles of P alone, of Q alone and of both.
   const Matrix tilt = Tilt();
   const MeshPair planar = MakePlanarPair(10, 730, 0.06);
   std::vector<Pairing> pairings{ { "planar", planar },
@@ -259,8 +257,8 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
   for (const Pairing& pairing : pairings)
   {
     const MeshPair& pair = pairing.Meshes;
-    const std::vector<ToSurfacePoint> places = InnerPlaces(pair.Source, 5000, 63, 1e-3);
-    const auto cloud = MakeCloud(pair.Source, places);
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 5000, 63, 1e-3);
+    const auto cloud = MakeCloud(pair.Source, samples);
     const auto onSource = MakeCoordinates(GetParam(), pair.Source, cloud);
     const auto map = MakeFilter(GetParam(), pair, cloud);
     const auto onTarget = MakeCoordinates(GetParam(), pair.Target);
@@ -272,7 +270,7 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
     {
       wrong +=
-        before.T(i) != after.T(i) || before.T(i) != places[static_cast<std::size_t>(i)].Triangle;
+        before.T(i) != after.T(i) || before.T(i) != samples[static_cast<std::size_t>(i)].Triangle;
       worst.Take(std::abs(before.C(i) - after.C(i)), 1e-12);
       if (before.E(i) != after.E(i))
       {
@@ -281,8 +279,8 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
         wrong += toEnd * before.C(i) > 1e-12;
         continue;
       }
-      // p is the better known the farther from the center, and the worse the sharper the contours
-      // bend towards a vertex.
+      // The accuracy of p grows with the distance from the center and decreases with the curvature
+      // of contours towards a vertex.
       worst.Take(std::abs(before.P(i) - after.P(i)) * before.C(i), 1e-11);
     }
     EXPECT_EQ(wrong, 0) << pairing.Name;
@@ -290,7 +288,7 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
   }
 }
 
-TEST_P(CoordinatesInEverySystem, OutsideAndNotFinite)
+TEST_P(CoordinatesInEverySystem, OutsideAndNonFinitePointsAreMarked)
 {
   const auto mesh = MakePlanarPair(6, 740).Source;
   const double nan = vtkMath::Nan();
@@ -339,7 +337,7 @@ TEST(TriangularCoordinates, EveryKindOfDataKeepsItsType)
               : (axis == 1 ? rectilinear->SetYCoordinates(coordinates)
                            : rectilinear->SetZCoordinates(coordinates));
   }
-  const auto cloud = MakeCloud(mesh, RandomPlaces(mesh, 24, 64));
+  const auto cloud = MakeCloud(mesh, RandomSamples(mesh, 24, 64));
   vtkNew<vtkStructuredGrid> structured;
   structured->SetExtent(5, 8, 0, 5, 3, 3);
   structured->SetPoints(cloud->GetPoints());
@@ -444,12 +442,12 @@ TEST(TriangularCoordinates, WithoutDataTheTriangulationIsTheData)
   }
   EXPECT_FALSE(PointArray(filter->GetTriangulation(), "EdgeLabel"));
   EXPECT_FALSE(mesh->GetCellData()->GetArray("Concordant"));
-  // With data of its own the triangulation's arrays are on output 2 alone.
-  filter->SetDataObject(MakeCloud(mesh, RandomPlaces(mesh, 10, 69)));
+  // If there is data, the arrays of the triangulation are on output 2 only.
+  filter->SetDataObject(MakeCloud(mesh, RandomSamples(mesh, 10, 69)));
   EXPECT_FALSE(Output(filter)->GetCellData()->GetArray("Concordant"));
 }
 
-TEST_P(CoordinatesInEverySystem, EmptyInputsGiveEmptyOutputsQuietly)
+TEST_P(CoordinatesInEverySystem, EmptyInputsGiveEmptyOutputsWithoutErrors)
 {
   const auto mesh = MakePlanarPair(3, 760, 0.05).Source;
   const vtkNew<vtkPolyData> nothing;
@@ -516,7 +514,7 @@ std::vector<Line> ReadLines(vtkPolyData* lines)
   return result;
 }
 
-TEST_P(CoordinatesInEverySystem, LinesAreAllThere)
+TEST_P(CoordinatesInEverySystem, AllLinesExist)
 {
   const auto mesh = MakePlanarPair(4, 770, 0.05).Source;
   vtkNew<vtkCellArray> verts;
@@ -572,7 +570,7 @@ TEST_P(CoordinatesInEverySystem, LinesAreAllThere)
   }
 }
 
-TEST_P(CoordinatesInEverySystem, LinesAreTheCoordinatesTheySay)
+TEST_P(CoordinatesInEverySystem, LinesHaveTheirCoordinates)
 {
   for (const auto& mesh : AllMeshes(780))
   {
@@ -585,7 +583,7 @@ TEST_P(CoordinatesInEverySystem, LinesAreTheCoordinatesTheySay)
     const double size = SizeOf(mesh.second);
     const std::vector<Line> lines = ReadLines(filter->GetLines());
 
-    // Every point of the lines back into the filter.
+    // All points of the lines are input to the filter again.
     vtkNew<vtkPolyData> points;
     points->SetPoints(filter->GetLines()->GetPoints());
     const auto check = MakeCoordinates(GetParam(), mesh.second, points);
@@ -605,7 +603,7 @@ TEST_P(CoordinatesInEverySystem, LinesAreTheCoordinatesTheySay)
           wrong += found.T(first + k) != line.Triangle;
           worst.Take(std::abs(found.C(first + k) - line.C), 1e-12);
         }
-        // The ring goes through all three edges in order, p from 0 to 1 at each.
+        // The closed line passes all three edges in order, with p from 0 to 1 on each.
         for (vtkIdType k = 0; k + 1 < count; ++k)
         {
           const auto edge = static_cast<int>(k / 12) + 1;
@@ -619,7 +617,7 @@ TEST_P(CoordinatesInEverySystem, LinesAreTheCoordinatesTheySay)
       {
         worst.Take(Distance(line.Points.front(), CenterOf(GetParam(), mesh.second, line.Triangle)),
           1e-14 * size);
-        // It ends on the edge at p.
+        // The line ends on the edge at p.
         const std::array<Point, 3> c = CornersOf(mesh.second, line.Triangle);
         const Point end = (1.0 - line.P) * c[line.Edge % 3] + line.P * c[(line.Edge + 1) % 3];
         worst.Take(Distance(line.Points.back(), end), 2e-14 * size);
@@ -645,8 +643,8 @@ TEST_P(CoordinatesInEverySystem, LinesAreTheCoordinatesTheySay)
 
 TEST(TriangularCoordinates, ContoursAreThePublishedConstruction)
 {
-  // Center segments at right angles to the edges, wing segments from the vertices to their middles,
-  // contours that meet the edge at a right angle, evenly divided by arc length.
+  // Center segments are perpendicular to the edges, wing segments join the vertices to their
+  // midpoints, and contours meet the edge at a right angle and are divided evenly by arc length.
   for (const System& system : { Contour, Incenter })
   {
     for (const auto& mesh : AllMeshes(790))
@@ -700,7 +698,7 @@ TEST(TriangularCoordinates, ContoursAreThePublishedConstruction)
           worst.Take(
             std::min(Distance(line.Points.front(), start), Distance(line.Points.front(), end)),
             1e-14 * longest * 4);
-          // Its center segment came before.
+          // Its center segment precedes it.
           const Point middle = 0.5 * (center + feet.at({ line.Triangle, line.Edge }));
           worst.Take(Distance(line.Points.back(), middle), 1e-14 * longest * 4);
         }
@@ -713,7 +711,7 @@ TEST(TriangularCoordinates, ContoursAreThePublishedConstruction)
           {
             turns.push_back(Norm(Cross(Unit(p[k] - p[k - 1]), Unit(p[k + 1] - p[k]))));
           }
-          // Chords of a circle all turn by the same angle; the last one still lacks half of it.
+          // All chords of a circle turn by the same angle; the last one by half of it.
           if (std::abs(turns[n - 1] - turns[n - 2]) < 1e-6 * turns[n - 1])
           {
             ++arcs;
@@ -721,8 +719,8 @@ TEST(TriangularCoordinates, ContoursAreThePublishedConstruction)
                          std::sin(0.5 * std::asin(turns[n - 1]))),
               1e-6);
           }
-          // The first quarter at least of every contour is straight. Its points are evenly spaced
-          // along the line; between them are chords, shorter than their arcs.
+          // At least the first quarter of every contour is straight. Its points are evenly spaced
+          // along the contour; beyond that, chords are shorter than their arcs.
           worst.Take(Norm(Cross(Unit(p[1] - p[0]), Unit(p[n / 4] - p[0]))), 1e-9);
           const double sharpest = *std::max_element(turns.begin(), turns.end());
           for (std::size_t k = 1; k < n; ++k)
@@ -741,8 +739,8 @@ TEST(TriangularCoordinates, ContoursAreThePublishedConstruction)
 
 TEST(TriangularCoordinates, ContoursOfTheSmoothSystemContinueAcrossEdges)
 {
-  // What the Smooth system is for: the contours of two neighbors that end at the same point of
-  // their edge are one smooth line (seen in the plane).
+  // In the Smooth system, the contours of two neighbors that end at the same point of their edge
+  // join smoothly (in the plane).
   const auto mesh = MakePlanarPair(4, 795).Source;
   const auto worstTurn = [&mesh](const System& system, int resolution) {
     const auto filter = MakeCoordinates(system, mesh);
@@ -775,16 +773,16 @@ TEST(TriangularCoordinates, ContoursOfTheSmoothSystemContinueAcrossEdges)
     EXPECT_EQ(pairs, 40 * 3);
     return worst;
   };
-  // The chords' directions approach the lines' as they get shorter.
+  // The directions of the chords converge to those of the lines.
   const double coarse = worstTurn(Smooth, 250);
   EXPECT_LT(coarse, 0.15);
   EXPECT_LT(worstTurn(Smooth, 1000), 0.3 * coarse);
   EXPECT_GT(worstTurn(Linear, 250), 0.5);
 }
 
-// --- Output 2: about the triangles ---------------------------------------------------------------
+// --- Output 2: the triangles ---------------------------------------------------------------------
 
-TEST(TriangularCoordinates, DescriptionOfTheTriangles)
+TEST(TriangularCoordinates, TrianglesAreDescribed)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> meshes;
   for (const auto& mesh : AllMeshes(800))
@@ -810,7 +808,7 @@ TEST(TriangularCoordinates, DescriptionOfTheTriangles)
     ASSERT_TRUE(vtkDoubleArray::SafeDownCast(width));
     ASSERT_EQ(width->GetNumberOfComponents(), 3);
     ASSERT_TRUE(vtkDoubleArray::SafeDownCast(bound));
-    // How many triangles use each edge.
+    // Number of triangles at each edge.
     std::map<std::pair<vtkIdType, vtkIdType>, int> uses;
     vtkNew<vtkIdList> ids;
     const auto key = [&ids](int k) {
@@ -833,7 +831,7 @@ TEST(TriangularCoordinates, DescriptionOfTheTriangles)
       const double a2 = Dot(c[1] - c[2], c[1] - c[2]);
       const double b2 = Dot(c[2] - c[0], c[2] - c[0]);
       const double c2 = Dot(c[0] - c[1], c[0] - c[1]);
-      // a^2 < b^2 + 3 c^2 in any order; differences beyond rounding only.
+      // a^2 < b^2 + 3 c^2 in any order, for differences beyond rounding.
       double slack = std::numeric_limits<double>::max();
       for (const auto& order : { Point{ a2, b2, c2 }, Point{ a2, c2, b2 }, Point{ b2, a2, c2 },
              Point{ b2, c2, a2 }, Point{ c2, a2, b2 }, Point{ c2, b2, a2 } })
@@ -883,7 +881,7 @@ TEST(TriangularCoordinates, DescriptionOfTheTriangles)
     EXPECT_EQ(filter->GetNumberOfDiscordantTriangles(), discordant);
     discordantInAll += discordant;
 
-    // In the other systems every triangle has the system's own coordinates.
+    // In the other systems every triangle has coordinates of that system.
     for (const System& system : { Linear, Smooth, Incenter })
     {
       const auto other = MakeCoordinates(system, mesh);
@@ -898,10 +896,10 @@ TEST(TriangularCoordinates, DescriptionOfTheTriangles)
   EXPECT_GT(discordantInAll, 20);
 }
 
-TEST(TriangularCoordinates, StripsAndBoundsFollowTheirFormulas)
+TEST(TriangularCoordinates, StripWidthsAndBoundsFollowTheirFormulas)
 {
   // Two triangles: (0,0) (1,0) (x,h) and, across the edge from (0,0) to (1,0), (y,-g). For the edge
-  // opposite the apex, D = -a/(a+a*) (apex + apex* - ends), written in the triangle's corners.
+  // opposite the apex, D = -a/(a+a*) (apex + apex* - ends), in barycentric components.
   Random random(70);
   Worst worst;
   for (int n = 0; n < 500; ++n)
@@ -919,9 +917,10 @@ TEST(TriangularCoordinates, StripsAndBoundsFollowTheirFormulas)
     {
       const double own = t == 0 ? h : g;
       const double other = t == 0 ? g : h;
-      const double shift = (t == 0 ? x + y : 2.0 - x - y) - 1.0; // apexes over the middle, summed
+      // sum of the apex positions minus that of the ends
+      const double shift = (t == 0 ? x + y : 2.0 - x - y) - 1.0;
       const double factor = -own / (own + other);
-      // Along the corners: apex first, then the ends (next, previous).
+      // Components for the corners: the apex first, then the ends (next, previous).
       const double along = (own - other) * factor / own;
       const double apexX = t == 0 ? x : 1.0 - y;
       const double previous = factor * shift - along * apexX;
@@ -938,7 +937,7 @@ TEST(TriangularCoordinates, StripsAndBoundsFollowTheirFormulas)
   }
   EXPECT_LE(worst.OverBound, 1.0);
 
-  // A triangle alone is affine.
+  // The chart of a single triangle is affine.
   const auto alone = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } });
   const auto filter = MakeCoordinates(Smooth, alone);
   filter->Update();
@@ -946,7 +945,7 @@ TEST(TriangularCoordinates, StripsAndBoundsFollowTheirFormulas)
     filter->GetTriangulation()->GetCellData()->GetArray("DeterminantBound")->GetRange()[0], 1.0);
 }
 
-TEST(TriangularCoordinates, DiscordantTrianglesAreRefusedOrCarried)
+TEST(TriangularCoordinates, DiscordantTrianglesAreRefusedOrMappedByLinear)
 {
   const auto mesh = Sheared(MakePlanarPair(10, 810).Source);
   vtkNew<vtkTriangularCoordinates> filter;
@@ -958,14 +957,14 @@ TEST(TriangularCoordinates, DiscordantTrianglesAreRefusedOrCarried)
   messages.Clear();
   filter->SetDiscordantTriangles(vtkTriangularCoordinates::USE_LINEAR);
   filter->Update();
-  // Who asks for it is told by an array and a number, not by a warning.
+  // Mapping by Linear was requested, so an array and a count report it, without a warning.
   EXPECT_FALSE(messages.HasError());
   EXPECT_FALSE(messages.HasWarning());
   EXPECT_GT(filter->GetNumberOfDiscordantTriangles(), 0);
 
-  // Triangles carried by Linear have its coordinates.
-  const std::vector<ToSurfacePoint> places = InnerPlaces(mesh, 2000, 71, 1e-3);
-  const auto cloud = MakeCloud(mesh, places);
+  // Triangles mapped by Linear have its coordinates.
+  const std::vector<MeshPoint> samples = InnerSamples(mesh, 2000, 71, 1e-3);
+  const auto cloud = MakeCloud(mesh, samples);
   filter->SetDataObject(cloud);
   filter->Update();
   const auto linear = MakeCoordinates(Linear, mesh, cloud);
@@ -973,19 +972,20 @@ TEST(TriangularCoordinates, DiscordantTrianglesAreRefusedOrCarried)
   const Coordinates all(Output(linear));
   vtkDataArray* used = filter->GetTriangulation()->GetCellData()->GetArray("UsedCoordinateSystem");
   vtkIdType wrong = 0;
-  vtkIdType carried = 0;
+  vtkIdType mapped = 0;
   for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
   {
     if (used->GetComponent(mixed.T(i), 0) == vtkTriangularCoordinates::LINEAR)
     {
-      ++carried;
+      ++mapped;
       wrong += mixed.E(i) != all.E(i) || mixed.P(i) != all.P(i) || mixed.C(i) != all.C(i);
     }
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(carried, 10);
+  EXPECT_GT(mapped, 10);
 
-  // Seen from the incenter none is discordant, though the description still says so.
+  // With the incenter no triangle is discordant, although the description still reports discordance
+  // with respect to the centroid.
   filter->SetDiscordantTriangles(vtkTriangularCoordinates::REFUSE);
   filter->SetCenterPoint(vtkTriangularCoordinates::INCENTER);
   filter->Update();

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What lies across edges, whether a surface has two sides, how neighbors unfold into a triangle's
-// plane, which meshes are planar; and when the homeomorphism is made anew.
+// Adjacency, orientability, unfolding of neighbors, planarity, and caching of the homeomorphism.
 
 #include "MappedPoints.h"
 
@@ -43,7 +42,7 @@ std::vector<Triangulation::Corners> Narrow(const std::vector<Triangle>& triangle
   return narrow;
 }
 
-/// The start and end of an edge in a triangle's cyclic order.
+/// The start and end of an edge in the triangle's cyclic order.
 std::pair<std::int32_t, std::int32_t> EdgeOf(const Triangulation::Corners& corners, int edge)
 {
   return { corners[(edge + 1) % 3], corners[(edge + 2) % 3] };
@@ -129,7 +128,7 @@ TEST(Triangulation, AdjacencyOfRandomTriangles)
     ExpectAdjacency(triangulation, points);
     if (triangulation.GetNumberOfTriangles() > 0)
     {
-      // Found anew after more has been masked.
+      // Recomputed after more triangles have been masked.
       triangulation.Mask(0);
       ExpectAdjacency(triangulation, points);
     }
@@ -174,8 +173,8 @@ TEST(Triangulation, AdjacencyOfMeshes)
 //------------------------------------------------------------------------------------------------
 // Orientability.
 
-/// Whether windings can be chosen for all triangles: none of two that are tied together through a
-/// chain of neighbors may be its own opposite. Disjoint sets of (triangle, side).
+/// Whether the triangles can be oriented consistently: no triangle may be connected to its own
+/// reverse through a chain of neighbors. Disjoint sets of (triangle, orientation).
 bool IsOrientable(const Triangulation& triangulation)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
@@ -206,7 +205,7 @@ bool IsOrientable(const Triangulation& triangulation)
   return true;
 }
 
-/// A strip of triangles closed to a ring, which has one side if the number of points is odd.
+/// A strip of triangles closed to a ring, which is non-orientable if the number of points is odd.
 std::vector<Triangulation::Corners> ClosedStrip(std::int32_t points)
 {
   std::vector<Triangulation::Corners> triangles;
@@ -227,7 +226,7 @@ TEST(Triangulation, OrientabilityOfRandomTriangles)
     std::uniform_int_distribution<std::int32_t> point(0, points - 1);
     std::vector<Triangulation::Corners> triangles;
     Triangulation triangulation;
-    // Grows a surface without crowded edges.
+    // Grows a surface without non-manifold edges.
     for (int attempt = 0; attempt < 40; ++attempt)
     {
       const Triangulation::Corners t{ point(generator), point(generator), point(generator) };
@@ -265,7 +264,7 @@ TEST(Triangulation, ClosedStrips)
       EXPECT_TRUE(found.empty());
       continue;
     }
-    // The two triangles at the one edge where the windings clash, in ascending order.
+    // The two triangles at the only edge with inconsistent windings, in ascending order.
     ASSERT_EQ(2u, found.size());
     EXPECT_LT(found[0], found[1]);
     triangulation.Mask(found[0]);
@@ -277,7 +276,7 @@ TEST(Triangulation, ClosedStrips)
 //------------------------------------------------------------------------------------------------
 // Unfolding.
 
-TEST(Triangulation, UnfoldedNeighboursKeepTheirLengths)
+TEST(Triangulation, UnfoldedNeighborsKeepTheirLengths)
 {
   std::mt19937_64 generator(4);
   double worst = 0.0;
@@ -318,7 +317,8 @@ TEST(Triangulation, UnfoldedNeighboursKeepTheirLengths)
           continue;
         }
         ++neighborsSeen;
-        // Along the edge of this triangle, from its start: the neighbor's apex is on the far side.
+        // Along the edge of this triangle, from its start: the apex of the neighbor is on the other
+        // side.
         const auto edge = EdgeOf(triangulation.GetCorners(t), k);
         const std::int32_t apex = triangulation.GetCorners(across.Triangle)[across.Edge];
         const EdgeView& view = neighbors[k].View;
@@ -384,7 +384,7 @@ bool IsPlanar(
   return MeshGeometry(stored, triangulation).IsPlanar();
 }
 
-TEST(Planes, RotatedAndShiftedPlanesArePlanes)
+TEST(Planes, RotatedAndShiftedPlanesArePlanar)
 {
   std::mt19937_64 generator(5);
   std::uniform_real_distribution<double> logarithm(-6.0, 6.0);
@@ -411,9 +411,9 @@ TEST(Planes, RotatedAndShiftedPlanesArePlanes)
   }
 }
 
-TEST(Planes, SlightlyBentPlanesAreNot)
+TEST(Planes, SlightlyBentPlanesAreNotPlanar)
 {
-  // One point off the plane by a few dozen units in the last place, in double and in float.
+  // One point off the plane by a few dozen ulp, in double and in float.
   std::mt19937_64 generator(6);
   std::uniform_int_distribution<std::size_t> any(0, 48);
   for (int n = 0; n < 2000; ++n)
@@ -449,7 +449,7 @@ TEST(Planes, PlanesParallelToTwoAxesAreDecidedExactly)
   }
 }
 
-TEST(Planes, APointThatNoTriangleUsesDoesNotBendAPlane)
+TEST(Planes, UnusedPointsDoNotAffectPlanarity)
 {
   std::vector<Point> points = GridPoints(4, 8, 0.2);
   points.push_back({ 1.0, 1.0, 1.0 });
@@ -465,7 +465,7 @@ TEST(Planes, OneTriangleIsPlanar)
   EXPECT_TRUE(IsPlanar({}, {}, false));
 }
 
-TEST(Planes, WorkingCoordinatesAndBack)
+TEST(Planes, NormalizedCoordinatesReturn)
 {
   std::mt19937_64 generator(9);
   double worst = 0.0;
@@ -496,7 +496,7 @@ TEST(Planes, WorkingCoordinatesAndBack)
       geometry.FromNormalized(normalized, back.data());
       if (n % 2 == 0)
       {
-        // No rounding in a plane parallel to two axes.
+        // A plane parallel to two axes involves no rounding.
         EXPECT_EQ(points[i], back);
       }
       worst = std::max(worst, DistanceOf(points[i], back) * geometry.GetScale());
@@ -565,14 +565,14 @@ TEST_F(Cache, IsKeptWhenOtherArraysChange)
     this->ExpectKept("the data object");
     EXPECT_EQ(this->Current, this->Last);
   }
-  // Pipelines hand on shallow copies.
+  // Pipelines pass shallow copies on.
   const auto copy = vtkSmartPointer<vtkPolyData>::New();
   copy->ShallowCopy(this->Pair.Source);
   this->Pair.Source = copy;
   this->ExpectKept("a shallow copy");
 }
 
-TEST_F(Cache, IsMadeAnewWhenPointsChange)
+TEST_F(Cache, IsRebuiltWhenPointsChange)
 {
   for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
   {
@@ -588,7 +588,7 @@ TEST_F(Cache, IsMadeAnewWhenPointsChange)
   }
 }
 
-TEST_F(Cache, IsMadeAnewWhenCellsChange)
+TEST_F(Cache, IsRebuiltWhenCellsChange)
 {
   for (const bool inSource : { true, false })
   {
@@ -605,9 +605,9 @@ TEST_F(Cache, IsMadeAnewWhenCellsChange)
   }
 }
 
-TEST_F(Cache, IsMadeAnewWhenCellsChangeInPlace)
+TEST_F(Cache, IsRebuiltWhenCellsChangeInPlace)
 {
-  // As VTK's users do: change the cells, then call Modified.
+  // As in user code: change the cells, then call Modified.
   for (const bool inSource : { true, false })
   {
     vtkPolyData* mesh = inSource ? this->Pair.Source : this->Pair.Target;
@@ -619,7 +619,7 @@ TEST_F(Cache, IsMadeAnewWhenCellsChangeInPlace)
   }
 }
 
-TEST_F(Cache, IsMadeAnewWhenCellsAreAppendedInPlace)
+TEST_F(Cache, IsRebuiltWhenCellsAreAppendedInPlace)
 {
   for (const bool inSource : { true, false })
   {
@@ -632,7 +632,7 @@ TEST_F(Cache, IsMadeAnewWhenCellsAreAppendedInPlace)
   }
 }
 
-TEST_F(Cache, IsMadeAnewWhenGhostsChange)
+TEST_F(Cache, IsRebuiltWhenGhostsChange)
 {
   for (const bool ofCells : { true, false })
   {
@@ -659,7 +659,7 @@ TEST_F(Cache, IsMadeAnewWhenGhostsChange)
   }
 }
 
-TEST_F(Cache, IsMadeAnewWhenOptionsChange)
+TEST_F(Cache, IsRebuiltWhenOptionsChange)
 {
   this->Options.System = homeomorphism::CoordinateSystem::Contour;
   this->ExpectMadeAnew("system");
@@ -671,7 +671,7 @@ TEST_F(Cache, IsMadeAnewWhenOptionsChange)
   this->ExpectMadeAnew("discordant");
 }
 
-TEST_F(Cache, IsMadeAnewForOtherMeshes)
+TEST_F(Cache, IsRebuiltForOtherMeshes)
 {
   std::swap(this->Pair.Source, this->Pair.Target);
   this->ExpectMadeAnew("exchanged");
@@ -682,7 +682,7 @@ TEST_F(Cache, IsMadeAnewForOtherMeshes)
   this->ExpectMadeAnew("equal, but other objects");
 }
 
-TEST_F(Cache, RemembersARefusalToo)
+TEST_F(Cache, KeepsRefusals)
 {
   MovePoint(this->Pair.Source, 0, { 1e3, 1e3, 0.0 });
   this->ExpectMadeAnew("spoilt");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file AdjacentTriangles.h
-/// Two triangles on the two sides of an edge, for tests of what happens across it.
+/// Two triangles with a common edge, for tests of derivatives across the edge.
 
 #ifndef AdjacentTriangles_h
 #define AdjacentTriangles_h
@@ -12,15 +12,15 @@
 namespace homeomorphism_test
 {
 
-/// The edge from Start to End with a triangle to its left, the first, and one to its right, the
-/// second. In both the shared edge is opposite corner 2; it runs from corner 0 to corner 1 in the
-/// first and from corner 1 to corner 0 in the second.
+/// The edge from Start to End, the first triangle to its left and the second to its right. The
+/// shared edge is opposite corner 2 in both. It runs from corner 0 to corner 1 in the first and
+/// from corner 1 to corner 0 in the second.
 struct AdjacentTriangles
 {
   Vector2 Start;
   Vector2 End;
-  PlacedTriangle First;
-  PlacedTriangle Second;
+  PlaneTriangle First;
+  PlaneTriangle Second;
 
   AdjacentTriangles(
     const Vector2& start, const Vector2& end, const Vector2& left, const Vector2& right)
@@ -32,7 +32,7 @@ struct AdjacentTriangles
   }
 
   Vector2 Tangent() const { return (1.0 / this->Length()) * (this->End - this->Start); }
-  /// Into the first triangle.
+  /// The unit normal of the edge, pointing into the first triangle.
   Vector2 Normal() const
   {
     const Vector2 tangent = this->Tangent();
@@ -41,7 +41,7 @@ struct AdjacentTriangles
   double Length() const { return Norm(this->End - this->Start); }
   Vector2 At(double w) const { return (1.0 - w) * this->Start + w * this->End; }
 
-  /// The charts of the two triangles in the Smooth system, which have no other neighbors.
+  /// The Smooth charts of the two triangles, which have no other neighbors.
   std::array<SmoothChart, 2> SmoothCharts() const
   {
     const EdgeViews first = this->First.Views();
@@ -58,7 +58,7 @@ inline std::array<Barycentric, 2> OnSharedEdge(double w)
   return { Barycentric{ 1.0 - w, w, 0.0 }, Barycentric{ w, 1.0 - w, 0.0 } };
 }
 
-/// Two triangles about as large as each other.
+/// Two triangles of similar size.
 inline AdjacentTriangles ModerateAdjacentTriangles(RandomNumbers& random)
 {
   const double angle = random.Uniform(0.0, 6.283185307179586);
@@ -72,8 +72,8 @@ inline AdjacentTriangles ModerateAdjacentTriangles(RandomNumbers& random)
     surfacePoint(random.Uniform(-0.2, 1.2), -random.Uniform(0.4, 1.5)) };
 }
 
-/// Two triangles of which one is up to a million times larger than the other, with apexes up to
-/// twenty edge lengths aside.
+/// Two triangles, one up to a million times larger than the other, with apexes up to twenty edge
+/// lengths aside.
 inline AdjacentTriangles AnyAdjacentTriangles(RandomNumbers& random)
 {
   const double angle = random.Uniform(0.0, 6.283185307179586);

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RandomTriangles.h
-/// Random triangles, neighbors and points for the property tests. Everything follows from a seed,
-/// on every platform: the distributions of the standard library would not.
+/// Random triangles, neighbors and points for property tests. All values follow from the seed on
+/// every platform, unlike those of the distributions of the standard library.
 
 #ifndef RandomTriangles_h
 #define RandomTriangles_h
 
-#include "PlacedTriangle.h"
+#include "PlaneTriangle.h"
 
 #include "Kernel/ContourChart.h"
 #include "Kernel/ExactSign.h"
@@ -40,7 +40,7 @@ public:
   /// Uniform in [0, 1).
   double Uniform() { return std::ldexp(static_cast<double>(this->Engine() >> 11), -53); }
   double Uniform(double lower, double upper) { return lower + (upper - lower) * this->Uniform(); }
-  /// 10 to a power that is uniform between the two given.
+  /// 10 to a power that is uniform between the two arguments.
   double PowerOfTen(double lower, double upper)
   {
     return std::pow(10.0, this->Uniform(lower, upper));
@@ -53,7 +53,7 @@ public:
   int Integer(int least, int greatest) { return least + this->Below(greatest - least + 1); }
   bool Chance(double probability) { return this->Uniform() < probability; }
 
-  /// In [0, 1], as often anywhere as within any power of ten of either end.
+  /// In [0, 1], with the exponents of the distances to both ends uniformly distributed.
   double Proportion()
   {
     switch (this->Below(6))
@@ -75,9 +75,9 @@ private:
 
 using Corners = std::array<Vector2, 3>;
 
-/// The triangle with base from (0, 0) to (1, 0) and this apex, turned, scaled and with its corners
-/// renumbered at random.
-inline Corners Placed(RandomNumbers& random, const Vector2& apex, double scale)
+/// The triangle with base from (0, 0) to (1, 0) and this apex, rotated and scaled, with randomly
+/// numbered corners.
+inline Corners Moved(RandomNumbers& random, const Vector2& apex, double scale)
 {
   const double angle = random.Uniform(0.0, 6.283185307179586);
   // One in four stays axis-parallel, where coordinates are exact.
@@ -93,17 +93,17 @@ inline Corners Placed(RandomNumbers& random, const Vector2& apex, double scale)
   return { corners[first], corners[NextCorner(first)], corners[PreviousCorner(first)] };
 }
 
-/// Neither flat nor sharp: the apex of the longest edge is at least a quarter of it high.
+/// The height over the longest edge is at least a quarter of that edge.
 inline Corners FatTriangle(RandomNumbers& random)
 {
   const Vector2 apex{ random.Uniform(0.1, 0.9), random.Uniform(0.25, 0.86) };
-  return Placed(random, apex, random.PowerOfTen(-0.5, 0.5));
+  return Moved(random, apex, random.PowerOfTen(-0.5, 0.5));
 }
 
-/// From fat to needles whose height is a millionth of their longest edge.
+/// From fat triangles to needles with a height of a millionth of the longest edge.
 inline Corners AnyTriangle(RandomNumbers& random)
 {
-  return Placed(
+  return Moved(
     random, { random.Proportion(), random.PowerOfTen(-6.0, -0.07) }, random.PowerOfTen(-3.0, 3.0));
 }
 
@@ -122,8 +122,8 @@ inline Corners FatConcordantTriangle(RandomNumbers& random)
   return corners;
 }
 
-/// Concordant triangles of all kinds: fat ones, flat caps and tall needles down to a millionth, and
-/// triangles of each kind that are concordant by one bit only.
+/// Concordant triangles: fat ones, flat caps and tall needles down to a millionth, and triangles of
+/// each kind that one bit separates from discordant ones.
 inline Corners ConcordantTriangle(RandomNumbers& random)
 {
   for (;;)
@@ -139,7 +139,7 @@ inline Corners ConcordantTriangle(RandomNumbers& random)
     }
     else if (kind == 1)
     {
-      // A flat cap is concordant where |x - 1/2| < 2 thin^2, roughly.
+      // A flat cap is concordant approximately for |x - 1/2| < 2 thin^2.
       apex = { 0.5 + random.Uniform(-2.5, 2.5) * thin * thin, thin };
     }
     else
@@ -147,15 +147,15 @@ inline Corners ConcordantTriangle(RandomNumbers& random)
       // With the short edge as unit, a tall needle is concordant for -1 < x < 2.
       apex = { random.Chance(0.3) ? 0.5 : random.Uniform(-1.2, 2.2), 1.0 / thin };
     }
-    corners = Placed(random, apex, kind == 2 ? scale * thin : scale);
+    corners = Moved(random, apex, kind == 2 ? scale * thin : scale);
     if (!IsConcordant(corners))
     {
       continue;
     }
     if (random.Chance(0.25))
     {
-      // Slide a corner along another edge until the triangle is discordant, then halve the way
-      // between until no double is left: the last concordant triangle.
+      // Move a corner along another edge until the triangle is discordant, then bisect down to
+      // adjacent doubles. The result is the last concordant triangle.
       const int k = random.Below(3);
       const Vector2 inside = corners[k];
       const Vector2 slide = 8.0 * (corners[NextCorner(k)] - corners[PreviousCorner(k)]);
@@ -173,8 +173,8 @@ inline Corners ConcordantTriangle(RandomNumbers& random)
   }
 }
 
-/// A neighbor across an edge that sees the triangle as @a own: up to a million times lower or
-/// higher, its apex up to twenty edge lengths aside. One in eight is missing.
+/// A neighbor across an edge from which the triangle has the view @a own: up to a million times
+/// lower or higher, with its apex up to twenty edge lengths aside. One in eight is missing.
 inline Neighbor AnyNeighbor(RandomNumbers& random, const EdgeView& own)
 {
   if (random.Chance(0.125))
@@ -196,7 +196,7 @@ inline std::array<Neighbor, 3> AnyNeighbors(RandomNumbers& random, const EdgeVie
     AnyNeighbor(random, views[2]) };
 }
 
-/// Neighbors about as large as the triangle.
+/// Neighbors of a size similar to that of the triangle.
 inline std::array<Neighbor, 3> ModerateNeighbors(RandomNumbers& random, const EdgeViews& views)
 {
   std::array<Neighbor, 3> neighbors;
@@ -235,14 +235,14 @@ inline Barycentric OnStripBorder(int k, double tau, double proportion)
   return l;
 }
 
-/// The systems, each with what makes a chart of it, so that a test can run over all of them.
+/// The coordinate systems with the construction of their charts, for tests over all systems.
 struct LinearSystem
 {
   using Chart = LinearChart;
   static constexpr const char* Name = "Linear";
   static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
   static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
-  static Chart Make(RandomNumbers&, const PlacedTriangle& t, bool) { return Chart(t.Shape); }
+  static Chart Make(RandomNumbers&, const PlaneTriangle& t, bool) { return Chart(t.Shape); }
 };
 
 struct ContourSystem
@@ -251,7 +251,7 @@ struct ContourSystem
   static constexpr const char* Name = "Contour";
   static Corners Any(RandomNumbers& random) { return ConcordantTriangle(random); }
   static Corners Fat(RandomNumbers& random) { return FatConcordantTriangle(random); }
-  static Chart Make(RandomNumbers&, const PlacedTriangle& t, bool)
+  static Chart Make(RandomNumbers&, const PlaneTriangle& t, bool)
   {
     return Chart(t.Shape, t.Views());
   }
@@ -263,7 +263,7 @@ struct IncenterSystem
   static constexpr const char* Name = "Contour from the incenter";
   static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
   static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
-  static Chart Make(RandomNumbers&, const PlacedTriangle& t, bool)
+  static Chart Make(RandomNumbers&, const PlaneTriangle& t, bool)
   {
     return Chart(t.Shape, t.Views(), CenterPoint::Incenter);
   }
@@ -275,7 +275,7 @@ struct SmoothSystem
   static constexpr const char* Name = "Smooth";
   static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
   static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
-  static Chart Make(RandomNumbers& random, const PlacedTriangle& t, bool moderate)
+  static Chart Make(RandomNumbers& random, const PlaneTriangle& t, bool moderate)
   {
     const EdgeViews views = t.Views();
     return Chart(
@@ -283,7 +283,7 @@ struct SmoothSystem
   }
 };
 
-/// Names the tests over all systems.
+/// Names of the typed tests.
 struct SystemName
 {
   template <typename System>
@@ -295,8 +295,9 @@ struct SystemName
   }
 };
 
-/// The largest |D ToPoint| / longest edge at a reference point, at least 1: by it the Smooth chart
-/// magnifies the rounding of (e, p, c) beside a neighbor that is far sheared or far larger.
+/// The largest |D ToPoint| / longest edge at a reference point, at least 1. This is the factor by
+/// which the Smooth chart magnifies the rounding of (e, p, c) beside a sheared or far larger
+/// neighbor.
 template <typename Chart>
 double Magnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
 {
@@ -313,7 +314,7 @@ inline double Magnification(
     direction[NextCorner(k)] = -1.0;
     direction[PreviousCorner(k)] = 1.0;
     largest = std::max(largest, Norm(chart.Pushforward(l, direction)));
-    // Between the two corners' directions: across the edge.
+    // Between the directions of the two corners: across the edge.
     direction = { -0.5, -0.5, -0.5 };
     direction[k] = 1.0;
     largest = std::max(largest, Norm(chart.Pushforward(l, direction)));
@@ -321,8 +322,8 @@ inline double Magnification(
   return std::max(1.0, largest / shape.Base);
 }
 
-/// The largest |D ToReference| longest edge: by it the Smooth chart magnifies the rounding of a
-/// point beside a far smaller neighbor.
+/// The largest |D ToReference| times the longest edge. This is the factor by which the Smooth chart
+/// magnifies the rounding of a point beside a far smaller neighbor.
 template <typename Chart>
 double InverseMagnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
 {
@@ -332,7 +333,7 @@ double InverseMagnification(const Chart&, const TriangleShape&, const typename C
 inline double InverseMagnification(
   const SmoothChart& chart, const TriangleShape& shape, const Barycentric& l)
 {
-  // Directions as the affine chart sees them, so that a needle counts as any other triangle.
+  // Use directions of the affine chart, so that the shape of the triangle does not matter.
   double largest = 0.0;
   for (int k = 0; k < 3; ++k)
   {
@@ -346,8 +347,8 @@ inline double InverseMagnification(
   return std::max(1.0, largest);
 }
 
-/// A triangle's corners and a point in it, with all digits, for messages.
-inline std::string Description(const PlacedTriangle& t, const Vector2& inFrame)
+/// Prints the corners of a triangle and a point of it with all digits.
+inline std::string Description(const PlaneTriangle& t, const Vector2& inFrame)
 {
   char text[1024];
   std::snprintf(text, sizeof(text),

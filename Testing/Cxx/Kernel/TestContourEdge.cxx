@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The Contour system across a shared edge: differentiable it is not, and by how much follows from
-// the lengths of the contours that end there.
+// The Contour system is not differentiable across a shared edge. The jump follows from the lengths
+// of the contours that end there.
 
 #include "AdjacentTriangles.h"
 
@@ -30,7 +30,7 @@ AdjacentTriangles ConcordantPair(RandomNumbers& random)
   }
 }
 
-/// The pair turned, scaled and moved.
+/// The pair after rotation, scaling and translation.
 AdjacentTriangles SimilarPair(RandomNumbers& random, const AdjacentTriangles& pair)
 {
   const double scale = random.PowerOfTen(-1.0, 1.0);
@@ -50,12 +50,12 @@ std::array<ContourChart, 2> Charts(const AdjacentTriangles& pair, CenterPoint ce
     ContourChart(pair.Second.Shape, pair.Second.Views(), center) };
 }
 
-/// What the two sides of the edge say of the map's derivative at one point.
+/// The derivatives of the map from the two sides of the edge at one point.
 struct BothSides
 {
   Matrix2 First;
   Matrix2 Second;
-  /// Ratios of the contours' lengths.
+  /// Ratios of contour lengths.
   double FirstRatio;
   double SecondRatio;
 
@@ -91,7 +91,7 @@ TEST(ContourEdge, JumpIsTheDifferenceOfLengthRatios)
     const double expected = std::abs(at.FirstRatio - at.SecondRatio);
     worst = std::max(worst, std::abs(at.Jump() - expected) / Norm(at.First));
     largestJump = std::max(largestJump, expected);
-    // It is all in what becomes of the normal, and that stays normal to the edge.
+    // The derivatives differ only in the image of the normal, which stays normal to the edge.
     const Vector2 jumpOfTangent = Times(at.First - at.Second, p.Tangent());
     const Vector2 jumpOfNormal = Times(at.First - at.Second, p.Normal());
     const Vector2 expectedJump = (at.FirstRatio - at.SecondRatio) * q.Normal();
@@ -105,10 +105,9 @@ TEST(ContourEdge, JumpIsTheDifferenceOfLengthRatios)
   EXPECT_GT(largestJump, 0.5);
 }
 
-TEST(ContourEdge, JumpIsSeenFromThePointsAlone)
+TEST(ContourEdge, JumpIsMeasuredFromMappedPoints)
 {
-  // The derivative across the edge from each side, by one-sided differences of mapped points with
-  // an error of order h^3.
+  // One-sided differences of mapped points across the edge, with an error of order h^3.
   RandomNumbers random(62);
   double worst = 0.0;
   for (int n = 0; n < 5000; ++n)
@@ -120,8 +119,8 @@ TEST(ContourEdge, JumpIsSeenFromThePointsAlone)
     const std::array<ContourChart, 2> chartsP = Charts(p, center);
     const std::array<ContourChart, 2> chartsQ = Charts(q, center);
     const auto derivative = [&](int side) {
-      const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
-      const PlacedTriangle& image = side == 0 ? q.First : q.Second;
+      const PlaneTriangle& triangle = side == 0 ? p.First : p.Second;
+      const PlaneTriangle& image = side == 0 ? q.First : q.Second;
       const double h = 2e-5 * p.Length();
       const auto map = [&](double distance) {
         const Vector2 at = p.At(w) + (side == 0 ? distance : -distance) * p.Normal();
@@ -159,8 +158,8 @@ TEST(ContourEdge, NoJumpBetweenSimilarPairs)
 
 TEST(ContourEdge, NoJumpBetweenMirrorImages)
 {
-  // If each triangle is the mirror image of its neighbor the contours that meet are as long as
-  // each other, in P and in Q.
+  // If each triangle is the mirror image of its neighbor, contours that meet have the same length,
+  // in P and in Q.
   RandomNumbers random(64);
   double worst = 0.0;
   const auto mirrored = [](const AdjacentTriangles& pair) -> AdjacentTriangles {

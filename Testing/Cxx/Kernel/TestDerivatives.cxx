@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The closed-form derivatives: against finite differences, as inverse of each other, and against
-// what the construction says of the Contour system.
+// The closed-form derivatives agree with finite differences, are inverse to each other, and satisfy
+// the definition of the Contour system.
 
 #include "RandomTriangles.h"
 
@@ -22,7 +22,7 @@ using namespace homeomorphism_test;
 template <typename System>
 struct Domain
 {
-  PlacedTriangle Triangle;
+  PlaneTriangle Triangle;
   typename System::Chart Chart;
 
   Domain(RandomNumbers& random, bool fat)
@@ -32,7 +32,7 @@ struct Domain
   }
 };
 
-/// Which of the regions in which a chart is one analytic function a point is in.
+/// The region, of those in which a chart is one analytic function, that contains a point.
 int RegionOf(const LinearChart&, const TriangleShape&, const Vector2&)
 {
   return 0;
@@ -82,13 +82,13 @@ Vector2 CenterOf(const ContourChart& chart, const TriangleShape&)
 struct Quotient
 {
   Vector2 Value;
-  /// What the last extrapolation changed: far more than it left.
+  /// The change made by the last extrapolation, which is far larger than the remaining error.
   double Change;
 };
 
-/// Column @a axis of the map's derivative by central differences with the steps h, h / 2 and h / 4,
-/// extrapolated twice: the error is of order h^6. False if the points used are not in one region,
-/// of either triangle, or too near the center and the vertices, where derivatives grow.
+/// Column @a axis of the derivative of the map, by central differences with the steps h, h / 2 and
+/// h / 4, extrapolated twice: the error is of order h^6. False if the points used are not in one
+/// region of either triangle, or too close to the center or to a vertex, where derivatives grow.
 template <typename System>
 bool Differences(const Domain<System>& from, const Domain<System>& to, const Vector2& point,
   int axis, Quotient& result)
@@ -146,7 +146,7 @@ using Systems = testing::Types<LinearSystem, ContourSystem, IncenterSystem, Smoo
 
 TYPED_TEST_SUITE(Derivatives, Systems, SystemName);
 
-TYPED_TEST(Derivatives, MatchDifferences)
+TYPED_TEST(Derivatives, AgreeWithFiniteDifferences)
 {
   RandomNumbers random(41);
   double worst = 0.0;
@@ -170,8 +170,8 @@ TYPED_TEST(Derivatives, MatchDifferences)
       const double norm = Norm(derivative);
       const double error = Norm(Matrix2{ found[0].Value, found[1].Value } - derivative) / norm;
       const double change = std::max(found[0].Change, found[1].Change) / norm;
-      // Beside an edge and a wing segment the derivative may change within a few steps; elsewhere
-      // the step is so small that rounding, an ulp over the step, is all.
+      // Beside an edge and a wing segment the derivative may change within a few steps. Elsewhere
+      // the step is so small that only rounding matters, an ulp divided by the step.
       sharp += change < 1e-9;
       const double allowed = change + 64.0 * Ulp / 5e-5;
       if (!(error / allowed <= worst))
@@ -189,7 +189,7 @@ TYPED_TEST(Derivatives, MatchDifferences)
   EXPECT_LT(worst, 0.2) << where;
 }
 
-TYPED_TEST(Derivatives, PullIsTheInverseOfPush)
+TYPED_TEST(Derivatives, PullbackIsTheInverseOfPushforward)
 {
   RandomNumbers random(42);
   double worst = 0.0;
@@ -201,8 +201,8 @@ TYPED_TEST(Derivatives, PullIsTheInverseOfPush)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
       const auto reference = p.Chart.ToReference(point);
-      // Contour directions are measured against p, whose unit is an edge that may be short: an
-      // error relative to the largest component is what can be had.
+      // Contour directions are measured against p, whose unit is the edge, which may be short. The
+      // error is therefore relative to the largest component.
       const Matrix2 identity = MapDerivative(p.Chart, p.Chart, reference);
       const double error = Norm(identity - Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } });
       const double condition = p.Triangle.Shape.Base / p.Triangle.Shape.Height *
@@ -236,7 +236,7 @@ TYPED_TEST(Derivatives, DeterminantIsPositive)
         random.Uniform(1e-9, 1.0 - 1e-9), random.Chance(0.2) ? 1e-9 * c : c };
       const auto reference = p.Chart.FromCoordinates(coordinates);
       const Matrix2 derivative = MapDerivative(p.Chart, q.Chart, reference);
-      // Written so that a NaN counts.
+      // Negated so that NaN fails.
       if (!(derivative.Determinant() > 0.0))
       {
         ++wrong;
@@ -278,18 +278,19 @@ TYPED_TEST(ContourDerivatives, ContourParameterIsArcLength)
       shortest = std::min(shortest, chord);
       last = next;
     }
-    // A chord is shorter than its arc by the share angle^2 / 24, the angles of all of them summing
-    // to less than a right one, though not evenly: the arc may be a small part of the contour.
+    // A chord is shorter than its arc by the share angle^2 / 24. The angles sum to less than a
+    // right angle but may be unevenly distributed, since the arc may be a small part of the
+    // contour.
     const double expected = p.Chart.ContourLength(e, t);
     EXPECT_NEAR(length, expected, 1e-4 * expected);
     EXPECT_GT(shortest, (1.0 - 0.05) * longest);
   }
 }
 
-TYPED_TEST(ContourDerivatives, DirectionIsThatOfCoordinates)
+TYPED_TEST(ContourDerivatives, DirectionsAreRatesOfCoordinates)
 {
-  // The map's derivative does not tell in which units directions are; their definition does: x is
-  // the change of c, y is c times the change of p.
+  // The derivative of the map does not depend on the units of directions. Their definition fixes
+  // these units: x is the change of c, y is c times the change of p.
   RandomNumbers random(48);
   double worst = 0.0;
   int compared = 0;
@@ -304,7 +305,7 @@ TYPED_TEST(ContourDerivatives, DirectionIsThatOfCoordinates)
         (p.Chart.ToPoint({ e, t + byP * h, c + byC * h }) -
           p.Chart.ToPoint({ e, t - byP * h, c - byC * h }));
     };
-    // Where both steps give the same no formula changes in between.
+    // Equal values for both steps exclude a change of formula in between.
     const double h = 1e-4;
     for (const Vector2& direction : { Vector2{ 1.0, 0.0 }, Vector2{ 0.0, 1.0 } })
     {
@@ -338,20 +339,21 @@ TYPED_TEST(ContourDerivatives, ContourIsStraightThenAnArcAtARightAngle)
     const Vector2 edge = shape.Corner(PreviousCorner(e - 1)) - shape.Corner(NextCorner(e - 1));
     const Vector2 tangent = (1.0 / Norm(edge)) * edge;
     const auto speed = [&](double c) { return p.Chart.Pushforward({ e, t, c }, { 1.0, 0.0 }); };
-    // The arc length is the parameter, and at the edge the contour points straight out.
+    // Arc length is proportional to the parameter, and at the edge the contour is perpendicular to
+    // it.
     for (const double c : { 0.0, random.Uniform(), 1.0 })
     {
       EXPECT_NEAR(Norm(speed(c)), length, 1e-13 * length);
     }
     EXPECT_NEAR(Dot(speed(1.0), tangent), 0.0, 1e-13 * length);
     EXPECT_LT(Cross(tangent, speed(1.0)), 0.0);
-    // It starts at the center, along the straight line to the wing segment.
+    // The contour starts at the center and is straight up to the wing segment.
     const Vector2 start = p.Chart.ToPoint({ e, t, 0.0 });
     EXPECT_LT(Norm(start - p.Chart.Center()), 1e-14 * shape.Base);
 
-    // Where the direction starts to turn the contour meets the wing segment. A half of its turning
-    // is at the middle of the arc, so the arc's length follows from the radius: none is assumed
-    // here but that the direction turns at a constant rate from some c to 1.
+    // The contour meets the wing segment where its direction starts to turn. Half of the turning is
+    // reached in the middle of the arc, so the length of the arc follows from its radius. The only
+    // assumption is that the direction turns at a constant rate from some c to 1.
     const Vector2 first = speed(0.0);
     const double turn = std::abs(std::atan2(Cross(first, speed(1.0)), Dot(first, speed(1.0))));
     constexpr double nearEnd = 0.999;
@@ -370,7 +372,7 @@ TYPED_TEST(ContourDerivatives, ContourIsStraightThenAnArcAtARightAngle)
     const Vector2 wing = p.Chart.ToPoint({ e, t, cOfWing });
     EXPECT_NEAR(
       Cross(corner - middle, wing - middle) / Norm(corner - middle), 0.0, 1e-8 * shape.Base);
-    // Straight before.
+    // The contour is straight before that point.
     const Vector2 before = speed(0.99 * cOfWing);
     EXPECT_NEAR(Cross(first, before), 0.0, 1e-13 * length * length);
   }
@@ -386,7 +388,7 @@ TYPED_TEST(ContourDerivatives, OnAnEdge)
     const Domain<TypeParam> q(random, true);
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.001, 0.999);
-    const auto tangentOf = [e](const PlacedTriangle& triangle) {
+    const auto tangentOf = [e](const PlaneTriangle& triangle) {
       return triangle.Shape.Corner(PreviousCorner(e - 1)) -
         triangle.Shape.Corner(NextCorner(e - 1));
     };
@@ -410,7 +412,7 @@ TYPED_TEST(ContourDerivatives, OnAnEdge)
   EXPECT_LT(worst, 1e-13);
 }
 
-TYPED_TEST(ContourDerivatives, ContourLengthDerivativeMatchesDifferences)
+TYPED_TEST(ContourDerivatives, ContourLengthDerivativeAgreesWithFiniteDifferences)
 {
   RandomNumbers random(47);
   double worst = 0.0;
@@ -420,7 +422,7 @@ TYPED_TEST(ContourDerivatives, ContourLengthDerivativeMatchesDifferences)
     const int e = random.Integer(1, 3);
     const double t = random.Uniform(0.01, 0.99);
     const double h = 1e-4;
-    // The center segment's end is a point where the length's third derivative jumps.
+    // The third derivative of the length jumps at the end of the center segment.
     const Vector2 foot = p.Chart.Foot(e) - p.Triangle.Shape.Corner(NextCorner(e - 1));
     const Vector2 edge =
       p.Triangle.Shape.Corner(PreviousCorner(e - 1)) - p.Triangle.Shape.Corner(NextCorner(e - 1));

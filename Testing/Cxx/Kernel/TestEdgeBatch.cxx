@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What edges see, found for many at once, is what is found for one: to the same bits, whatever the
-// number of edges and the size of the triangles.
+// Batches of edge views equal single edge views to the same bits, for any number of edges and any
+// size of triangles.
 
 #include "Kernel/Simd/EdgeBatch.h"
 
@@ -46,7 +46,7 @@ struct RandomEdges
   }
 };
 
-/// Equal, or neither is a number, as where all three points are one.
+/// Equal, or both NaN, as for three coincident points.
 void ExpectSame(double expected, double actual)
 {
   if (!std::isnan(expected) || !std::isnan(actual))
@@ -55,7 +55,7 @@ void ExpectSame(double expected, double actual)
   }
 }
 
-TEST(EdgeBatchSize, ViewsAndStripsAreThoseOfSingleEdges)
+TEST(EdgeBatchSize, BatchesEqualSingleEdges)
 {
   std::mt19937_64 generator(11);
   for (int n = 0; n < 2000; ++n)

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What makes the triangles' maps one homeomorphism of meshes: edges are mapped linearly and
-// vertices to vertices, the inverse is the map with the triangles exchanged, and maps compose. All
-// to rounding: an ulp of the point in its triangle, magnified by the map's derivative, plus an ulp
-// of the image.
+// The maps of triangles form a homeomorphism of meshes: edges are mapped linearly and vertices to
+// vertices, exchanging the triangles gives the inverse, and maps compose. Errors are an ulp of the
+// point in its triangle, magnified by the derivative of the map, plus an ulp of the image.
 
 #include "RandomTriangles.h"
 
@@ -23,7 +22,7 @@ using namespace homeomorphism_test;
 template <typename System>
 struct Domain
 {
-  PlacedTriangle Triangle;
+  PlaneTriangle Triangle;
   typename System::Chart Chart;
 
   Domain(RandomNumbers& random, const Corners& corners)
@@ -47,9 +46,9 @@ struct Worst
   double Value = 0.0;
   std::string Where;
 
-  void Take(double value, const PlacedTriangle& triangle, const Vector2& point)
+  void Take(double value, const PlaneTriangle& triangle, const Vector2& point)
   {
-    // A NaN is taken and then stays.
+    // Keeps NaN once it has occurred.
     if (!(value <= this->Value) && !std::isnan(this->Value))
     {
       this->Value = value;
@@ -67,7 +66,7 @@ using Systems = testing::Types<LinearSystem, ContourSystem, IncenterSystem, Smoo
 
 TYPED_TEST_SUITE(Edges, Systems, SystemName);
 
-TYPED_TEST(Edges, VerticesGoToVertices)
+TYPED_TEST(Edges, VerticesMapToVertices)
 {
   RandomNumbers random(31);
   Worst worst;
@@ -79,8 +78,8 @@ TYPED_TEST(Edges, VerticesGoToVertices)
     {
       const Vector2 corner = p.Triangle.Shape.Corner(k);
       const Vector2 image = MapPoint(p.Chart, q.Chart, corner);
-      // There is no derivative at a vertex, but the map stretches no more than this near it: the
-      // frame and what the edges see agree on the triangle to an ulp of its longest edge.
+      // The derivative does not exist at a vertex, but this bounds the stretch near it: the frame
+      // and the edge views agree on the triangle to an ulp of its longest edge.
       const double derivative = q.Base() / p.Triangle.Shape.Height;
       const double rounding = Ulp * (derivative * p.Base() + q.Base());
       worst.Take(Norm(image - q.Triangle.Shape.Corner(k)) / rounding, p.Triangle, corner);
@@ -98,7 +97,7 @@ TYPED_TEST(Edges, PointOnAnEdgeHasItsCoordinates)
   Worst worstPoint;
   int wrongEdges = 0;
   int notOnBase = 0;
-  // Smooth takes its coordinates in the equilateral triangle, whose sides are not on the x axis.
+  // Smooth computes its coordinates in the equilateral triangle, whose sides are not on the x axis.
   const bool isExact = std::string(TypeParam::Name) != SmoothSystem::Name;
   for (int n = 0; n < 20000; ++n)
   {
@@ -113,21 +112,21 @@ TYPED_TEST(Edges, PointOnAnEdgeHasItsCoordinates)
       const auto reference = p.Chart.ToReference(point);
       const TriangularCoordinates found = p.Chart.ToCoordinates(reference);
       wrongEdges += found.Edge != k + 1;
-      // The point knows its place to an ulp of the longest edge.
+      // The position of the point is known to an ulp of the longest edge.
       const double rounding =
         Ulp * p.Base() / Norm(end - start) * InverseMagnification(p.Chart, shape, reference);
       worstP.Take(std::abs(found.EdgeParameter - t) / rounding, p.Triangle, point);
-      // The contour may be as short as the triangle is low.
+      // The contour may be as short as the height of the triangle.
       const double roundingOfC =
         Ulp * p.Base() / shape.Height * InverseMagnification(p.Chart, shape, reference);
       worstC.Take((1.0 - found.ContourParameter) / roundingOfC, p.Triangle, point);
       if (k == shape.Apex)
       {
-        // On the x axis nothing is rounded.
+        // On the x axis coordinates are exact.
         notOnBase += found.ContourParameter != 1.0;
       }
     }
-    // From the coordinates' side all edges are exact: c = 1 is on the edge, at p.
+    // In coordinates all edges are exact: c = 1 is on the edge, at p.
     const int e = random.Integer(1, 3);
     const double t = random.Proportion();
     const Vector2 expected =
@@ -183,7 +182,7 @@ TYPED_TEST(Edges, SameTriangleGivesTheIdentity)
   for (int n = 0; n < 20000; ++n)
   {
     const Corners corners = TypeParam::Any(random);
-    // The neighbors have to be the same ones too.
+    // The neighbors must be the same too.
     RandomNumbers same = random;
     const Domain<TypeParam> p(random, corners);
     const Domain<TypeParam> q(same, corners);
@@ -193,7 +192,7 @@ TYPED_TEST(Edges, SameTriangleGivesTheIdentity)
       const Vector2 image = MapPoint(p.Chart, q.Chart, point);
       worst.Take(Norm(image - point) / (Ulp * p.Base()), p.Triangle, point);
       const Matrix2 derivative = MapDerivative(p.Chart, q.Chart, p.Chart.ToReference(point));
-      // Errors of Pull, relative to its large components, are what Push brings back.
+      // Errors of Pullback, relative to its large components, reappear after Pushforward.
       const double condition = p.Base() / p.Triangle.Shape.Height;
       const double change = Norm(derivative - Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } });
       worstDerivative.Take(change / (Ulp * condition), p.Triangle, point);
@@ -206,7 +205,7 @@ TYPED_TEST(Edges, SameTriangleGivesTheIdentity)
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
 
-TYPED_TEST(Edges, InverseIsTheMapBack)
+TYPED_TEST(Edges, ExchangingTheTrianglesGivesTheInverse)
 {
   RandomNumbers random(35);
   Worst worst;

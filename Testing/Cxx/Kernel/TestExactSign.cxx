@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The predicates against integer arithmetic with 128 bits, which is exact: coordinates are integers
-// of at most 60 bits times a power of two, of which a double holds 53 leading bits.
+// The predicates agree with 128-bit integer arithmetic, which is exact: coordinates are integers of
+// at most 60 bits times a power of two, of which a double holds 53 leading bits.
 
 #include "RandomTriangles.h"
 
@@ -20,13 +20,13 @@ namespace
 
 using namespace homeomorphism_test;
 
-// __extension__ because -Wpedantic knows no such type.
+// __extension__ because -Wpedantic rejects this type.
 __extension__ using Wide = __int128;
 
 using Point = std::array<std::int64_t, 3>;
 
-/// Coordinates in units of this power of two; products of two differences stay far from the ends of
-/// the exponent range.
+/// Coordinates are multiples of this power of two. Products of two differences stay far from the
+/// ends of the exponent range.
 constexpr std::array<int, 4> units{ 0, -52, 380, -420 };
 
 std::array<double, 3> ToDouble(const Point& p, int unit)
@@ -35,7 +35,7 @@ std::array<double, 3> ToDouble(const Point& p, int unit)
   for (int i = 0; i < 3; ++i)
   {
     result[i] = std::ldexp(static_cast<double>(p[i]), unit);
-    // The test is about these very numbers.
+    // The test requires exactly these numbers.
     EXPECT_EQ(static_cast<std::int64_t>(std::ldexp(result[i], -unit)), p[i]);
   }
   return result;
@@ -111,12 +111,13 @@ int KernelOrientation(const Point& a, const Point& b, const Point& c, int unit)
   const Vector2 q = inPlane(b);
   const Vector2 r = inPlane(c);
   const int sign = Orientation(p, q, r);
-  // The filter must not hide what the exact evaluation says.
+  // The floating-point filter must agree with the exact evaluation.
   EXPECT_EQ(ExactOrientation(p, q, r), sign);
   return sign;
 }
 
-/// An integer of up to @a bits bits, many of them small: at most 53 bits are not trailing zeros.
+/// An integer with at most @a bits bits, often small, of which at most 53 bits are not trailing
+/// zeros.
 std::int64_t AnyInteger(RandomNumbers& random, int bits)
 {
   const int used = random.Integer(1, std::min(bits, 53));
@@ -130,7 +131,7 @@ void Nudge(RandomNumbers& random, std::array<Point, 3>& points, int dimension)
 {
   std::int64_t& x = points[random.Below(3)][random.Below(dimension)];
   const double moved = std::nextafter(static_cast<double>(x), random.Chance(0.5) ? 1e300 : -1e300);
-  // Below 2^53 the next double is not an integer; the next integer is exact too.
+  // Below 2^53 the next double is not an integer. The next integer is exact too.
   const auto asInteger = static_cast<std::int64_t>(moved);
   x = asInteger != x ? asInteger : x + (random.Chance(0.5) ? 1 : -1);
 }
@@ -186,7 +187,7 @@ TEST(ExactSign, OrientationNearALineIsExact)
   std::array<int, 3> seen{};
   for (int n = 0; n < 100000; ++n)
   {
-    // Exactly on a line: multiples of one direction, small enough that the sums are doubles.
+    // Exactly collinear: multiples of one direction, small enough that the sums are doubles.
     const std::int64_t dx = AnyInteger(random, 26);
     const std::int64_t dy = AnyInteger(random, 26);
     const Point start{ AnyInteger(random, 51), AnyInteger(random, 51), 0 };
@@ -209,7 +210,7 @@ TEST(ExactSign, OrientationNearALineIsExact)
 
 TEST(ExactSign, OrientationOfRoundedPointsOnALineIsExact)
 {
-  // Points rounded to the nearest double on a line: every sign occurs, and a plain evaluation in
+  // Points rounded to the nearest double on a line. All signs occur, and a plain evaluation in
   // doubles gets many of them wrong.
   RandomNumbers random(13);
   int wrongWithout = 0;
@@ -257,9 +258,9 @@ TEST(ExactSign, ConcordanceIsExact)
   EXPECT_GT(concordant, 1000);
 }
 
-/// Three corners whose foot on the edge from the first to the second is exactly on the first: with
-/// u = B - A and v = C - A, u.(u + v) = 0, that is v = -u + w with w perpendicular to u.
-/// u has up to @a bits bits, w is up to @a otherBits bits longer.
+/// Three corners whose foot on the edge from the first to the second is exactly the first: with u =
+/// B - A and v = C - A, u.(u + v) = 0, that is, v = -u + w with w perpendicular to u. u has up to
+/// @a bits bits, w is up to @a otherBits bits longer.
 std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension, int bits, int otherBits)
 {
   const Point a{ AnyInteger(random, 52), AnyInteger(random, 52),
@@ -282,7 +283,7 @@ std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension, int bits, 
   return p;
 }
 
-TEST(ExactSign, ConcordanceOnTheLimitIsExact)
+TEST(ExactSign, ConcordanceAtTheLimitIsExact)
 {
   RandomNumbers random(15);
   std::array<int, 2> seen{};
@@ -301,10 +302,10 @@ TEST(ExactSign, ConcordanceOnTheLimitIsExact)
   EXPECT_GT(seen[1], 10000);
 }
 
-TEST(ExactSign, DifferencesThatRoundAreExact)
+TEST(ExactSign, RoundedDifferencesAreExact)
 {
-  // Two corners far from the origin, the third within a few of their ulps of it: the differences of
-  // coordinates round, and what they lose decides.
+  // Two corners far from the origin, the third within a few of their ulps of it. The differences of
+  // coordinates are rounded, and their rounding errors decide.
   RandomNumbers random(19);
   std::array<int, 3> orientations{};
   std::array<int, 2> concordances{};
@@ -327,7 +328,8 @@ TEST(ExactSign, DifferencesThatRoundAreExact)
     ExpectConcordance(p, dimension, unit);
     ++concordances[IntegerConcordant(p[0], p[1], p[2])];
 
-    // The same for orientation: two points on a line through the origin, as far as a double goes.
+    // For orientation: two points on a line through the origin, at the limit of the range of
+    // doubles.
     const std::int64_t dx = AnyInteger(random, 26);
     const std::int64_t dy = AnyInteger(random, 26);
     const std::int64_t first = AnyInteger(random, 25);
@@ -355,7 +357,7 @@ TEST(ExactSign, DimensionsAgree)
       Nudge(random, p, 2);
     }
     const bool inPlane = KernelConcordant(p[0], p[1], p[2], 2, 0);
-    // The same triangle in a plane of space that is parallel to two of the axes.
+    // The same triangle in a plane of space parallel to two axes.
     const int normal = random.Below(3);
     const std::int64_t height = AnyInteger(random, 53);
     std::array<Point, 3> q{};
@@ -390,7 +392,7 @@ TEST(ExactSign, IsoscelesTrianglesAreConcordant)
       p[1][i] += leg[i];
       p[2][i] += otherLeg[i];
     }
-    // Not if the legs are on a line, in the same direction or opposite ones.
+    // Except for legs on one line, in equal or opposite directions.
     bool parallel = true;
     for (int i = 0; i < 3; ++i)
     {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What an edge sees of the corner opposite, against integer arithmetic: where the coordinates'
-// differences are exact every number of the view is good to a few ulp of itself, in needles too.
+// Edge views agree with integer arithmetic. Where differences of coordinates are exact, every
+// number of the view is accurate to a few ulp of itself, in needles too.
 
 #include "RandomTriangles.h"
 
@@ -23,7 +23,7 @@ double RelativeError(double found, double expected)
   return found == expected ? 0.0 : std::abs(found - expected) / std::abs(expected);
 }
 
-TEST(Geometry, ViewFromEdgeIsGoodToAFewUlp)
+TEST(Geometry, ViewFromEdgeIsAccurateToAFewUlp)
 {
   RandomNumbers random(71);
   double worstLength = 0.0;
@@ -32,7 +32,7 @@ TEST(Geometry, ViewFromEdgeIsGoodToAFewUlp)
   for (int n = 0; n < 200000; ++n)
   {
     // At most 26 bits, so that products are exact as 64-bit integers. Edges and opposite corners
-    // are short or long independently; often the three points are almost on a line.
+    // are short or long independently; often the three points are almost collinear.
     const auto component = [&random]() {
       const int bits = random.Integer(1, 25);
       return random.Integer(-(1 << bits), 1 << bits);
@@ -73,9 +73,9 @@ TEST(Geometry, ViewFromEdgeIsGoodToAFewUlp)
   EXPECT_LT(worstHeight, 8.0 * Ulp);
 }
 
-TEST(Geometry, DifferenceOfProductsIsGoodToAnUlpAndAHalf)
+TEST(Geometry, DifferenceOfProductsIsAccurateToOneAndAHalfUlp)
 {
-  // __extension__ because -Wpedantic knows no such type.
+  // __extension__ because -Wpedantic rejects this type.
   __extension__ using Wide = __int128;
   RandomNumbers random(74);
   double worst = 0.0;
@@ -100,7 +100,7 @@ TEST(Geometry, BarycentricCoordinatesOfCornersAreExact)
   RandomNumbers random(72);
   for (int n = 0; n < 50000; ++n)
   {
-    const TriangleShape shape = PlacedTriangle(AnyTriangle(random)).Shape;
+    const TriangleShape shape = PlaneTriangle(AnyTriangle(random)).Shape;
     for (int k = 0; k < 3; ++k)
     {
       const Barycentric l = shape.ToBarycentric(shape.Corner(k));
@@ -114,18 +114,18 @@ TEST(Geometry, BarycentricCoordinatesOfCornersAreExact)
   }
 }
 
-TEST(Geometry, VectorsFollowPoints)
+TEST(Geometry, VectorsAreDifferencesOfPoints)
 {
   RandomNumbers random(73);
   double worst = 0.0;
   for (int n = 0; n < 50000; ++n)
   {
-    const TriangleShape shape = PlacedTriangle(AnyTriangle(random)).Shape;
+    const TriangleShape shape = PlaneTriangle(AnyTriangle(random)).Shape;
     const Barycentric l = AnyBarycentric(random);
     const Barycentric m = AnyBarycentric(random);
     const Vector2 vector = shape.FromBarycentric(m) - shape.FromBarycentric(l);
     const Barycentric components = shape.VectorToBarycentric(vector);
-    // The points' own ulps, seen across the low triangle.
+    // An ulp of the points, relative to the height of the triangle.
     const double rounding = Ulp * shape.Base / shape.Height;
     for (int k = 0; k < 3; ++k)
     {

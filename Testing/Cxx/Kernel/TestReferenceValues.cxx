@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Coordinates, mapped points and derivatives against values computed with 50 digits by
-// Testing/Reference/reference_values.py, which shares nothing with the code under test.
+// Coordinates, mapped points and derivatives agree with values computed to 50 digits by
+// Testing/Reference/reference_values.py, which shares no code with the library.
 
-#include "PlacedTriangle.h"
+#include "PlaneTriangle.h"
 
 #include "Kernel/ContourChart.h"
 #include "Kernel/LinearChart.h"
@@ -64,7 +64,7 @@ std::vector<Row> ReadTable(const std::string& name)
   return rows;
 }
 
-PlacedTriangle Triangle(const Row& row, const std::string& side)
+PlaneTriangle Triangle(const Row& row, const std::string& side)
 {
   std::array<Vector2, 3> corners;
   for (int k = 0; k < 3; ++k)
@@ -72,11 +72,11 @@ PlacedTriangle Triangle(const Row& row, const std::string& side)
     const std::string number = std::to_string(k + 1);
     corners[k] = { row.at(side + "x" + number), row.at(side + "y" + number) };
   }
-  return PlacedTriangle(corners);
+  return PlaneTriangle(corners);
 }
 
 std::array<Neighbor, 3> Neighbors(
-  const Row& row, const std::string& side, const PlacedTriangle& triangle)
+  const Row& row, const std::string& side, const PlaneTriangle& triangle)
 {
   std::array<Neighbor, 3> neighbors;
   for (int k = 0; k < 3; ++k)
@@ -88,9 +88,9 @@ std::array<Neighbor, 3> Neighbors(
   return neighbors;
 }
 
-/// Condition of the frame change that the derivative goes through: the larger of the two triangles'
-/// base over height, by which rounding of the corners themselves grows in it.
-double Aspect(const PlacedTriangle& p)
+/// Condition number of the change of frame that the derivative passes through: the larger ratio of
+/// base to height of the two triangles. It magnifies the rounding of the corners.
+double Aspect(const PlaneTriangle& p)
 {
   return p.Shape.Base / p.Shape.Height;
 }
@@ -114,13 +114,13 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
   for (const Row& row : rows)
   {
     SCOPED_TRACE(name + " row " + std::to_string(++number));
-    const PlacedTriangle p = Triangle(row, "p");
-    const PlacedTriangle q = Triangle(row, "q");
+    const PlaneTriangle p = Triangle(row, "p");
+    const PlaneTriangle q = Triangle(row, "q");
     const auto chartP = makeChart(row, "p", p);
     const auto chartQ = makeChart(row, "q", q);
 
-    // What the coordinates are good for is telling where the point is, so they are compared by the
-    // distance, in units of the triangle's longest edge, of the points that have them.
+    // Coordinates are compared by the distance of the points that have them, in units of the
+    // longest edge of the triangle.
     const Vector2 point{ row.at("x"), row.at("y") };
     const auto reference = chartP.ToReference(p.ToFrame(point));
     const TriangularCoordinates found = chartP.ToCoordinates(reference);
@@ -135,7 +135,8 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
     const Vector2 image = q.FromFrame(chartQ.ToPoint(reference));
     const Matrix2 expectedDerivative{ { row.at("J11"), row.at("J21") },
       { row.at("J12"), row.at("J22") } };
-    // The point itself is known to an ulp of its triangle's coordinates: the map carries that over.
+    // The point is known to an ulp of the coordinates of its triangle. The map transforms this
+    // error.
     double extent = 0.0;
     double imageExtent = 0.0;
     for (int k = 0; k < 3; ++k)
@@ -143,13 +144,13 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
       extent = std::max(extent, Norm(p.Corners[k]));
       imageExtent = std::max(imageExtent, Norm(q.Corners[k]));
     }
-    const double carried = extent * Norm(expectedDerivative) + imageExtent;
-    worst.Point = std::max(worst.Point, Norm(image - expectedImage) / carried);
+    const double mapped = extent * Norm(expectedDerivative) + imageExtent;
+    worst.Point = std::max(worst.Point, Norm(image - expectedImage) / mapped);
 
     const Matrix2 derivative = InPlane(p, q, MapDerivative(chartP, chartQ, reference));
-    // Near the center of a Contour triangle and near the vertices the derivative depends on the
-    // direction from there, and so on the last bit of the point: what moving the point by that much
-    // does to the derivative is the error to be expected.
+    // Near the center of a Contour triangle and near the vertices, the derivative depends on the
+    // direction from there and thus on the last bit of the point. The expected error is the change
+    // of the derivative when the point moves by that much.
     double unavoidable = 0.0;
     for (const double dx : { -ulp, 0.0, ulp })
     {
@@ -177,12 +178,12 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
 TEST(ReferenceValues, Linear)
 {
   CompareTable("ReferenceLinear.csv", 1000,
-    [](const Row&, const char*, const PlacedTriangle& t) { return LinearChart(t.Shape); });
+    [](const Row&, const char*, const PlaneTriangle& t) { return LinearChart(t.Shape); });
 }
 
 TEST(ReferenceValues, Contour)
 {
-  CompareTable("ReferenceContour.csv", 1000, [](const Row&, const char*, const PlacedTriangle& t) {
+  CompareTable("ReferenceContour.csv", 1000, [](const Row&, const char*, const PlaneTriangle& t) {
     return ContourChart(t.Shape, t.Views());
   });
 }
@@ -190,7 +191,7 @@ TEST(ReferenceValues, Contour)
 TEST(ReferenceValues, ContourFromIncenter)
 {
   CompareTable(
-    "ReferenceContourIncenter.csv", 300, [](const Row&, const char*, const PlacedTriangle& t) {
+    "ReferenceContourIncenter.csv", 300, [](const Row&, const char*, const PlaneTriangle& t) {
       return ContourChart(t.Shape, t.Views(), CenterPoint::Incenter);
     });
 }
@@ -198,7 +199,7 @@ TEST(ReferenceValues, ContourFromIncenter)
 TEST(ReferenceValues, Smooth)
 {
   CompareTable(
-    "ReferenceSmooth.csv", 1000, [](const Row& row, const char* side, const PlacedTriangle& t) {
+    "ReferenceSmooth.csv", 1000, [](const Row& row, const char* side, const PlaneTriangle& t) {
       return SmoothChart(t.Shape, t.Views(), Neighbors(row, side, t));
     });
 }

@@ -22,18 +22,18 @@ struct PowerEquation : RootBatch<Width, AtEnds>
 {
   int Evaluations = 0;
 
-  void Set(int lane, double root, double guess, double)
+  void Set(int index, double root, double guess, double)
   {
     (void)root;
-    this->Start(lane, 0.0, 1.0, guess);
+    this->Start(index, 0.0, 1.0, guess);
   }
 
-  void Evaluate(int lane, double root, double, double power)
+  void Evaluate(int index, double root, double, double power)
   {
     ++this->Evaluations;
-    const double x = this->Root[lane];
+    const double x = this->Root[index];
     this->Step(
-      lane, std::pow(x, power) - std::pow(root, power), power * std::pow(x, power - 1.0), 0x1p-26);
+      index, std::pow(x, power) - std::pow(root, power), power * std::pow(x, power - 1.0), 0x1p-26);
   }
 };
 
@@ -72,7 +72,7 @@ TEST(RootFinding, FindsRootsAtTheEnds)
   }
 }
 
-// The solution of an equation is the same to the bit, whatever else is solved beside it.
+// The solution of an equation does not depend on the other equations of its batch, to the last bit.
 TEST(RootFinding, EquationsOfABatchAreIndependent)
 {
   constexpr int width = 8;
@@ -82,31 +82,31 @@ TEST(RootFinding, EquationsOfABatchAreIndependent)
     double roots[width];
     double guesses[width];
     double powers[width];
-    for (int lane = 0; lane < width; ++lane)
+    for (int index = 0; index < width; ++index)
     {
-      roots[lane] = random.Uniform();
-      guesses[lane] = random.Uniform();
-      powers[lane] = random.Integer(1, 4);
+      roots[index] = random.Uniform();
+      guesses[index] = random.Uniform();
+      powers[index] = random.Integer(1, 4);
     }
     PowerEquation<width, true> batch;
     SolveBatch<width>(batch, roots, guesses, powers);
-    for (int lane = 0; lane < width; ++lane)
+    for (int index = 0; index < width; ++index)
     {
-      EXPECT_EQ(batch.Root[lane], Solve<true>(roots[lane], guesses[lane], powers[lane]));
+      EXPECT_EQ(batch.Root[index], Solve<true>(roots[index], guesses[index], powers[index]));
     }
   }
 }
 
-// Values or slopes that are not numbers must not keep the loop from ending.
+// NaN values or slopes do not prevent termination.
 TEST(RootFinding, EndsWithoutARoot)
 {
   struct NoRoot : RootBatch<1, true>
   {
-    void Set(int lane) { this->Start(lane, 0.0, 1.0, 0.5); }
-    void Evaluate(int lane)
+    void Set(int index) { this->Start(index, 0.0, 1.0, 0.5); }
+    void Evaluate(int index)
     {
       const double nan = std::numeric_limits<double>::quiet_NaN();
-      this->Step(lane, nan, nan, 0x1p-26);
+      this->Step(index, nan, nan, 0x1p-26);
     }
   };
   NoRoot equation;

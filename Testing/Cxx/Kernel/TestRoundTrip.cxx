@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// From a point to its coordinates and back, for all systems, on triangles from fat to needles and
-// at points on and within a few ulp of every line on which the formulas change.
+// Round trips from a point to its coordinates and back, for all systems, for triangles from fat
+// ones to needles, and for points on and within a few ulp of every line at which the formulas
+// change.
 
 #include "RandomTriangles.h"
 
@@ -45,7 +46,7 @@ Vector2 Centroid(const TriangleShape& shape)
   return shape.FromBarycentric({ 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 });
 }
 
-/// The lines of a triangle, in its frame, at which the chart's formulas change.
+/// The lines of a triangle, in its frame, at which the formulas of the chart change.
 std::vector<Segment> LinesOf(const LinearChart&, const TriangleShape& shape)
 {
   std::vector<Segment> lines;
@@ -69,16 +70,16 @@ std::vector<Segment> LinesOf(const ContourChart& chart, const TriangleShape& sha
   return lines;
 }
 
-/// The chart itself is smooth but for the strips' borders; its (e, p, c) change formula where those
-/// of the equilateral triangle do, so those lines are taken too, as polylines would be after the
-/// chart.
+/// The chart is smooth except at the borders of strips. Its (e, p, c) change formula where those of
+/// the equilateral triangle do, so the images of those lines under the chart are used as well, as
+/// polylines.
 std::vector<Segment> LinesOf(const SmoothChart& chart, const TriangleShape& shape)
 {
   std::vector<Segment> lines;
   AddEdgesAndSpokes(shape, Centroid(shape), lines);
   for (int k = 0; k < 3; ++k)
   {
-    // The borders are curved: tiny segments on them.
+    // The borders are curved and are approximated by short segments.
     for (int i = 0; i < 16 && chart.StripWidth(k) > 0.0; ++i)
     {
       const double proportion = (i + 0.5) / 16.0;
@@ -103,8 +104,7 @@ double MovedByUlps(double x, int count)
 {
   if (x == 0.0)
   {
-    // Not denormal numbers, of which the predicate that tells the sides apart could not form
-    // products.
+    // No subnormal numbers: the predicate for sides of a line could not form their products.
     return count * std::ldexp(1.0, -200);
   }
   for (int i = 0; i < std::abs(count); ++i)
@@ -123,7 +123,7 @@ double DistanceToSegment(const Vector2& point, const Vector2& start, const Vecto
   return Norm(d - (along / length) * edge);
 }
 
-/// How far a point is from the closed triangle.
+/// The distance of a point from the closed triangle.
 double DistanceOutside(const TriangleShape& shape, const Vector2& point)
 {
   double nearest = std::numeric_limits<double>::infinity();
@@ -170,11 +170,11 @@ Vector2 AnyPoint(
   }
   if (kind <= 6)
   {
-    // Bits of the coordinates themselves.
+    // An ulp of the coordinates themselves.
     return { MovedByUlps(point.x, random.Integer(-4, 4)),
       MovedByUlps(point.y, random.Integer(-4, 4)) };
   }
-  // Bits of coordinates as large as the triangle: what is left of a point that came from elsewhere.
+  // An ulp of coordinates as large as the triangle, as left by a translation.
   const double unit = 0.5 * Ulp * shape.Base;
   return { point.x + unit * random.Integer(-4, 4), point.y + unit * random.Integer(-4, 4) };
 }
@@ -183,7 +183,7 @@ void ExpectValid(const TriangularCoordinates& c)
 {
   EXPECT_GE(c.Edge, 1);
   EXPECT_LE(c.Edge, 3);
-  // Written so that no NaN passes.
+  // Negated so that NaN fails.
   EXPECT_TRUE(c.EdgeParameter >= 0.0 && c.EdgeParameter <= 1.0) << c.EdgeParameter;
   EXPECT_TRUE(c.ContourParameter >= 0.0 && c.ContourParameter <= 1.0) << c.ContourParameter;
 }
@@ -230,7 +230,7 @@ TYPED_TEST(RoundTrip, PointToCoordinatesToPoint)
   long points = 0;
   for (int n = 0; n < triangles; ++n)
   {
-    const PlacedTriangle triangle(TypeParam::Any(random));
+    const PlaneTriangle triangle(TypeParam::Any(random));
     const TriangleShape& shape = triangle.Shape;
     const auto chart = TypeParam::Make(random, triangle, false);
     const std::vector<Segment> lines = LinesOf(chart, shape);
@@ -238,7 +238,7 @@ TYPED_TEST(RoundTrip, PointToCoordinatesToPoint)
     {
       const Vector2 point = AnyPoint(random, shape, lines);
       const auto describe = [&]() { return Description(triangle, point); };
-      // A point outside by rounding stands for the nearest point of the triangle.
+      // A point outside by rounding is replaced by the nearest point of the triangle.
       const double outside = DistanceOutside(shape, point);
       const auto reference = chart.ToReference(point);
       const Vector2 back = chart.ToPoint(reference);
@@ -273,18 +273,18 @@ TYPED_TEST(RoundTrip, CoordinatesToPointToCoordinates)
   double worst = 0.0;
   for (int n = 0; n < 2000; ++n)
   {
-    const PlacedTriangle triangle(TypeParam::Fat(random));
+    const PlaneTriangle triangle(TypeParam::Fat(random));
     const auto chart = TypeParam::Make(random, triangle, true);
     for (int i = 0; i < 50; ++i)
     {
-      // Not so near the center that p loses its meaning, nor at a spoke, where e may change.
+      // Not near the center, where p is ill-conditioned, nor at a spoke, where e may change.
       const TriangularCoordinates coordinates{ random.Integer(1, 3), random.Uniform(0.001, 0.999),
         random.Uniform(0.01, 0.999) };
       const Vector2 point = chart.ToPoint(chart.FromCoordinates(coordinates));
       EXPECT_EQ(DistanceOutside(triangle.Shape, point), 0.0) << Description(triangle, point);
       const TriangularCoordinates found = chart.ToCoordinates(chart.ToReference(point));
       ASSERT_EQ(found.Edge, coordinates.Edge) << Description(triangle, point);
-      // p is the better known the farther from the center.
+      // The accuracy of p grows with the distance from the center.
       const double error = std::max(
         std::abs(found.EdgeParameter - coordinates.EdgeParameter) * coordinates.ContourParameter,
         std::abs(found.ContourParameter - coordinates.ContourParameter));
@@ -295,18 +295,18 @@ TYPED_TEST(RoundTrip, CoordinatesToPointToCoordinates)
   EXPECT_LT(worst, 1e-13);
 }
 
-/// Near the tip of a flat cap, where arcs turn by almost a right angle, whose cosine was lost: a
-/// root was taken for found that was half an edge away.
+/// Near the tip of a flat cap arcs turn by almost a right angle, and the cosine cancels. The root
+/// must still be found.
 TEST(ContourRoundTrip, NearTheTipOfACap)
 {
-  const PlacedTriangle triangle({ Vector2{ 40.334549577597691, 0.0 }, { 0.0, 0.0 },
+  const PlaneTriangle triangle({ Vector2{ 40.334549577597691, 0.0 }, { 0.0, 0.0 },
     { 20.167274795109954, -0.00039122220690191047 } });
   const ContourChart chart(triangle.Shape, triangle.Views());
   const Vector2 point = triangle.ToFrame({ 40.334549528054019, -6.4072727144124634e-13 });
   EXPECT_LT(Norm(chart.ToPoint(chart.ToReference(point)) - point), 1e-14 * triangle.Shape.Base);
 }
 
-/// Seen from the incenter, needles and caps as thin as numbers can tell: products of two heights
+/// With the incenter, needles and caps as thin as doubles can represent: products of two heights
 /// underflow.
 TEST(ContourRoundTrip, NeedlesFromTheIncenterHaveImagesAndDerivatives)
 {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the Smooth system is for: first and second derivatives that agree from both sides of an
-// edge; and what it stands on: a positive determinant, disjoint strips, and that only neighbors
-// matter.
+// In the Smooth system, first and second derivatives agree from both sides of an edge, the
+// determinant is positive, strips are disjoint, and only neighbors influence the chart.
 
 #include "AdjacentTriangles.h"
 
@@ -21,15 +20,15 @@ namespace
 using namespace homeomorphism_test;
 
 /// The derivative, in the plane, of the map between one of the two triangles and its counterpart.
-Matrix2 Jacobian(const PlacedTriangle& p, const SmoothChart& chartP, const PlacedTriangle& q,
+Matrix2 Jacobian(const PlaneTriangle& p, const SmoothChart& chartP, const PlaneTriangle& q,
   const SmoothChart& chartQ, const Barycentric& l)
 {
   return InPlane(p, q, MapDerivative(chartP, chartQ, l));
 }
 
-/// By how much rounding of the corners, an ulp of the longest edge, may change a derivative of the
-/// map, relative to the derivatives that it is composed of.
-double Aspect(const PlacedTriangle& triangle)
+/// The relative change of a derivative of the map when rounding moves the corners by an ulp of the
+/// longest edge.
+double Aspect(const PlaneTriangle& triangle)
 {
   return triangle.Shape.Base / triangle.Shape.Height;
 }
@@ -53,10 +52,10 @@ TEST(SmoothEdge, FirstDerivativesAgree)
       const std::array<Barycentric, 2> l = OnSharedEdge(w);
       const Matrix2 first = Jacobian(p.First, chartsP[0], q.First, chartsQ[0], l[0]);
       const Matrix2 second = Jacobian(p.Second, chartsP[1], q.Second, chartsQ[1], l[1]);
-      // Both map the edge and the direction across it, which are conditioned by the angle at which
-      // the chart crosses the edge in P.
+      // Both map the edge and the direction across it. The angle at which the chart crosses the
+      // edge in P determines the condition number.
       double condition = 1.0;
-      for (const PlacedTriangle* triangle : { &p.First, &p.Second, &q.First, &q.Second })
+      for (const PlaneTriangle* triangle : { &p.First, &p.Second, &q.First, &q.Second })
       {
         condition = std::max(condition, Aspect(*triangle));
       }
@@ -81,8 +80,9 @@ TEST(SmoothEdge, FirstDerivativesAgree)
 TEST(SmoothEdge, SecondDerivativesAgree)
 {
   // The derivative across the edge of all entries of the Jacobian, one-sided with an error of order
-  // h^2: the sides must differ by no more, so by 64 times less if h is 8 times less. Two steps in
-  // between make sure that the coarse differences are not small by chance.
+  // h^2. The difference of the two sides must not be larger, so it decreases 64 times when h
+  // decreases 8 times. Two intermediate steps make sure that the coarse differences are not small
+  // by chance.
   RandomNumbers random(52);
   double worstFall = 0.0;
   double worstLeft = 0.0;
@@ -95,11 +95,11 @@ TEST(SmoothEdge, SecondDerivativesAgree)
     const std::array<SmoothChart, 2> chartsP = p.SmoothCharts();
     const std::array<SmoothChart, 2> chartsQ = q.SmoothCharts();
     const Vector2 point = p.At(random.Uniform(0.2, 0.8));
-    // To the first triangle and, with the sign changed, to the second.
+    // Towards the first triangle and, with the opposite sign, towards the second.
     const Vector2 inward = p.Normal() + random.Uniform(-1.0, 1.0) * p.Tangent();
     const auto jacobian = [&](int side, double distance) {
-      const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
-      const PlacedTriangle& image = side == 0 ? q.First : q.Second;
+      const PlaneTriangle& triangle = side == 0 ? p.First : p.Second;
+      const PlaneTriangle& image = side == 0 ? q.First : q.Second;
       const Vector2 at = point + ((side == 0 ? distance : -distance) * p.Length()) * inward;
       const Barycentric l = chartsP[side].ToReference(triangle.ToFrame(at));
       return Jacobian(triangle, chartsP[side], image, chartsQ[side], l);
@@ -121,7 +121,7 @@ TEST(SmoothEdge, SecondDerivativesAgree)
     const double fine = jump(1e-4);
     largest = std::max(largest, coarse);
     worstLeft = std::max(worstLeft, fine);
-    // Where the jump is not rounding already.
+    // Where the jump is above rounding.
     if (coarse > 1e-7)
     {
       ++pairs;
@@ -144,7 +144,7 @@ TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
       random.Chance(0.5) ? ModerateAdjacentTriangles(random) : AnyAdjacentTriangles(random);
     const std::array<SmoothChart, 2> charts = p.SmoothCharts();
     const std::array<Barycentric, 2> l = OnSharedEdge(random.Uniform(0.001, 0.999));
-    // Of low triangles the areas are differences of nearly equal products.
+    // Areas of low triangles are differences of nearly equal products.
     using Wide = long double;
     const Wide ex = static_cast<Wide>(p.End.x) - p.Start.x;
     const Wide ey = static_cast<Wide>(p.End.y) - p.Start.y;
@@ -162,11 +162,11 @@ TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
     const Barycentric across{ -0.5, -0.5, 1.0 };
     const Vector2 fromFirst = p.First.VectorFromFrame(charts[0].Pushforward(l[0], across));
     const Vector2 fromSecond = p.Second.VectorFromFrame(charts[1].Pushforward(l[1], across));
-    // The chart adds up components along the corners, which are as large as the shear, so that up
-    // to twenty times this is rounded.
+    // The chart adds components along the corners, which are as large as the shear, so up to twenty
+    // times this is rounded.
     const double size = p.First.Shape.Base + p.Second.Shape.Base;
     worst = std::max({ worst, Norm(fromFirst - v) / size, Norm(fromSecond + v) / size });
-    // And along the edge, the edge.
+    // And along the edge, the vector of the edge.
     const Vector2 along = p.First.VectorFromFrame(charts[0].Pushforward(l[0], { -1.0, 1.0, 0.0 }));
     worst = std::max(worst, Norm(along - (p.End - p.Start)) / size);
   }
@@ -174,7 +174,7 @@ TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
   EXPECT_LT(worst, 4e-14);
 }
 
-TEST(SmoothEdge, AffineImagesGiveTheAffineMap)
+TEST(SmoothEdge, AffinePairsGiveTheAffineMap)
 {
   RandomNumbers random(54);
   double worst = 0.0;
@@ -204,8 +204,8 @@ TEST(SmoothEdge, AffineImagesGiveTheAffineMap)
     for (int i = 0; i < 6; ++i)
     {
       const int side = i % 2;
-      const PlacedTriangle& triangle = side == 0 ? p.First : p.Second;
-      const PlacedTriangle& image = side == 0 ? q.First : q.Second;
+      const PlaneTriangle& triangle = side == 0 ? p.First : p.Second;
+      const PlaneTriangle& image = side == 0 ? q.First : q.Second;
       const Vector2 inFrame = triangle.Shape.FromBarycentric(AnyBarycentric(random));
       const Barycentric l = chartsP[side].ToReference(inFrame);
       const Vector2 found = image.FromFrame(chartsQ[side].ToPoint(l));
@@ -213,7 +213,7 @@ TEST(SmoothEdge, AffineImagesGiveTheAffineMap)
       const double condition = std::max(Aspect(triangle), Aspect(image)) *
         Magnification(chartsP[side], triangle.Shape, l) *
         InverseMagnification(chartsP[side], triangle.Shape, l);
-      // The corners of the image are rounded, and so are the neighbors' places in both.
+      // The corners of the image are rounded, and so are the neighbors in both meshes.
       const double error = Norm(found - linear(triangle.FromFrame(inFrame))) / size;
       const Matrix2 derivative = Jacobian(triangle, chartsP[side], image, chartsQ[side], l);
       const double errorOfDerivative = Norm(derivative - expected) / (condition * Norm(expected));
@@ -244,8 +244,8 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
   RandomNumbers random(55);
   long points = 0;
   long below = 0;
-  // The least determinant over pairs whose shares 2 a / (a + a*) are no small numbers, and the
-  // least over its bound where the bound is the neighbor's share.
+  // The least determinant over pairs whose shares 2 a / (a + a*) are not small, and the least
+  // quotient of determinant and bound where the bound is that share.
   double lowest = 1e300;
   double nearestShare = 1e300;
   std::string where;
@@ -290,9 +290,8 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
             << " times the neighbor's share\n";
   EXPECT_GE(points, 10000000);
   EXPECT_EQ(below, 0) << where;
-  // 1 + K' - 6 u^3 (1 - u)^2 is least at u = 3/5, where K' and u^3 (1 - u)^2 both are extreme:
-  // there it is 4385 / 15625 = 0.28064. It is approached beside far larger neighbors, near a
-  // corner.
+  // 1 + K' - 6 u^3 (1 - u)^2 is least at u = 3/5, where K' and u^3 (1 - u)^2 are both extreme: 4385
+  // / 15625 = 0.28064. It is approached beside far larger neighbors, near a corner.
   EXPECT_GE(lowest, 0.28064 - 1e-12);
   EXPECT_LT(lowest, 0.2808);
   EXPECT_LT(nearestShare, 1.001);
@@ -304,7 +303,7 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivative)
   double worst = 0.0;
   for (int n = 0; n < 100000; ++n)
   {
-    const PlacedTriangle t(FatTriangle(random));
+    const PlaneTriangle t(FatTriangle(random));
     const EdgeViews views = t.Views();
     const SmoothChart chart(t.Shape, views, AnyNeighbors(random, views));
     const int k = random.Below(3);
@@ -322,13 +321,13 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivative)
   EXPECT_LT(worst, 1e-14);
 }
 
-TEST(SmoothEdge, DeterminantOnAnEdgeIsTheNeighborsShare)
+TEST(SmoothEdge, DeterminantOnAnEdgeIsTheShareOfTheNeighbor)
 {
   RandomNumbers random(59);
   double worst = 0.0;
   for (int n = 0; n < 50000; ++n)
   {
-    const PlacedTriangle t(AnyTriangle(random));
+    const PlaneTriangle t(AnyTriangle(random));
     const EdgeViews views = t.Views();
     const std::array<Neighbor, 3> neighbors = AnyNeighbors(random, views);
     const SmoothChart chart(t.Shape, views, neighbors);
@@ -339,7 +338,7 @@ TEST(SmoothEdge, DeterminantOnAnEdgeIsTheNeighborsShare)
       const double other = neighbors[k].View.Height;
       const double share = neighbors[k].Exists ? 2.0 * other / (own + other) : 1.0;
       least = neighbors[k].Exists ? std::min(least, share) : least;
-      // Relative to itself, however small the neighbor.
+      // The error is relative to the determinant, however small the neighbor.
       const double ratio = chart.DeterminantRatio(InStrip(k, 0.0, 0.0, random.Uniform(0.01, 0.99)));
       worst = std::max(worst, std::abs(ratio - share) / share);
     }
@@ -348,7 +347,7 @@ TEST(SmoothEdge, DeterminantOnAnEdgeIsTheNeighborsShare)
   EXPECT_LT(worst, 4.0 * Ulp);
 }
 
-TEST(SmoothEdge, OnlyTheStripChanges)
+TEST(SmoothEdge, ANeighborChangesOnlyItsStrip)
 {
   RandomNumbers random(57);
   int inside = 0;
@@ -356,7 +355,7 @@ TEST(SmoothEdge, OnlyTheStripChanges)
   int wrong = 0;
   for (int n = 0; n < 20000; ++n)
   {
-    const PlacedTriangle t(AnyTriangle(random));
+    const PlaneTriangle t(AnyTriangle(random));
     const EdgeViews views = t.Views();
     std::array<Neighbor, 3> neighbors = AnyNeighbors(random, views);
     const SmoothChart before(t.Shape, views, neighbors);
@@ -375,7 +374,7 @@ TEST(SmoothEdge, OnlyTheStripChanges)
       const bool isSame = x.x == y.x && x.y == y.y;
       if (least < tau * domains)
       {
-        // Deep enough inside for the change to be seen.
+        // Deep enough inside the strip for a visible change.
         if (least < 0.5 * std::min(before.StripWidth(k), after.StripWidth(k)) * domains &&
           least > 0.01 * tau * domains)
         {
@@ -387,7 +386,7 @@ TEST(SmoothEdge, OnlyTheStripChanges)
       {
         const Barycentric back = before.ToReference(x);
         const Barycentric backAfter = after.ToReference(x);
-        // The inverse is the same too, but for a point that rounding moves over the border.
+        // The inverse is the same too, except for a point that rounding moves across the border.
         double difference = 0.0;
         for (int j = 0; j < 3; ++j)
         {
@@ -420,10 +419,10 @@ TEST(SmoothEdge, StripsAreDisjointAndTheChartIsAffineOutside)
     outside += strips == 0;
   }
   EXPECT_GT(outside, 1000);
-  // With no neighbors the chart is the Linear system's.
+  // Without neighbors the chart equals that of the Linear system.
   for (int n = 0; n < 20000; ++n)
   {
-    const PlacedTriangle t(AnyTriangle(random));
+    const PlaneTriangle t(AnyTriangle(random));
     const SmoothChart chart(t.Shape, t.Views(), {});
     const Barycentric l = AnyBarycentric(random);
     const Vector2 point = chart.ToPoint(l);

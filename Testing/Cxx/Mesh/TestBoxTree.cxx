@@ -52,7 +52,7 @@ void ExpectAllFound(int count, double size)
     offered += static_cast<int>(found.size());
     for (TriangleIndex t = 0; t < count; ++t)
     {
-      // A triangle whose box meets the query is found, and no triangle twice.
+      // Exactly the triangles whose boxes meet the query are found, each once.
       EXPECT_GE(found.count(t), boxes[t].Meets(box) ? 1u : 0u);
       EXPECT_LE(found.count(t), 1u);
     }
@@ -65,7 +65,7 @@ void ExpectAllFound(int count, double size)
 
 } // namespace
 
-TEST(BoxTree, FindsWhatMeetsABox)
+TEST(BoxTree, FindsAllTrianglesThatMeetABox)
 {
   for (const int count : { 1, 2, 4, 5, 17, 1000 })
   {
@@ -84,7 +84,7 @@ TEST(BoxTree, FindsNothingWhenEmpty)
   });
 }
 
-TEST(BoxTree, EndsWhenAVisitReturnsFalse)
+TEST(BoxTree, StopsWhenAVisitReturnsFalse)
 {
   BoxTree<2> tree;
   tree.Build({ 0, 1, 2, 3, 4, 5, 6, 7 }, [](TriangleIndex) {
@@ -95,7 +95,7 @@ TEST(BoxTree, EndsWhenAVisitReturnsFalse)
   EXPECT_EQ(visits, 3);
 }
 
-// Nodes are stored as floats: boxes must grow, never shrink, by that rounding.
+// Nodes are stored as floats: rounding may only enlarge boxes.
 TEST(BoxTree, RoundsBoxesOutward)
 {
   const double edge = 1.0 + 0x1p-40;

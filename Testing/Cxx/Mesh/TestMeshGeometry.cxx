@@ -70,7 +70,7 @@ void ExpectFramesToReturn(Soup& soup, double size)
       EXPECT_LE(DistanceOf(point, back), 16.0 * Ulp * size);
       EXPECT_LE(std::abs(inFrame.Offset), 16.0 * Ulp);
     }
-    // The frame's axes are orthonormal.
+    // The axes of the frame are orthonormal.
     const std::array<Vector3, 3> axes = geometry.GetAxes(t);
     for (int i = 0; i < 3; ++i)
     {
@@ -116,7 +116,7 @@ TEST(MeshGeometry, FramesReturnOnASurface)
   EXPECT_FALSE(MeshGeometry(soup.Points, soup.Topology).IsPlanar());
 }
 
-// Normalized coordinates are the input's times a power of two.
+// Normalized coordinates are those of the input times a power of two.
 TEST(MeshGeometry, NormalizesWithoutRounding)
 {
   Soup soup(20, [](RandomNumbers& random) -> Vector3 {
@@ -135,7 +135,7 @@ TEST(MeshGeometry, NormalizesWithoutRounding)
 
 TEST(MeshGeometry, OrientationIsExact)
 {
-  // The third point is on the line to the last bit, or one unit in the last place beside it.
+  // The third point is exactly on the line, or one ulp beside it.
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->InsertNextPoint(0.5, 0.5, 0.0);

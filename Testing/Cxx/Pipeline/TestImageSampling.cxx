@@ -23,7 +23,7 @@ using homeomorphism_test::RandomNumbers;
 namespace
 {
 
-/// An image with a function of its points as doubles and, rounded, as bytes, and cell numbers.
+/// An image of a function of its points as doubles and, rounded, as bytes, and cell numbers.
 template <typename Function>
 void FillImage(vtkImageData* image, Function&& function)
 {
@@ -57,8 +57,8 @@ double GetValue(vtkPointData* data, const char* name, vtkIdType i)
 
 } // namespace
 
-// A function that is linear in each direction is interpolated without error; integers are the
-// nearest ones; cells are those of VTK.
+// A function that is linear in each direction is interpolated exactly, integers are rounded to
+// nearest, and cells are those of VTK.
 TEST(ImageSampling, InterpolatesLinearly)
 {
   vtkNew<vtkImageData> image;
@@ -113,7 +113,7 @@ TEST(ImageSampling, InterpolatesLinearly)
   }
 }
 
-TEST(ImageSampling, TakesTheImagesOwnValuesAtItsPoints)
+TEST(ImageSampling, ReproducesValuesAtPixels)
 {
   vtkNew<vtkImageData> image;
   image->SetDimensions(7, 5, 1);
@@ -140,7 +140,7 @@ TEST(ImageSampling, TakesTheImagesOwnValuesAtItsPoints)
   }
 }
 
-TEST(ImageSampling, RefusesWhatHasNoValueEverywhere)
+TEST(ImageSampling, RefusesUnnamedArrays)
 {
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 1);

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How often vtkJacobianContinuity is right: its verdicts on more than 10,000 edges of each of eight
-// maps, and on every other kind of place, against what mathematics says; and what it costs.
+// Compares the verdicts of vtkJacobianContinuity with the theorems, on more than 10,000 edges of
+// each of eight maps and on all other kinds of features, and measures its time.
 //
 //   ContinuityStatistics [TRIANGLES]
 //
 // Fails if a verdict is wrong, if an estimate is farther from the closed form than its own bound,
-// or if more than one verdict in a hundred is left open (one in twenty at wing segments). The last
-// line is the time for a pair of TRIANGLES triangles, 100,000 if none are given.
+// or if more than one verdict in a hundred is undecided (one in twenty at wing segments). The last
+// line is the time for a pair of TRIANGLES triangles (100,000 by default).
 
 #include "../Filters/MeasuredMaps.h"
 
@@ -36,12 +36,12 @@ namespace
 using namespace test_meshes;
 using Continuity = vtkJacobianContinuity;
 
-constexpr int placeTypes = Continuity::VERTEX + 1;
-const std::array<const char*, placeTypes> placeNames{ "edges", "boundary edges", "spokes",
+constexpr int featureTypes = Continuity::VERTEX + 1;
+const std::array<const char*, featureTypes> featureNames{ "edges", "boundary edges", "spokes",
   "wing segments", "center segments", "strip borders", "centroids", "vertices" };
 
-/// What mathematics says about a cell of the filter's output.
-using Expectation = std::function<int(Continuity* filter, vtkIdType cell, int placeType)>;
+/// The verdict that the theorems give for a cell of the filter's output.
+using Expectation = std::function<int(Continuity* filter, vtkIdType cell, int featureType)>;
 
 struct Tally
 {
@@ -57,7 +57,7 @@ double Value(vtkDataSetAttributes* attributes, const char* name, vtkIdType i)
   return attributes->GetArray(name)->GetTuple1(i);
 }
 
-/// Estimates at the points of a cell against the closed form.
+/// Compares the estimates at the points of a cell with the closed form.
 void CompareWithClosedForm(vtkPolyData* output, vtkIdType cell, Tally& tally)
 {
   vtkNew<vtkIdList> ids;
@@ -79,13 +79,13 @@ void CompareWithClosedForm(vtkPolyData* output, vtkIdType cell, Tally& tally)
   }
 }
 
-/// Runs the filter, adds a row to the table for each kind of place, and returns whether all is
-/// well.
+/// Runs the filter, adds a row to the table for each kind of feature, and returns whether all
+/// values are acceptable.
 bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
 {
   filter->Update();
   vtkPolyData* output = filter->GetOutput();
-  std::array<Tally, placeTypes> tallies;
+  std::array<Tally, featureTypes> tallies;
   for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
   {
     const auto type = static_cast<int>(Value(output->GetCellData(), "PlaceType", cell));
@@ -97,7 +97,7 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
     CompareWithClosedForm(output, cell, tally);
   }
   bool good = true;
-  for (int type = 0; type < placeTypes; ++type)
+  for (int type = 0; type < featureTypes; ++type)
   {
     Tally& tally = tallies[type];
     if (tally.Count == 0)
@@ -116,7 +116,7 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
       good = good && *middle < 1e-6;
     }
     std::printf("%-22s %-16s %8lld %8lld %8lld %8lld (%.3f %%) %6lld %8lld %10s\n", name,
-      placeNames[type], static_cast<long long>(tally.Count),
+      featureNames[type], static_cast<long long>(tally.Count),
       static_cast<long long>(tally.Verdicts[Continuity::CREASE]),
       static_cast<long long>(tally.Verdicts[Continuity::DIFFERENTIABLE]),
       static_cast<long long>(tally.Verdicts[Continuity::UNDECIDED]),
@@ -124,8 +124,8 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
         static_cast<double>(tally.Count),
       static_cast<long long>(tally.Wrong), static_cast<long long>(tally.BeyondBound),
       median.c_str());
-    // Beside a wing segment the Contour map is often made of more pieces, too close to tell apart:
-    // the wing segments of the target are not the images of those of the source.
+    // Beside a wing segment the Contour map often consists of further pieces that are too close to
+    // be separated: the wing segments of the target are not the images of those of the source.
     const vtkIdType rarely = type == Continuity::WING_SEGMENT ? 20 : 100;
     good = good && tally.Wrong == 0 && tally.BeyondBound == 0 &&
       rarely * tally.Verdicts[Continuity::UNDECIDED] <= tally.Count;
@@ -134,13 +134,13 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
   return good;
 }
 
-/// Which places have a crease in a random pair, by the theorems of
-/// Documentation/differentiability.md. The triangles at two corners of the grid, which have all
-/// their points on its boundary, are the same in both meshes and mapped by the identity.
-int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int placeType, vtkPolyData* source)
+/// The features with a crease in a random pair, by the theorems of
+/// Documentation/differentiability.md. The triangles at two corners of the grid, all of whose
+/// points are on its boundary, are the same in both meshes and mapped by the identity.
+int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int featureType, vtkPolyData* source)
 {
   bool crease = false;
-  switch (placeType)
+  switch (featureType)
   {
     case Continuity::EDGE:
     case Continuity::SPOKE:
@@ -163,7 +163,7 @@ int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int placeType, vtkPolyD
   return crease ? Continuity::CREASE : Continuity::DIFFERENTIABLE;
 }
 
-bool EvaluateSystems(const MeshPair& pair, bool everyPlace)
+bool EvaluateSystems(const MeshPair& pair, bool allFeatures)
 {
   bool good = true;
   const std::array<const char*, 3> names{ "Linear", "Contour", "Smooth" };
@@ -173,12 +173,12 @@ bool EvaluateSystems(const MeshPair& pair, bool everyPlace)
     filter->SetSourceData(pair.Source);
     filter->SetTargetData(pair.Target);
     filter->SetCoordinateSystem(system);
-    filter->SetSpokes(everyPlace);
-    filter->SetWingSegments(everyPlace);
-    filter->SetCenterSegments(everyPlace);
-    filter->SetStripBorders(everyPlace);
-    filter->SetCentroids(everyPlace);
-    filter->SetVertices(everyPlace);
+    filter->SetSpokes(allFeatures);
+    filter->SetWingSegments(allFeatures);
+    filter->SetCenterSegments(allFeatures);
+    filter->SetStripBorders(allFeatures);
+    filter->SetCentroids(allFeatures);
+    filter->SetVertices(allFeatures);
     good = Evaluate(names[system], filter,
              [&pair](Continuity* f, vtkIdType cell, int type) {
                return ExpectedOfSystem(f, cell, type, pair.Source);
@@ -202,15 +202,15 @@ int AlwaysDifferentiable(Continuity*, vtkIdType, int)
   return Continuity::DIFFERENTIABLE;
 }
 
-/// On the lines of integer x, where the edges of the grid that are not slanted or level lie.
-int KinkOnUprightLines(Continuity* filter, vtkIdType cell, int)
+/// On the lines of integer x, which contain the vertical edges of the grid.
+int CreaseOnVerticalLines(Continuity* filter, vtkIdType cell, int)
 {
   double bounds[6];
   filter->GetOutput()->GetCellBounds(cell, bounds);
   return bounds[0] == bounds[1] ? Continuity::CREASE : Continuity::DIFFERENTIABLE;
 }
 
-/// Prints the share of the work that is done, as a program with a user would.
+/// Prints the progress, as an interactive program would.
 void PrintProgress(vtkObject* caller, unsigned long, void* lastShown, void*)
 {
   const int percent = static_cast<int>(100.0 * vtkAlgorithm::SafeDownCast(caller)->GetProgress());
@@ -262,7 +262,7 @@ int main(int argc, char* argv[])
   }
   std::printf("%-22s %-16s %8s %8s %8s %18s %6s %8s %10s\n", "map", "places", "count", "crease",
     "smooth", "undecided", "wrong", "(1)", "(2)");
-  // Every triangle of a grid whose points moved this little is concordant.
+  // With displacements this small, every triangle of a grid is concordant.
   const MeshPair large = MakePlanarPair(60, 3, 0.15);
   bool good = EvaluateSystems(large, false);
   const std::vector<Point> points = GridPoints(60, 4, 0.15);
@@ -288,7 +288,8 @@ int main(int argc, char* argv[])
   pieces->Exponent = 1;
   pieces->Amount = 1e-6;
   pieces->Modified();
-  good = EvaluateTransform("crease of 1e-6", RegularGrid(60), pieces, KinkOnUprightLines) && good;
+  good =
+    EvaluateTransform("crease of 1e-6", RegularGrid(60), pieces, CreaseOnVerticalLines) && good;
 
   good = EvaluateSystems(MakePlanarPair(20, 7, 0.15), true) && good;
   std::printf("\n(1) estimates farther from the closed form than their own error bound\n"

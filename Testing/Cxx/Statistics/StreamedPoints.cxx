@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Lets an image that is never there as a whole pass through vtkDifferentiableHomeomorphism piece by
-// piece, and tells how much memory that takes (Linux only).
+// Streams an image that never exists as a whole through vtkDifferentiableHomeomorphism, piece by
+// piece, and prints the memory used (Linux only).
 //
 //   StreamedPoints [POINTS [PIECES [MEGABYTES]]]
 //
-// By default 100,000,000 points in 100 pieces. Fails if the peak is more than MEGABYTES (1000)
-// beyond what the process has before and one piece takes, if points are missing or outside, or if
-// their determinants do not have the mean that they must have.
+// The default is 100,000,000 points in 100 pieces. Fails if the peak exceeds the memory used before
+// plus that of one piece by more than MEGABYTES (1000), if points are missing or outside, or if the
+// determinants do not have the correct mean.
 
 #include "../Filters/FilterRuns.h"
 
@@ -29,7 +29,7 @@ namespace
 
 using namespace filter_runs;
 
-/// A size in /proc/self/status, in MB (10^6 bytes); NaN where there is none.
+/// A size from /proc/self/status in MB (10^6 bytes); NaN if it is missing.
 double ProcessMemory(const std::string& key)
 {
   std::ifstream status("/proc/self/status");
@@ -85,11 +85,11 @@ int main(int argc, char* argv[])
   {
     map->UpdatePiece(i, pieces, 0);
     auto* output = vtkStructuredGrid::SafeDownCast(map->GetOutputDataObject(0));
-    // Includes the image's values, which pass.
+    // Includes the image's values, which pass through.
     piece = std::max(piece, MemoryOf(output));
     passed += static_cast<double>(output->GetNumberOfPoints());
     outside += static_cast<double>(map->GetNumberOfOutsidePoints());
-    // Points on the borders of pieces are there more than once: each stands for a part of the
+    // Points on the borders of pieces occur several times, so each is weighted by its share of the
     // plane.
     vtkDataArray* determinants = PointArray(output, "JacobianDeterminant");
     int extent[6];
@@ -118,7 +118,8 @@ int main(int argc, char* argv[])
     before, piece, peak, beyond);
   std::printf("%.1f s, %.0f ns a point; mean determinant %.8f, %.0f points outside\n", seconds,
     1e9 * seconds / passed, mean, outside);
-  // The sum over a grid is not quite the integral; the determinant varies within triangles.
+  // The sum over a grid only approximates the integral, because the determinant varies within
+  // triangles.
   const double coarseness = 50.0 / scale / scale;
   const bool good = map->GetNumberOfMeshBuilds() == 1 && passed >= 1.0 * side * side &&
     outside == 0.0 && std::abs(mean - 1.0) < coarseness && !(beyond > limit);

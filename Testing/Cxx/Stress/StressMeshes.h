@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file StressMeshes.h
-/// Random pairs of planar meshes with the same triangles, in families of growing malice.
+/// Random pairs of isomorphic planar meshes, in families of increasing difficulty.
 
 #ifndef StressMeshes_h
 #define StressMeshes_h
@@ -26,9 +26,9 @@ struct TestedSystem
   const char* Name;
   homeomorphism::CoordinateSystem System;
   homeomorphism::CenterPoint Center;
-  /// Power of ten of the least height over base that the system can take.
+  /// Power of ten of the least height over base that the system accepts.
   double Thinnest;
-  /// By what the powers of ten of all shapes are multiplied: less than 1 for a system that takes
+  /// Factor of the exponents of all shapes: less than 1 for a system that accepts
   /// less.
   double Malice;
 
@@ -84,7 +84,7 @@ struct PlanePair
   std::array<std::vector<Vector2>, 2> Points;
 };
 
-/// How bad the shapes may be.
+/// The range of shapes.
 enum class Shape
 {
   Fair,
@@ -110,7 +110,7 @@ inline Vector2 AnyApex(RandomNumbers& random, Shape shape, double malice, double
   }
 }
 
-/// The same for a triangle that is concordant.
+/// The apex of a concordant triangle.
 inline Vector2 ConcordantApex(RandomNumbers& random, Shape shape)
 {
   for (;;)
@@ -135,7 +135,7 @@ inline Vector2 ConcordantApex(RandomNumbers& random, Shape shape)
   }
 }
 
-/// The two sides of one edge.
+/// Two triangles with a common edge.
 inline std::vector<Vector2> TwoTriangles(
   RandomNumbers& random, Shape shape, double malice, double thinnest, bool concordant)
 {
@@ -147,7 +147,7 @@ inline std::vector<Vector2> TwoTriangles(
   return { { 0.0, 0.0 }, { 1.0, 0.0 }, left, { right.x, -right.y } };
 }
 
-/// A triangle and its three neighbors; they may overlap, in which case the mesh is refused.
+/// A triangle and its three neighbors. If they overlap, the mesh is refused.
 inline std::vector<Vector2> Cluster(RandomNumbers& random, Shape shape, double malice)
 {
   std::vector<Vector2> points{ { 0.0, 0.0 }, { 1.0, 0.0 },
@@ -219,7 +219,7 @@ inline Triangles GridCells()
   return cells;
 }
 
-/// Puts a mesh somewhere: turned or not, scaled, moved, rounded, as its family wants it.
+/// Transforms a mesh according to its family: rotation, scale, translation, rounding.
 inline void Put(RandomNumbers& random, int family, bool turn, std::vector<Vector2>& points)
 {
   double size = 0.0;
@@ -265,7 +265,7 @@ inline void Put(RandomNumbers& random, int family, bool turn, std::vector<Vector
   }
 }
 
-/// A pair of a family. It may turn out to be no valid pair, above all where coordinates are
+/// A pair of a family. It may be invalid, especially where coordinates are
 /// rounded.
 inline PlanePair AnyPair(RandomNumbers& random, int family, const TestedSystem& system)
 {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Maps as many points as asked for, in the meanest meshes and at the meanest places, and compares
-// what happens with the limits that Documentation/accuracy.md states. The result depends on the
-// seed and on the number of points alone, not on the number of threads.
+// Maps the requested number of points in extreme meshes at extreme positions, and compares the
+// errors with the bounds of Documentation/accuracy.md. The result depends on the seed and on the
+// number of points, not on the number of threads.
 //
 //   StressTest [--points N] [--seconds S] [--seed N] [--system NAME] [--family NAME] [--threads N]
 //   StressTest --reproduce SYSTEM FAMILY CASE [--seed N]
@@ -50,7 +50,7 @@ using homeomorphism::Vector3;
 constexpr double HalfUlp = Ulp / 2.0;
 constexpr int PointsPerCase = 256;
 
-/// What is measured. Each is compared with 1: the limits are in Measure().
+/// The measured values. Each is compared with 1: Measure() divides by the bounds.
 enum Quantity
 {
   LOCATION,
@@ -64,7 +64,7 @@ enum Quantity
 constexpr std::array<const char*, NUMBER_OF_QUANTITIES> QuantityNames{ "location", "image inside",
   "round trip", "det J", "orientation" };
 
-// The constants of the limits, see Documentation/accuracy.md.
+// The constants of the bounds, see Documentation/accuracy.md.
 constexpr double LocationLimit = 16.0;
 constexpr double InsideLimit = 8.0;
 constexpr double RoundTripLimit = 128.0;
@@ -77,7 +77,7 @@ struct Worst
 
   void Take(double value, std::int64_t number, int point)
   {
-    // NaN is the worst of all.
+    // NaN is the worst value.
     if (std::isnan(value))
     {
       value = std::numeric_limits<double>::infinity();
@@ -154,7 +154,7 @@ double StepsAside(double x, int count)
   return x;
 }
 
-/// One pair of meshes, its map, and the places in it.
+/// One pair of meshes, its map, and test points.
 class Case
 {
 public:
@@ -178,7 +178,7 @@ public:
     }
   }
 
-  /// Measures all points; describes point number @a told, if any.
+  /// Measures all points. Prints point number @a told, if any.
   const Report& Run(int told = -1)
   {
     if (!this->Map)
@@ -192,7 +192,7 @@ public:
       const auto triangle =
         static_cast<TriangleIndex>(this->Random.Below(static_cast<int>(this->Pair.Cells.size())));
       const Vector3 point = this->AnyPoint(from, triangle);
-      this->Told = i == told;
+      this->Log = i == told;
       this->Measure(i, from, triangle, point);
     }
     return this->Result;
@@ -239,7 +239,7 @@ private:
     return this->Map->GetPair().GetGeometry(domain);
   }
 
-  /// A triangle's corners in normalized coordinates.
+  /// The corners of a triangle in normalized coordinates.
   Corners CornersOf(Domain domain, TriangleIndex triangle) const
   {
     Corners corners;
@@ -257,8 +257,8 @@ private:
       l[0] * corners[0].y + l[1] * corners[1].y + l[2] * corners[2].y };
   }
 
-  /// A place in the input's coordinates: anywhere, on and within a few ulp of where formulas
-  /// change.
+  /// A point in coordinates of the input: anywhere, on and within a few ulp of the lines where
+  /// formulas change.
   Vector3 AnyPoint(Domain domain, TriangleIndex triangle)
   {
     RandomNumbers& random = this->Random;
@@ -330,7 +330,7 @@ private:
           corners, OnStripBorder(k, charts.GetSmoothChart(triangle).StripWidth(k), proportion));
       case homeomorphism::CoordinateSystem::Contour:
       {
-        // A wing segment, in the triangle's frame.
+        // A wing segment, in the frame of the triangle.
         const homeomorphism::ContourChart& chart = charts.GetContourChart(triangle);
         const MeshGeometry& geometry = this->GeometryOf(domain);
         const Vector2 middle = 0.5 * (chart.Center() + chart.Foot(k + 1));
@@ -375,8 +375,8 @@ private:
       jacobian.Determinant * rescale * rescale };
   }
 
-  /// The size of numbers in a triangle: the largest coordinate of its corners, and not less than
-  /// the least normal number of the input, below which numbers are coarser.
+  /// The magnitude S of a triangle: the largest coordinate of its corners, and at least the least
+  /// normal number of the input, below which precision decreases.
   double SizeOf(Domain domain, TriangleIndex triangle) const
   {
     const Corners corners = this->CornersOf(domain, triangle);
@@ -388,7 +388,7 @@ private:
     return size;
   }
 
-  /// How much a triangle's chart stretches the reference, over its longest edge; at least 1.
+  /// The stretch of the reference by the chart of a triangle, over its longest edge; at least 1.
   double StretchAt(Domain domain, const SurfacePoint& surfacePoint, const Barycentric& l) const
   {
     return Magnification(this->Map->GetCharts(domain).GetSmoothChart(surfacePoint.Triangle),
@@ -405,7 +405,7 @@ private:
       Vector2 start = corners[NextCorner(k)];
       Vector2 end = corners[PreviousCorner(k)];
       inside = inside && sign * Orientation(start, end, point) >= 0;
-      // Measured from the nearer end, lest rounding of the edge's length counts.
+      // Measured from the nearer end, so that rounding of the length of the edge does not matter.
       if (Norm(point - end) < Norm(point - start))
       {
         std::swap(start, end);
@@ -416,7 +416,7 @@ private:
       const double along = std::min(1.0, std::max(0.0, Dot(d, (1.0 / length) * edge) / length));
       nearest = std::min(nearest, Norm(d - along * edge));
     }
-    // Written so that NaN counts as outside.
+    // Negated so that NaN counts as outside.
     return inside ? 0.0 : nearest;
   }
 
@@ -448,7 +448,7 @@ private:
   void Take(Quantity quantity, double value, int i)
   {
     this->Result.Worsts[quantity].Take(value, this->Number, i);
-    if (this->Told)
+    if (this->Log)
     {
       std::cout << QuantityNames[quantity] << ": " << value << " of its limit\n";
     }
@@ -468,7 +468,7 @@ private:
     const MeshGeometry& target = this->GeometryOf(to);
     ++this->Result.Points;
     const SurfacePoint surfacePoint = this->Locate(from, point, triangle);
-    if (this->Told)
+    if (this->Log)
     {
       std::cout << "point " << i << " of the " << (from == Domain::Source ? "source" : "target")
                 << ": " << point[0] << ", " << point[1] << ", made in triangle " << triangle
@@ -476,7 +476,8 @@ private:
     }
     if (surfacePoint.Triangle < 0)
     {
-      // A few ulp aside is outside if it is farther than the reach, which is itself rounded.
+      // A point a few ulp outside is outside if it is farther than the tolerance, which is itself
+      // rounded.
       if (!(this->DistanceFromDomain(from, point) >
             0.25 * this->Map->GetAbsoluteTolerance(from, 0.0, HalfUlp)))
       {
@@ -485,7 +486,7 @@ private:
       return;
     }
 
-    // Where it was put: points outside by rounding go to the nearest point of the domain.
+    // The located position: points outside by rounding move to the nearest point of the domain.
     const Vector3 w = source.ToNormalized(point.data());
     const Vector3 p = source.FromFrame(surfacePoint.Triangle, surfacePoint.Point);
     const Vector2 start{ p[0], p[1] };
@@ -494,7 +495,7 @@ private:
         (LocationLimit * HalfUlp * source.GetLargestCoordinate()),
       i);
 
-    // The image lies in the triangle's counterpart.
+    // The image lies in the counterpart of the triangle.
     const Vector3 image = this->Image(from, surfacePoint);
     const Vector3 imageWorking = target.ToNormalized(image.data());
     const Vector2 y{ imageWorking[0], imageWorking[1] };
@@ -502,8 +503,8 @@ private:
     const double targetSize = this->SizeOf(to, surfacePoint.Triangle);
     this->Take(INSIDE, DistanceOutside(imageCorners, y) / (InsideLimit * HalfUlp * targetSize), i);
 
-    // The determinant is positive, or negative if the pair is mirrored, as rounding to millimeters
-    // does to some.
+    // The determinant is positive, or negative in a mirrored pair, which rounding to millimeters
+    // can produce.
     const Derivative derivative = this->DerivativeAt(from, surfacePoint);
     const Corners corners = this->CornersOf(from, surfacePoint.Triangle);
     const int sense = Orientation(corners[0], corners[1], corners[2]) *
@@ -524,7 +525,7 @@ private:
   {
     const Domain to = Opposite(from);
     const SurfacePoint there = this->Locate(to, image, -1);
-    if (this->Told)
+    if (this->Log)
     {
       std::cout << "  its image " << image[0] << ", " << image[1] << " is in triangle "
                 << there.Triangle << "\n";
@@ -546,7 +547,7 @@ private:
       targetStretch = this->StretchAt(to, surfacePoint, l);
     }
     const double error = Norm(back - start);
-    // Rounding may have put the image into a neighbor.
+    // Rounding may have moved the image into a neighbor.
     const auto sizeOf = [&](Domain domain) {
       return std::max(
         this->SizeOf(domain, surfacePoint.Triangle), this->SizeOf(domain, there.Triangle));
@@ -557,12 +558,12 @@ private:
     double limit = RoundTripLimit * HalfUlp * (sourceSize + inverseNorm * stretchedSize);
     if (!(error <= limit))
     {
-      // Where the derivative changes within the rounding of the image, what a change of the image
-      // by rounding amounts to is the limit.
+      // Where the derivative changes within the rounding of the image, the bound is the change of
+      // the preimage under that rounding.
       limit += 4.0 * this->LargestShiftNear(to, image, 32.0 * HalfUlp * stretchedSize, back);
     }
     this->Take(ROUND_TRIP, error / limit, i);
-    if (this->Told)
+    if (this->Log)
     {
       const auto first = this->Map->GetCoordinates(from, surfacePoint);
       const auto second = this->Map->GetCoordinates(to, there);
@@ -577,9 +578,9 @@ private:
     }
   }
 
-  /// How far the images of points at most a distance away from a point are from a place: by how
-  /// much the map from @a from's domain turns rounding into errors, however fast its derivative
-  /// changes.
+  /// The greatest distance from a position of the images of points within some distance of a point:
+  /// the factor by which the map from the domain of @a from magnifies rounding, even if its
+  /// derivative changes quickly.
   double LargestShiftNear(
     Domain from, const Vector3& point, double distance, const Vector2& image) const
   {
@@ -594,7 +595,7 @@ private:
       }
       const homeomorphism::TriangleShape& shape = geometry.GetShape(t);
       const Vector2 center = geometry.ToFrame(t, normalized).InPlane;
-      // A triangle may be thinner than the distance: its whole thickness counts, there.
+      // A triangle may be thinner than the distance; then its whole thickness counts.
       for (int i = 0; i < 5; ++i)
       {
         const double x = std::min(shape.Base, std::max(0.0, center.x + 0.5 * (i - 2) * distance));
@@ -615,7 +616,7 @@ private:
     return largest;
   }
 
-  /// The derivative from frame to frame, where a needle is as well-conditioned as any triangle.
+  /// The derivative between the frames of the triangles, in which needles are well-conditioned.
   Matrix2 FrameDerivativeAt(Domain from, const SurfacePoint& surfacePoint) const
   {
     const ChartedTriangulation& charts = this->Map->GetCharts(from);
@@ -642,8 +643,8 @@ private:
     return v.x * matrix.ImageOfX + v.y * matrix.ImageOfY;
   }
 
-  /// Maps a triangle around the place, so small that the map is almost affine on it and so large
-  /// that rounding does not matter, and looks at its orientation.
+  /// Maps a triangle around the point, so small that the map is almost affine on it and so large
+  /// that rounding does not matter, and checks its orientation.
   void MeasureOrientation(int i, Domain from, const SurfacePoint& surfacePoint, double targetSize)
   {
     const homeomorphism::TriangleShape& shape =
@@ -651,7 +652,7 @@ private:
     const Barycentric l = shape.ToBarycentric(surfacePoint.Point.InPlane);
     const double room = std::min({ l[0], l[1], l[2] });
     const int turn = this->Random.Below(2);
-    // The frame's orientation is the corners', whatever their order in the plane.
+    // The orientation of the frame is that of the corners, whatever their order in the plane.
     const double handedness = this->GeometryOf(Opposite(from)).GetHandedness(surfacePoint.Triangle);
     const double rounding = 64.0 * HalfUlp * targetSize;
     constexpr int tries = 16;
@@ -662,9 +663,9 @@ private:
       {
         return;
       }
-      // The corners, and the middles of the edges.
+      // The corners, and the midpoints of the edges.
       constexpr int count = 6;
-      std::array<SurfacePoint, count> places;
+      std::array<SurfacePoint, count> samples;
       std::array<Matrix2, count> derivatives;
       std::array<int, count> edges{};
       for (int k = 0; k < count; ++k)
@@ -673,23 +674,23 @@ private:
         const double step = k < 3 ? size : -0.5 * size;
         moved[k % 3] += step;
         moved[(k % 3 + 1 + turn) % 3] -= step;
-        places[k].Triangle = surfacePoint.Triangle;
-        places[k].Point.InPlane = shape.FromBarycentric(moved);
-        derivatives[k] = this->FrameDerivativeAt(from, places[k]);
+        samples[k].Triangle = surfacePoint.Triangle;
+        samples[k].Point.InPlane = shape.FromBarycentric(moved);
+        derivatives[k] = this->FrameDerivativeAt(from, samples[k]);
         if (this->System.System == homeomorphism::CoordinateSystem::Contour)
         {
-          edges[k] = this->Map->GetCoordinates(from, places[k]).Edge;
+          edges[k] = this->Map->GetCoordinates(from, samples[k]).Edge;
         }
       }
       if (std::count(edges.begin(), edges.end(), edges[0]) < count)
       {
         continue;
       }
-      const Vector2& corner = places[0].Point.InPlane;
-      const Vector2 first = places[1].Point.InPlane - corner;
-      const Vector2 second = places[2].Point.InPlane - corner;
-      // What rounding leaves of the triangle itself: as much of a needle as of any triangle, but
-      // for Contour, whose frames are those of the edges.
+      const Vector2& corner = samples[0].Point.InPlane;
+      const Vector2 first = samples[1].Point.InPlane - corner;
+      const Vector2 second = samples[2].Point.InPlane - corner;
+      // The effect of rounding on the triangle itself. It does not depend on the shape of the
+      // triangle except for Contour, whose frames are those of the edges.
       const double area = Cross(first, second);
       if (area < 1e-3 * size * size * shape.Base * shape.Height ||
         (this->System.System == homeomorphism::CoordinateSystem::Contour &&
@@ -697,7 +698,7 @@ private:
       {
         return;
       }
-      // Almost affine: whichever of the derivatives is taken, the image is much the same.
+      // Almost affine: the image is nearly the same for each of the derivatives.
       const double predicted = Cross(Times(derivatives[0], first), Times(derivatives[0], second));
       bool tame = predicted > 0.0;
       double longest = 0.0;
@@ -715,7 +716,7 @@ private:
       {
         continue;
       }
-      // An image whose height drowns in rounding says nothing, and smaller ones less.
+      // An image whose height is below rounding is not conclusive, and neither are smaller ones.
       if (predicted < rounding * (longest + rounding))
       {
         return;
@@ -723,7 +724,7 @@ private:
       std::array<Vector2, 3> images;
       for (int k = 0; k < 3; ++k)
       {
-        images[k] = this->WorkingImage(from, places[k]);
+        images[k] = this->WorkingImage(from, samples[k]);
       }
       ++this->Result.Oriented;
       this->Take(ORIENTATION,
@@ -731,7 +732,7 @@ private:
           ? 0.0
           : std::numeric_limits<double>::infinity(),
         i);
-      if (this->Told)
+      if (this->Log)
       {
         std::cout << "  triangle of size " << size << ", area of the image "
                   << handedness * Cross(images[1] - images[0], images[2] - images[0])
@@ -747,7 +748,7 @@ private:
   PlanePair Pair;
   std::shared_ptr<const Homeomorphism> Map;
   Report Result;
-  bool Told = false;
+  bool Log = false;
 };
 
 struct Options
@@ -761,7 +762,7 @@ struct Options
   std::int64_t Reproduce = -1;
 };
 
-/// Runs cases of one system and family until their points or the time are used up.
+/// Runs the cases of one system and family until their points or the time are used up.
 Report RunCases(
   const Options& options, const TestedSystem& system, int family, double points, double seconds)
 {
@@ -907,8 +908,8 @@ int main(int argc, char* argv[])
   {
     return Usage();
   }
-  // Threads have cases of their own; VTK's, which are not meant to be started by several threads at
-  // once, would have nothing left to do.
+  // The threads are std::threads with separate cases. VTK's threads must not be started by several
+  // threads at once.
   vtkSMPTools::SetBackend("Sequential");
   std::vector<std::pair<const TestedSystem*, int>> chosen;
   for (const TestedSystem& system : Systems)

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// @file PlacedTriangle.h
-/// A triangle somewhere in the plane, with the frame that the kernel sees it in, for tests.
+/// @file PlaneTriangle.h
+/// A triangle of the plane together with its frame, for tests.
 
-#ifndef PlacedTriangle_h
-#define PlacedTriangle_h
+#ifndef PlaneTriangle_h
+#define PlaneTriangle_h
 
 #include "Kernel/CoordinateSystem.h"
 #include "Kernel/Geometry.h"
@@ -20,14 +20,14 @@ namespace homeomorphism_test
 
 using namespace homeomorphism;
 
-struct PlacedTriangle
+struct PlaneTriangle
 {
   std::array<Vector2, 3> Corners;
   TriangleShape Shape;
   Vector2 Origin;
   Vector2 Tangent;
 
-  explicit PlacedTriangle(const std::array<Vector2, 3>& corners)
+  explicit PlaneTriangle(const std::array<Vector2, 3>& corners)
     : Corners(corners)
   {
     double longest = 0.0;
@@ -84,8 +84,9 @@ struct PlacedTriangle
   }
 };
 
-/// A homeomorphism's derivative, given in the frames of two triangles, in the plane's coordinates.
-inline Matrix2 InPlane(const PlacedTriangle& from, const PlacedTriangle& to, const Matrix2& matrix)
+/// Transforms the derivative of a homeomorphism from the frames of two triangles to coordinates of
+/// the plane.
+inline Matrix2 InPlane(const PlaneTriangle& from, const PlaneTriangle& to, const Matrix2& matrix)
 {
   const auto image = [&](const Vector2& v) {
     const Vector2 w{ Dot(v, from.Tangent), Cross(from.Tangent, v) };
