@@ -46,7 +46,7 @@ vtkSmartPointer<vtkPointSet> MapPoints(
 /// points at random, a part of them close to edges and vertices.
 double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter, int system)
 {
-  const auto cloud = MakeCloud(pair.Source, RandomPlaces(pair.Source, 20000, 5));
+  const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 5));
   const auto exact = MapPoints(pair.Source, pair.Target, cloud, system);
   const auto linear = MapPoints(
     filter->GetOutput(), filter->GetTargetOutput(), cloud, vtkDifferentiableHomeomorphism::LINEAR);
