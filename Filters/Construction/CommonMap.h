@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file CommonMap.h
+/// One planar map drawn in two domains.
+
+#ifndef homeomorphism_CommonMap_h
+#define homeomorphism_CommonMap_h
+
+#include "ConstrainedTriangulation.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Vertices and edges with one drawing in each of two domains. The drawings are isomorphic at all
+/// times: an edge is added only if it crosses nothing in either domain, enters the same corner at
+/// both ends, and separates the other components in the same way. Each drawing is the constrained
+/// part of a constrained Delaunay triangulation, whose other edges are the candidates for more.
+class CommonMap
+{
+public:
+  /// Why an edge cannot be added.
+  enum class Refusal
+  {
+    None,
+    Crosses,
+    MeetsVertex,
+    CyclicOrder,
+    Separates,
+    Outside,
+    Exists
+  };
+
+  struct Answer
+  {
+    Refusal Why = Refusal::None;
+    /// In which domain, or -1.
+    int Domain = -1;
+    /// The constrained edge crossed, the vertex met (twice), or vertices on different sides.
+    std::vector<int> Vertices;
+  };
+
+  /// A face that is not a triangle.
+  struct Face
+  {
+    /// The boundary's closed walks, the face on the left; one vertex alone is a walk, too.
+    std::vector<std::vector<int>> Walks;
+    /// If there is one walk: the constrained Delaunay triangulation of the face in each domain, as
+    /// triples of positions along the walk.
+    std::array<std::vector<std::array<int, 3>>, 2> Triangles;
+  };
+
+  /// @a points must not contain coincident points. They become the vertices from
+  /// ConstrainedTriangulation::BoxCorners on.
+  explicit CommonMap(const std::array<std::vector<Vector2>, 2>& points);
+  CommonMap(const CommonMap&) = delete;
+  CommonMap& operator=(const CommonMap&) = delete;
+
+  /// Adds an edge if that is allowed.
+  Answer Add(int from, int to);
+
+  /// Joins two walks of a face by an edge or by a polygonal line with added vertices. Returns the
+  /// number of added vertices, or -1 if double precision does not suffice.
+  int Bridge(const Face& face);
+
+  /// Closes the faces that an even number of loops surround; edges in them are refused.
+  void MarkOutside(const std::vector<std::array<int, 2>>& loopEdges);
+  bool IsOutside(int vertex, int domain) const;
+
+  /// Chooses in which order edges are tried: 0 by the longer of the two lengths, 1 by their sum, 2
+  /// and 3 by the length in one domain, others by the longer length in a different disorder each.
+  void SetOrder(int order) { this->Order = order; }
+
+  /// Length of an edge in shares of the figure's extent, of both domains in the way of the order.
+  double ScaledLength(int from, int to) const;
+
+  /// Unconstrained edges of both triangulations inside the domain, the shortest first.
+  std::vector<std::array<int, 2>> Candidates() const;
+
+  /// The faces inside the domain: triangles, and others.
+  void Faces(std::vector<std::array<int, 3>>& triangles, std::vector<Face>& faces) const;
+
+  int GetNumberOfComponents() const { return this->NumberOfComponents; }
+  int Component(int vertex) const;
+  const std::vector<Vector2>& GetPoints(int domain) const { return this->Points[domain]; }
+  const ConstrainedTriangulation& GetDrawing(int domain) const { return this->Drawings[domain]; }
+
+private:
+  using Triangulation = ConstrainedTriangulation;
+
+  /// A bridge: straight in one domain, through these edges in the other.
+  struct Route
+  {
+    int From = -1;
+    int To = -1;
+    int StraightDomain = 0;
+    std::vector<Vector2> Bends;
+  };
+
+  bool SeparatesAlike(int from, int to, std::vector<int>& differing);
+  bool Flood(int domain, int start, std::size_t limit, std::vector<int>& region);
+  std::vector<std::array<int, 2>> Signature(int domain, const std::vector<int>& region) const;
+  std::vector<int> Fan(int domain, int vertex, int before) const;
+  void FindRoutes(int domain, int from, int before, const std::vector<std::array<int, 2>>& goals,
+    std::vector<Route>& routes) const;
+  std::vector<Vector2> Shorten(int domain, int from, int to,
+    const std::vector<std::array<int, 2>>& portals, double clearance) const;
+  std::vector<std::array<int, 3>> FaceTriangles(int domain, const std::vector<int>& walk) const;
+
+  std::array<std::vector<Vector2>, 2> Points;
+  std::array<ConstrainedTriangulation, 2> Drawings;
+  std::array<double, 2> Scales{ { 1.0, 1.0 } };
+  int Order = 0;
+  mutable std::vector<int> Parents;
+  std::vector<int> Degrees;
+  int NumberOfComponents = 0;
+  std::array<std::vector<int>, 2> Marks;
+  int LastMark = 0;
+};
+
+} // namespace homeomorphism
+
+#endif

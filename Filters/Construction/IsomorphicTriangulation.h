@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file IsomorphicTriangulation.h
+/// Isomorphic triangulations of two drawings of one figure.
+
+#ifndef homeomorphism_IsomorphicTriangulation_h
+#define homeomorphism_IsomorphicTriangulation_h
+
+#include "FigurePair.h"
+#include "PairQuality.h"
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// What is triangulated.
+enum class FigureDomain
+{
+  /// The inside of the loops if there are any, else a frame.
+  Automatic,
+  /// The inside of the loops.
+  Outline,
+  /// A frame around the points.
+  Frame,
+  /// The convex hulls, if they have the same points in the same order.
+  ConvexHull
+};
+
+struct IsomorphicTriangulationOptions
+{
+  FigureDomain Domain = FigureDomain::Automatic;
+  /// Corresponding corners of two convex polygons around the points; both empty: the source's
+  /// bounds, 5 percent larger, and their image by the affine map that fits best, or where that would
+  /// have to be much larger the target's bounds.
+  std::array<std::vector<Vector2>, 2> Frames;
+  PairQuality Quality = PairQuality::MinimumAngle;
+  /// How many points may be added; -1: as many as necessary, and up to 100 for better triangles.
+  int MaximumNumberOfAddedPoints = -1;
+  /// Points are added until the smallest angle of both domains, in degrees, is this large, or for
+  /// other qualities until QualityOf is. 0: only the points that are necessary.
+  double TargetQuality = 0.0;
+  /// Triangles larger than this share of their domain's area are divided. 0: none is.
+  double MaximumTriangleSize = 0.0;
+  /// Leave out lines' segments that do not agree with the rest of the figure instead of refusing.
+  bool LeaveOutConflictingSegments = false;
+  /// Called now and then with the progress from 0 to 1; false stops the work.
+  std::function<bool(double)> Progress;
+};
+
+struct IsomorphicTriangulationResult
+{
+  std::array<std::vector<Vector2>, 2> Points;
+  /// The figure's number of each point: i for the first points, -1 for frame corners and added ones.
+  std::vector<int> OriginalIds;
+  /// Anticlockwise in the source; in the target clockwise if the figures are mirror images.
+  std::vector<std::array<int, 3>> Triangles;
+  /// The figure's edges, frames included: loops first, then segments.
+  std::vector<std::array<int, 2>> LoopEdges;
+  std::vector<std::array<int, 2>> Segments;
+  /// Empty, or why there are no triangles.
+  FigureProblems Problems;
+  /// Segments that were left out, and why.
+  FigureProblems LeftOut;
+  bool Mirrored = false;
+  /// Points added, frame corners not counted.
+  int NumberOfAddedPoints = 0;
+  int NumberOfFrameCorners = 0;
+
+  bool IsComplete() const { return this->Problems.empty(); }
+};
+
+IsomorphicTriangulationResult MakeIsomorphicTriangulation(
+  const FigurePair& figure, const IsomorphicTriangulationOptions& options);
+
+/// Corners of two rectangles, given as the lower and the upper corner, so that corners of the same
+/// number correspond under the affine map that fits the points best. The target's run the other way
+/// round if that map is a reflection.
+std::array<std::vector<Vector2>, 2> MatchRectangles(const FigurePair& figure,
+  const std::array<Vector2, 2>& source, const std::array<Vector2, 2>& target);
+
+/// What a user is told of a pair of triangulations.
+struct PairStatistics
+{
+  std::array<double, 2> MinimumAngle{ { 0.0, 0.0 } };
+  /// The triangle where it is.
+  std::array<int, 2> MinimumAngleTriangle{ { -1, -1 } };
+  /// Shares of the angles of each domain below 10, 15 and 20 degrees.
+  std::array<std::array<double, 3>, 2> SharesBelow{};
+  /// Shares of the triangles that are obtuse, or discordant, in at least one domain.
+  double ObtuseShare = 0.0;
+  double DiscordantShare = 0.0;
+  /// The largest ratio of singular values, and its triangle.
+  double LargestDistortion = 1.0;
+  int LargestDistortionTriangle = -1;
+  /// For each triangle.
+  std::vector<double> MinimumAngles;
+  std::vector<double> Distortions;
+};
+
+PairStatistics MeasurePair(const std::array<std::vector<Vector2>, 2>& points,
+  const std::vector<std::array<int, 3>>& triangles);
+
+} // namespace homeomorphism
+
+#endif

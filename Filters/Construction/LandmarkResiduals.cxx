@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "LandmarkResiduals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace homeomorphism
+{
+namespace
+{
+
+constexpr int Neighbors = 18;
+
+/// Points in square cells, to find the nearest ones.
+class Cells
+{
+public:
+  explicit Cells(const std::vector<Vector2>& points)
+    : Points(points)
+  {
+    Vector2 high = points[0];
+    this->Low = points[0];
+    for (const Vector2& p : points)
+    {
+      this->Low = { std::min(this->Low.x, p.x), std::min(this->Low.y, p.y) };
+      high = { std::max(high.x, p.x), std::max(high.y, p.y) };
+    }
+    const double width = high.x - this->Low.x;
+    const double height = high.y - this->Low.y;
+    // Some four points a cell, and no more cells than points along a line.
+    const double n = static_cast<double>(points.size());
+    this->Size = std::max({ std::sqrt(4.0 * width * height / n), 4.0 * width / n,
+      4.0 * height / n, std::numeric_limits<double>::min() });
+    this->Columns = static_cast<int>(width / this->Size) + 1;
+    this->Rows = static_cast<int>(height / this->Size) + 1;
+    this->Starts.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
+    for (const Vector2& p : points)
+    {
+      ++this->Starts[this->CellOf(p) + 1];
+    }
+    for (std::size_t i = 1; i < this->Starts.size(); ++i)
+    {
+      this->Starts[i] += this->Starts[i - 1];
+    }
+    std::vector<int> at(this->Starts.begin(), this->Starts.end() - 1);
+    this->Members.resize(points.size());
+    for (int i = 0; i < static_cast<int>(points.size()); ++i)
+    {
+      this->Members[at[this->CellOf(points[i])]++] = i;
+    }
+  }
+
+  /// The nearest other points with their squared distances, nearest first.
+  std::vector<std::pair<double, int>> Nearest(int point, std::size_t count) const
+  {
+    std::vector<std::pair<double, int>> found;
+    const Vector2 p = this->Points[point];
+    const int cell = static_cast<int>(this->CellOf(p));
+    const int column = cell % this->Columns;
+    const int row = cell / this->Columns;
+    for (int ring = 0; ring <= std::max(this->Columns, this->Rows); ++ring)
+    {
+      for (int r = std::max(row - ring, 0); r <= std::min(row + ring, this->Rows - 1); ++r)
+      {
+        const bool whole = std::abs(r - row) == ring;
+        for (int c = column - ring; c <= column + ring; c += whole || ring == 0 ? 1 : 2 * ring)
+        {
+          if (c < 0 || c >= this->Columns)
+          {
+            continue;
+          }
+          const std::size_t at = static_cast<std::size_t>(r) * this->Columns + c;
+          for (int i = this->Starts[at]; i < this->Starts[at + 1]; ++i)
+          {
+            const Vector2 d = this->Points[this->Members[i]] - p;
+            if (this->Members[i] != point)
+            {
+              found.emplace_back(Dot(d, d), this->Members[i]);
+            }
+          }
+        }
+      }
+      // Points beyond this ring are farther than it is wide.
+      if (found.size() >= count)
+      {
+        std::nth_element(found.begin(), found.begin() + (count - 1), found.end());
+        if (found[count - 1].first <= ring * this->Size * ring * this->Size)
+        {
+          break;
+        }
+      }
+    }
+    std::sort(found.begin(), found.end());
+    found.resize(std::min(found.size(), count));
+    return found;
+  }
+
+private:
+  std::size_t CellOf(const Vector2& p) const
+  {
+    const int column = static_cast<int>((p.x - this->Low.x) / this->Size);
+    const int row = static_cast<int>((p.y - this->Low.y) / this->Size);
+    return static_cast<std::size_t>(std::min(row, this->Rows - 1)) * this->Columns +
+      std::min(column, this->Columns - 1);
+  }
+
+  const std::vector<Vector2>& Points;
+  Vector2 Low;
+  double Size;
+  int Columns;
+  int Rows;
+  std::vector<int> Starts;
+  std::vector<int> Members;
+};
+
+/// The monomials of a polynomial of degree two, the affine ones first.
+std::array<double, 6> Monomials(const Vector2& p)
+{
+  return { 1.0, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y };
+}
+
+/// Value at the origin of the weighted least-squares polynomial with @a terms monomials.
+Vector2 FitAtOrigin(const std::vector<Vector2>& from, const std::vector<Vector2>& to,
+  const std::vector<double>& weights, int terms, std::array<Vector2, 6>& coefficients)
+{
+  double a[6][6] = {};
+  coefficients = {};
+  for (std::size_t i = 0; i < from.size(); ++i)
+  {
+    const std::array<double, 6> m = Monomials(from[i]);
+    for (int r = 0; r < terms; ++r)
+    {
+      for (int c = 0; c < terms; ++c)
+      {
+        a[r][c] += weights[i] * m[r] * m[c];
+      }
+      coefficients[r] = coefficients[r] + (weights[i] * m[r]) * to[i];
+    }
+  }
+  // A trace of preference for small coefficients decides where neighbors are on a line.
+  for (int r = 1; r < terms; ++r)
+  {
+    a[r][r] += (r < 3 ? 1e-9 : 1e-3) * a[0][0];
+  }
+  // Positive definite: elimination needs no pivots.
+  for (int k = 0; k < terms; ++k)
+  {
+    for (int r = k + 1; r < terms; ++r)
+    {
+      const double factor = a[r][k] / a[k][k];
+      for (int c = k; c < terms; ++c)
+      {
+        a[r][c] -= factor * a[k][c];
+      }
+      coefficients[r] = coefficients[r] - factor * coefficients[k];
+    }
+  }
+  for (int k = terms; k-- > 0;)
+  {
+    for (int c = k + 1; c < terms; ++c)
+    {
+      coefficients[k] = coefficients[k] - a[k][c] * coefficients[c];
+    }
+    coefficients[k] = (1.0 / a[k][k]) * coefficients[k];
+  }
+  return coefficients[0];
+}
+
+} // namespace
+
+std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>& landmarks)
+{
+  const std::size_t n = landmarks[0].size();
+  std::vector<double> residuals(n, 0.0);
+  if (n < 5)
+  {
+    return residuals;
+  }
+  const Cells cells(landmarks[0]);
+  const int terms = n < 9 ? 3 : 6;
+  std::vector<Vector2> from;
+  std::vector<Vector2> to;
+  std::vector<double> near;
+  std::vector<double> weights;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const auto nearest = cells.Nearest(static_cast<int>(i), Neighbors);
+    const double radius = std::sqrt(nearest.back().first);
+    from.clear();
+    to.clear();
+    near.clear();
+    for (const auto& [square, neighbor] : nearest)
+    {
+      from.push_back((1.0 / radius) * (landmarks[0][neighbor] - landmarks[0][i]));
+      to.push_back(landmarks[1][neighbor] - landmarks[1][i]);
+      near.push_back(std::exp(-2.0 * square / (radius * radius)));
+    }
+    weights = near;
+    std::array<Vector2, 6> coefficients;
+    Vector2 expected;
+    for (int pass = 0; pass < 12; ++pass)
+    {
+      expected = FitAtOrigin(from, to, weights, terms, coefficients);
+      errors.clear();
+      for (std::size_t k = 0; k < from.size(); ++k)
+      {
+        const std::array<double, 6> m = Monomials(from[k]);
+        Vector2 error = to[k];
+        for (int r = 0; r < terms; ++r)
+        {
+          error = error - m[r] * coefficients[r];
+        }
+        errors.push_back(std::hypot(error.x, error.y));
+      }
+      std::vector<double> sorted = errors;
+      std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+      const double scale = sorted[sorted.size() / 2];
+      if (!(scale > 0.0))
+      {
+        break;
+      }
+      for (std::size_t k = 0; k < from.size(); ++k)
+      {
+        const double ratio = errors[k] / scale;
+        weights[k] = near[k] / (1.0 + 0.5 * ratio * ratio);
+      }
+    }
+    residuals[i] = std::hypot(expected.x, expected.y);
+  }
+  return residuals;
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file LandmarkResiduals.h
+/// Which landmark is probably wrong.
+
+#ifndef homeomorphism_LandmarkResiduals_h
+#define homeomorphism_LandmarkResiduals_h
+
+#include "Kernel/Geometry.h"
+
+#include <array>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// For each landmark, the distance in the target, in its units, between the landmark and the place
+/// where a smooth map through its neighbors puts it. The map is a quadratic polynomial (an affine
+/// map if there are fewer than nine landmarks), fitted without the landmark to its 18 nearest
+/// neighbors in the source, nearer ones with more weight; neighbors that do not fit lose theirs
+/// (Cauchy weights), so that a wrong landmark does not accuse the others. 0 for all if there are
+/// fewer than five landmarks.
+std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>& landmarks);
+
+} // namespace homeomorphism
+
+#endif

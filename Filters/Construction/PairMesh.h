@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file PairMesh.h
+/// A triangulation drawn in two domains that can be changed locally, and changed back.
+
+#ifndef homeomorphism_PairMesh_h
+#define homeomorphism_PairMesh_h
+
+#include "FaceFilling.h"
+#include "PairQuality.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// Triangles that are anticlockwise in both domains at all times. Added points, those from
+/// FirstAdded on, can be moved and removed; the edges of the figure are fixed.
+class PairMesh
+{
+public:
+  /// Edge k is opposite vertex k.
+  struct Triangle
+  {
+    std::array<int, 3> Vertices{ { -1, -1, -1 } };
+    std::array<int, 3> Neighbors{ { -1, -1, -1 } };
+    std::array<bool, 3> Fixed{ { false, false, false } };
+    bool Alive = false;
+    double Quality = 0.0;
+  };
+
+  /// @param fixed the ends of fixed edges; those of the boundary are fixed anyway
+  PairMesh(const std::array<std::vector<Vector2>, 2>& points,
+    const std::vector<std::array<int, 3>>& triangles,
+    const std::vector<std::array<int, 2>>& fixed, int firstAdded, PairQuality quality);
+
+  const std::vector<Triangle>& GetTriangles() const { return this->Triangles; }
+  const std::vector<Vector2>& GetPoints(int domain) const { return this->Points[domain]; }
+  int GetNumberOfPoints() const { return static_cast<int>(this->Points[0].size()); }
+  int GetFirstAdded() const { return this->FirstAdded; }
+  PairQuality GetQuality() const { return this->Quality; }
+  void SetQuality(PairQuality quality);
+  bool IsUsed(int vertex) const { return this->TriangleOf[vertex] >= 0; }
+  /// Whether the vertex was added and has no fixed edge.
+  bool IsFree(int vertex) const;
+  int CountAdded() const;
+  std::vector<int> FreeVertices() const;
+
+  int GetTriangleOf(int vertex) const { return this->TriangleOf[vertex]; }
+  int IndexOf(int triangle, int vertex) const;
+  TrianglePoints PointsOf(int triangle, int domain) const;
+
+  /// The triangles around a vertex, anticlockwise. False if the vertex is on the boundary: then they
+  /// begin with the boundary.
+  bool Star(int vertex, std::vector<int>& star) const;
+
+  /// The triangles that share a vertex with these, these first.
+  std::vector<int> Grow(const std::vector<int>& triangles) const;
+
+  /// The corners of the closed walk around triangles, anticlockwise; false if they are not a disk or
+  /// contain a fixed edge.
+  bool Outline(const std::vector<int>& triangles, std::vector<int>& outline) const;
+
+  /// Puts other triangles with the same outline in the place of some.
+  std::vector<int> Replace(
+    const std::vector<int>& triangles, const std::vector<std::array<int, 3>>& vertices);
+
+  int AddPoint(const Vector2& source, const Vector2& target);
+  void Move(int vertex, int domain, const Vector2& position);
+  /// Computes the quality of the triangle anew, after its points have moved.
+  void Update(int triangle);
+
+  /// Flips an edge if both quadrangles are convex and the worse of the two triangles gets better.
+  bool FlipIfBetter(int triangle, int edge, std::vector<int>& made);
+
+  /// The number of changes so far, to go back to.
+  std::size_t Mark() const { return this->Changes.size(); }
+  void RollBack(std::size_t mark);
+  /// Forgets how to go back.
+  void Commit() { this->Changes.clear(); }
+
+  /// The worst triangle that @a skip does not exclude, -1 if there is none.
+  int Worst(const std::vector<char>& skip = {}) const;
+  double WorstQuality() const;
+  /// A smooth lower bound of the worst quality, which also counts how many triangles are bad.
+  double Score() const;
+
+private:
+  struct Change
+  {
+    /// A replacement: triangles as they were, and the numbers of those that came.
+    std::vector<int> Old;
+    std::vector<Triangle> Before;
+    std::vector<int> Made;
+    /// A movement, or a point added (domain -1).
+    int Vertex = -1;
+    int Domain = 0;
+    Vector2 Position;
+  };
+
+  int Allocate();
+  void Free(int triangle);
+
+  std::array<std::vector<Vector2>, 2> Points;
+  std::vector<Triangle> Triangles;
+  std::vector<int> TriangleOf;
+  std::vector<int> FreeTriangles;
+  std::vector<Change> Changes;
+  int FirstAdded;
+  PairQuality Quality;
+};
+
+} // namespace homeomorphism
+
+#endif

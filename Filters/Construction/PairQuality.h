@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file PairQuality.h
+/// How good a triangle of a pair of triangulations is.
+
+#ifndef homeomorphism_PairQuality_h
+#define homeomorphism_PairQuality_h
+
+#include "Kernel/Geometry.h"
+
+#include <array>
+
+namespace homeomorphism
+{
+
+/// What an isomorphic triangulation is optimized for. The worst triangle counts.
+enum class PairQuality
+{
+  /// The smallest angle of both domains.
+  MinimumAngle,
+  /// How far inside the edges the centroid's feet are, so that the Contour system applies.
+  Concordance,
+  /// The ratio of the singular values of the affine map between the two triangles.
+  Distortion,
+  /// The largest angle of both domains.
+  NonObtuse
+};
+
+using TrianglePoints = std::array<Vector2, 3>;
+
+/// The angles of a triangle in degrees; negative if it is clockwise.
+std::array<double, 3> Angles(const TrianglePoints& triangle);
+
+/// The larger of the two singular values of the affine map from @a source to @a target divided by
+/// the smaller one: 1 for a similarity. Infinite for degenerate triangles.
+double Distortion(const TrianglePoints& source, const TrianglePoints& target);
+
+/// The quality of a pair of triangles, the higher the better, at most 60 (for NonObtuse 120); -1
+/// unless both triangles are anticlockwise, by exact orientation.
+double QualityOf(
+  PairQuality quality, const TrianglePoints& source, const TrianglePoints& target);
+
+/// One term of a smooth lower bound of the quality.
+struct QualityTerm
+{
+  double Value = 0.0;
+  /// Derivatives by the three corners.
+  TrianglePoints Gradient;
+};
+
+/// The terms whose smallest is the quality of a triangle in one domain, with their derivatives by
+/// that triangle's corners. @a other is the triangle in the other domain (for Distortion). Returns
+/// the number of terms, 0 if the triangle is not anticlockwise.
+int QualityTerms(PairQuality quality, const TrianglePoints& triangle, const TrianglePoints& other,
+  std::array<QualityTerm, 9>& terms);
+
+} // namespace homeomorphism
+
+#endif
