@@ -6,6 +6,7 @@
 #include "Kernel/ExactSign.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -14,6 +15,9 @@ namespace homeomorphism
 {
 namespace
 {
+
+/// The share of an edge that must be visible for a bend to be put on it.
+constexpr double VisibleShare = 0.1;
 
 std::vector<Vector2> WithBox(const std::vector<Vector2>& points)
 {
@@ -475,7 +479,7 @@ void CommonMap::Faces(
 }
 
 std::vector<Vector2> CommonMap::Shorten(int domain, int from, int to,
-  const std::vector<std::array<int, 2>>& portals, double clearance) const
+  const std::vector<std::array<int, 2>>& portals) const
 {
   const auto& points = this->Points[domain];
   std::vector<Vector2> bends;
@@ -508,7 +512,7 @@ std::vector<Vector2> CommonMap::Shorten(int domain, int from, int to,
         {
           break;
         }
-        if (high - low >= clearance)
+        if (high - low >= VisibleShare)
         {
           stop = i;
           bend = l + (0.5 * (low + high)) * along;
@@ -533,8 +537,8 @@ std::vector<Vector2> CommonMap::Shorten(int domain, int from, int to,
   return bends;
 }
 
-void CommonMap::FindRoutes(int domain, int from, int before,
-  const std::vector<std::array<int, 2>>& goals, std::vector<Route>& routes) const
+std::vector<std::vector<Vector2>> CommonMap::FindWays(
+  int domain, int from, int before, const std::vector<std::array<int, 2>>& goals) const
 {
   // Breadth first through the triangles of the face, from all of the corner's.
   const auto& drawing = this->Drawings[domain];
@@ -560,6 +564,7 @@ void CommonMap::FindRoutes(int domain, int from, int before,
   {
     rank[queue[i]] = static_cast<int>(i);
   }
+  std::vector<std::vector<Vector2>> ways;
   for (const auto& goal : goals)
   {
     int best = -1;
@@ -584,12 +589,107 @@ void CommonMap::FindRoutes(int domain, int from, int before,
         { triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
     }
     std::reverse(portals.begin(), portals.end());
-    routes.push_back({ from, goal[0], 1 - domain,
-      this->Shorten(domain, from, goal[0], portals, 0.1) });
+    ways.push_back(this->Shorten(domain, from, goal[0], portals));
   }
+  return ways;
 }
 
-int CommonMap::Bridge(const Face& face)
+CommonMap::Drawn CommonMap::Draw(Route& route)
+{
+  const std::size_t count = std::max(route.Bends[0].size(), route.Bends[1].size());
+  for (int d = 0; d < 2; ++d)
+  {
+    // The longest pieces are divided until there are as many in both domains.
+    auto& bends = route.Bends[d];
+    while (bends.size() < count)
+    {
+      std::size_t longest = 0;
+      double length = -1.0;
+      Vector2 middle;
+      for (std::size_t i = 0; i <= bends.size(); ++i)
+      {
+        const Vector2 a = i == 0 ? this->Points[d][route.From] : bends[i - 1];
+        const Vector2 b = i == bends.size() ? this->Points[d][route.To] : bends[i];
+        if (Dot(b - a, b - a) > length)
+        {
+          length = Dot(b - a, b - a);
+          longest = i;
+          middle = a + 0.5 * (b - a);
+        }
+      }
+      bends.insert(bends.begin() + static_cast<std::ptrdiff_t>(longest), middle);
+    }
+  }
+  int previous = route.From;
+  for (std::size_t i = 0; i <= count; ++i)
+  {
+    int vertex = route.To;
+    if (i < count)
+    {
+      if (!this->Drawings[0].CanInsert(route.Bends[0][i]) ||
+        !this->Drawings[1].CanInsert(route.Bends[1][i]))
+      {
+        return Drawn::No;
+      }
+      vertex = static_cast<int>(this->Points[0].size());
+      for (int d = 0; d < 2; ++d)
+      {
+        this->Points[d].push_back(route.Bends[d][i]);
+        this->Drawings[d].Insert(vertex);
+      }
+      this->Parents.push_back(vertex);
+      this->Degrees.push_back(0);
+      ++this->NumberOfComponents;
+    }
+    if (this->Add(previous, vertex).Why != Refusal::None)
+    {
+      return i == 0 && count == 0 ? Drawn::No : Drawn::Broken;
+    }
+    previous = vertex;
+  }
+  return Drawn::Yes;
+}
+
+CommonMap::Drawn CommonMap::Split(const Face& face)
+{
+  const auto& walk = face.Walks[0];
+  const int m = static_cast<int>(walk.size());
+  Route best;
+  best.Cost = std::numeric_limits<double>::infinity();
+  constexpr int starts = 24;
+  for (int s = 0; s < std::min(m, starts); ++s)
+  {
+    const int i = static_cast<int>(static_cast<long long>(s) * m / std::min(m, starts));
+    std::vector<std::array<int, 2>> goals;
+    std::vector<int> cut;
+    for (int offset = 2; offset <= m / 2; offset += 1 + offset / 4)
+    {
+      for (const int j : { (i + offset) % m, (i + m - offset) % m })
+      {
+        if (walk[j] != walk[i])
+        {
+          goals.push_back({ walk[j], walk[(j + 1) % m] });
+          cut.push_back(std::min(offset, 64));
+        }
+      }
+    }
+    const auto ways0 = this->FindWays(0, walk[i], walk[(i + 1) % m], goals);
+    const auto ways1 = this->FindWays(1, walk[i], walk[(i + 1) % m], goals);
+    for (std::size_t k = 0; k < goals.size(); ++k)
+    {
+      // Bends for each corner that is cut off.
+      const double bends = static_cast<double>(std::max(ways0[k].size(), ways1[k].size()));
+      const double cost = bends / cut[k];
+      if (bends > 0.0 && cost < best.Cost)
+      {
+        best = { walk[i], goals[k][0], { { ways0[k], ways1[k] } }, cost };
+      }
+    }
+  }
+  return best.From < 0 ? Drawn::No : this->Draw(best);
+}
+
+CommonMap::Drawn CommonMap::Bridge(const Face& face)
 {
   std::map<int, int> walkOf;
   std::size_t smallest = 0;
@@ -626,49 +726,23 @@ int CommonMap::Bridge(const Face& face)
           goals.push_back({ to, toBefore });
         }
       }
-      if (!goals.empty())
+      // Straight in this domain, as short as possible in the other one.
+      const auto ways = this->FindWays(1 - d, from, before, goals);
+      for (std::size_t k = 0; k < goals.size(); ++k)
       {
-        this->FindRoutes(1 - d, from, before, goals, routes);
+        Route route{ from, goals[k][0], {}, static_cast<double>(ways[k].size()) };
+        route.Bends[1 - d] = ways[k];
+        routes.push_back(std::move(route));
       }
     }
   }
-  std::sort(routes.begin(), routes.end(),
+  const auto best = std::min_element(routes.begin(), routes.end(),
     [&](const Route& a, const Route& b)
     {
-      return std::make_pair(a.Bends.size(), this->ScaledLength(a.From, a.To)) <
-        std::make_pair(b.Bends.size(), this->ScaledLength(b.From, b.To));
+      return std::make_pair(a.Cost, this->ScaledLength(a.From, a.To)) <
+        std::make_pair(b.Cost, this->ScaledLength(b.From, b.To));
     });
-  for (const Route& route : routes)
-  {
-    const int d = route.StraightDomain;
-    const std::size_t count = route.Bends.size();
-    const Vector2 start = this->Points[d][route.From];
-    const Vector2 edge = this->Points[d][route.To] - start;
-    int previous = route.From;
-    bool drawn = true;
-    for (std::size_t i = 0; i < count && drawn; ++i)
-    {
-      const int vertex = static_cast<int>(this->Points[0].size());
-      const double share = static_cast<double>(i + 1) / static_cast<double>(count + 1);
-      this->Points[d].push_back(start + share * edge);
-      this->Points[1 - d].push_back(route.Bends[i]);
-      if (!this->Drawings[0].Insert(vertex) || !this->Drawings[1].Insert(vertex))
-      {
-        return -1;
-      }
-      this->Parents.push_back(vertex);
-      this->Degrees.push_back(0);
-      ++this->NumberOfComponents;
-      drawn = this->Add(previous, vertex).Why == Refusal::None;
-      previous = vertex;
-    }
-    drawn = drawn && this->Add(previous, route.To).Why == Refusal::None;
-    if (drawn || count > 0)
-    {
-      return drawn ? static_cast<int>(count) : -1;
-    }
-  }
-  return -1;
+  return best == routes.end() ? Drawn::No : this->Draw(*best);
 }
 
 } // namespace homeomorphism

@@ -63,9 +63,22 @@ public:
   /// Adds an edge if that is allowed.
   Answer Add(int from, int to);
 
-  /// Joins two walks of a face by an edge or by a polygonal line with added vertices. Returns the
-  /// number of added vertices, or -1 if double precision does not suffice.
-  int Bridge(const Face& face);
+  /// The outcome of drawing a polygonal line.
+  enum class Drawn
+  {
+    Yes,
+    /// Double precision did not suffice; the drawings are isomorphic all the same.
+    No,
+    /// Rounding has put a vertex into another face: the map is of no more use.
+    Broken
+  };
+
+  /// Joins two walks of a face by an edge or by a polygonal line with added vertices.
+  Drawn Bridge(const Face& face);
+
+  /// Divides a face with one walk between two of its corners, by a polygonal line with few bends that
+  /// leaves many corners on both of its sides.
+  Drawn Split(const Face& face);
 
   /// Closes the faces that an even number of loops surround; edges in them are refused.
   void MarkOutside(const std::vector<std::array<int, 2>>& loopEdges);
@@ -92,23 +105,24 @@ public:
 private:
   using Triangulation = ConstrainedTriangulation;
 
-  /// A bridge: straight in one domain, through these edges in the other.
+  /// A polygonal line between two corners: its bends in each domain.
   struct Route
   {
     int From = -1;
     int To = -1;
-    int StraightDomain = 0;
-    std::vector<Vector2> Bends;
+    std::array<std::vector<Vector2>, 2> Bends;
+    double Cost = 0.0;
   };
 
   bool SeparatesAlike(int from, int to, std::vector<int>& differing);
   bool Flood(int domain, int start, std::size_t limit, std::vector<int>& region);
   std::vector<std::array<int, 2>> Signature(int domain, const std::vector<int>& region) const;
   std::vector<int> Fan(int domain, int vertex, int before) const;
-  void FindRoutes(int domain, int from, int before, const std::vector<std::array<int, 2>>& goals,
-    std::vector<Route>& routes) const;
+  std::vector<std::vector<Vector2>> FindWays(int domain, int from, int before,
+    const std::vector<std::array<int, 2>>& goals) const;
+  Drawn Draw(Route& route);
   std::vector<Vector2> Shorten(int domain, int from, int to,
-    const std::vector<std::array<int, 2>>& portals, double clearance) const;
+    const std::vector<std::array<int, 2>>& portals) const;
   std::vector<std::array<int, 3>> FaceTriangles(int domain, const std::vector<int>& walk) const;
 
   std::array<std::vector<Vector2>, 2> Points;

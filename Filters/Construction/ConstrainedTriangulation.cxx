@@ -218,7 +218,27 @@ int ConstrainedTriangulation::Locate(const Vector2& point, int& onEdge) const
   }
 }
 
-bool ConstrainedTriangulation::Insert(int vertex)
+bool ConstrainedTriangulation::CanInsert(const Vector2& position) const
+{
+  const Vector2& low = this->Points[0];
+  const Vector2& high = this->Points[2];
+  if (!(position.x > low.x && position.x < high.x && position.y > low.y && position.y < high.y))
+  {
+    return false;
+  }
+  int onEdge = -1;
+  const Triangle& t = this->Triangles[this->Locate(position, onEdge)];
+  for (const int v : t.Vertices)
+  {
+    if (this->Points[v].x == position.x && this->Points[v].y == position.y)
+    {
+      return false;
+    }
+  }
+  return onEdge < 0 || !t.Constrained[onEdge];
+}
+
+void ConstrainedTriangulation::Insert(int vertex)
 {
   const Vector2 point = this->Points[vertex];
   if (static_cast<int>(this->TriangleOf.size()) <= vertex)
@@ -227,13 +247,6 @@ bool ConstrainedTriangulation::Insert(int vertex)
   }
   int onEdge = -1;
   const int t = this->Locate(point, onEdge);
-  for (const int v : this->Triangles[t].Vertices)
-  {
-    if (this->Points[v].x == point.x && this->Points[v].y == point.y)
-    {
-      return false;
-    }
-  }
   const int n = static_cast<int>(this->Triangles.size());
   this->TriangleOf[vertex] = t;
   if (onEdge >= 0)
@@ -304,7 +317,6 @@ bool ConstrainedTriangulation::Insert(int vertex)
     }
   }
   this->Legalize();
-  return true;
 }
 
 bool ConstrainedTriangulation::IsConvex(int t, int k) const
@@ -374,7 +386,7 @@ void ConstrainedTriangulation::Legalize()
 ConstrainedTriangulation::Edge ConstrainedTriangulation::FindEdge(int from, int to) const
 {
   const int start = this->TriangleOf[from];
-  // Anticlockwise about the vertex; then, at the box's corners, clockwise.
+  // Counterclockwise about the vertex; then, at the box's corners, clockwise.
   int t = start;
   do
   {

@@ -17,7 +17,7 @@
 namespace homeomorphism
 {
 
-/// Positive only if @a d lies certainly inside the circle through the anticlockwise points @a a,
+/// Positive only if @a d lies certainly inside the circle through the counterclockwise points @a a,
 /// @a b, @a c. Doubtful cases count as outside: every flip then lowers the lifted surface, so that
 /// flips cannot cycle.
 bool CertainlyInCircle(const Vector2& a, const Vector2& b, const Vector2& c, const Vector2& d);
@@ -33,7 +33,7 @@ public:
   /// The number of vertices that belong to the box.
   static constexpr int BoxCorners = 4;
 
-  /// Edge k is opposite vertex k; vertices run anticlockwise.
+  /// Edge k is opposite vertex k; vertices run counterclockwise.
   struct Triangle
   {
     std::array<int, 3> Vertices;
@@ -72,8 +72,12 @@ public:
   /// @a points must outlive this and may grow; all points must be finite and different.
   explicit ConstrainedTriangulation(std::vector<Vector2>& points);
 
-  /// Inserts a vertex into the triangulation. False if there is a vertex at this very position.
-  bool Insert(int vertex);
+  /// Whether a vertex can be inserted at a position: finite, in the box, not on a constrained edge
+  /// and not that of another vertex.
+  bool CanInsert(const Vector2& position) const;
+
+  /// Inserts a vertex into the triangulation, for which CanInsert must be true.
+  void Insert(int vertex);
 
   /// Follows the segment from @a from to @a to.
   Trace Follow(int from, int to) const;

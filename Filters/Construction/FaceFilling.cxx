@@ -137,7 +137,7 @@ void LowerCrossings(const PolygonPair& polygons, std::array<ChordTriangulation, 
           continue;
         }
         const Chord flipped = chords[d].Flipped(chord);
-        // Anticlockwise: first, between, second, outside.
+        // Counterclockwise: first, between, second, outside.
         const bool firstIsBetween = IsBetween(flipped.first, chord);
         const int between = firstIsBetween ? flipped.first : flipped.second;
         const int outside = firstIsBetween ? flipped.second : flipped.first;
@@ -153,7 +153,7 @@ void LowerCrossings(const PolygonPair& polygons, std::array<ChordTriangulation, 
   }
 }
 
-/// A planar map in the making: at each node its neighbors, anticlockwise.
+/// A planar map in the making: at each node its neighbors, counterclockwise.
 using Rotations = std::vector<std::vector<int>>;
 
 /// Closed walks with a face on the left.
@@ -416,7 +416,7 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
         const int node = last
           ? chord.second
           : (d == 0 ? nodes[{ chord, others[i] }] : nodes[{ others[i], chord }]);
-        // Anticlockwise about a crossing: the source diagonal's first corner, the target diagonal's
+        // Counterclockwise about a crossing: the source diagonal's first corner, the target diagonal's
         // corner between, the source's second, the target's outside.
         const auto spot = [&](const Chord& other, bool forward)
         {

@@ -15,7 +15,7 @@
 namespace homeomorphism
 {
 
-/// Two simple polygons, anticlockwise, as positions of corresponding corners. They may be weakly
+/// Two simple polygons, counterclockwise, as positions of corresponding corners. They may be weakly
 /// simple, as the boundary of a face is: corners may coincide and edges be run through twice.
 using PolygonPair = std::array<std::vector<Vector2>, 2>;
 
@@ -25,7 +25,7 @@ using CornerTriangles = std::vector<std::array<int, 3>>;
 /// Triangulates by diagonals alone, with the best worst quality that there is (dynamic programming:
 /// Klincsek 1980; Aronov, Seidel, Souvaine 1993). False if no pair of triangulations has the same
 /// diagonals. Takes m^3 steps at most. No diagonal's visibility has to be tested: triangles that are
-/// anticlockwise in both domains cover the inside of the polygons exactly once.
+/// counterclockwise in both domains cover the inside of the polygons exactly once.
 bool FillByDiagonals(
   const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles);
 

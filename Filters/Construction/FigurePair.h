@@ -59,7 +59,7 @@ struct FigureProblem
     OtherFace,
     /// Points of a loop that is inside another loop in one domain only.
     OutlineAgainstHole,
-    /// A loop runs anticlockwise in one domain and clockwise in the other, unlike the first one.
+    /// A loop runs counterclockwise in one domain and clockwise in the other, unlike the first one.
     LoopSense,
     /// A point lies outside the domain that the loops or the frame bound.
     OutsideDomain,

@@ -27,11 +27,15 @@ using Kind = FigureProblem::Kind;
 /// Corners of a face up to which all diagonals are tried, and are weighed against each other.
 constexpr std::size_t AllPairs = 1200;
 constexpr std::size_t ExactFill = 400;
+/// Corners up to which a face is filled by an overlay; larger ones are divided.
+constexpr std::size_t LargestOverlay = 300;
 /// Points up to which edges are tried in several orders if points have to be added.
 constexpr std::size_t SeveralOrders = 20000;
 /// How many orders are tried, and with how many added points it is worth trying more than four.
 constexpr int Orders = 12;
 constexpr int FewPoints = 4;
+/// Added points beyond which another order would take long and change little.
+constexpr int ManyPoints = 200;
 /// How many ids a problem lists.
 constexpr std::size_t ListedIds = 10;
 
@@ -129,7 +133,7 @@ bool IsBetween(const Vector2& p, const Vector2& a, const Vector2& b)
     p.x >= std::min(a.x, b.x) && p.y >= std::min(a.y, b.y) && p.y <= std::max(a.y, b.y);
 }
 
-/// All points on the boundary of the convex hull, anticlockwise from the least x.
+/// All points on the boundary of the convex hull, counterclockwise from the least x.
 std::vector<int> Hull(const std::vector<Vector2>& points)
 {
   std::vector<int> order(points.size());
@@ -158,7 +162,7 @@ std::vector<int> Hull(const std::vector<Vector2>& points)
   return hull;
 }
 
-/// 1 or -1 as a simple polygon runs anticlockwise or clockwise, 0 if it is not simple.
+/// 1 or -1 as a simple polygon runs counterclockwise or clockwise, 0 if it is not simple.
 int Sense(const std::vector<Vector2>& points, const std::vector<int>& loop)
 {
   std::size_t least = 0;
@@ -209,7 +213,7 @@ public:
       }
       const int added = this->CountAdded();
       if (!this->CanImprove() || (order == 3 && added > FewPoints) ||
-        this->Refused)
+        (this->Best && added > ManyPoints) || this->Refused)
       {
         break;
       }
@@ -983,7 +987,7 @@ private:
       {
         if (face.Walks.size() > 1)
         {
-          if (this->Map->Bridge(face) < 0)
+          if (this->Map->Bridge(face) != CommonMap::Drawn::Yes)
           {
             this->Refuse(Kind::Precision, -1, this->PointsOf(face.Walks[0]));
             return false;
@@ -998,7 +1002,35 @@ private:
     }
     this->FillFaces();
     this->AddDiagonals();
-    return true;
+    return this->SplitFaces();
+  }
+
+  /// Divides large faces, whose overlay would have too many crossings.
+  bool SplitFaces()
+  {
+    for (bool split = true; split && this->Proceed(0.45);)
+    {
+      split = false;
+      std::vector<std::array<int, 3>> closed;
+      std::vector<CommonMap::Face> faces;
+      this->Map->Faces(closed, faces);
+      for (const CommonMap::Face& face : faces)
+      {
+        if (face.Walks[0].size() > LargestOverlay)
+        {
+          const CommonMap::Drawn drawn = this->Map->Split(face);
+          split = split || drawn == CommonMap::Drawn::Yes;
+          if (drawn == CommonMap::Drawn::Broken)
+          {
+            this->Refuse(Kind::Precision, -1, this->PointsOf(face.Walks[0]));
+            return false;
+          }
+        }
+      }
+      this->FillFaces();
+      this->AddDiagonals();
+    }
+    return !this->Stopped;
   }
 
   /// Fills the faces that are still open, with added points where they are necessary.

@@ -57,7 +57,7 @@ struct IsomorphicTriangulationResult
   std::array<std::vector<Vector2>, 2> Points;
   /// The figure's number of each point: i for the first points, -1 for frame corners and added ones.
   std::vector<int> OriginalIds;
-  /// Anticlockwise in the source; in the target clockwise if the figures are mirror images.
+  /// Counterclockwise in the source; in the target clockwise if the figures are mirror images.
   std::vector<std::array<int, 3>> Triangles;
   /// The figure's edges, frames included: loops first, then segments.
   std::vector<std::array<int, 2>> LoopEdges;

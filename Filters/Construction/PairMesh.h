@@ -17,7 +17,7 @@
 namespace homeomorphism
 {
 
-/// Triangles that are anticlockwise in both domains at all times. Added points, those from
+/// Triangles that are counterclockwise in both domains at all times. Added points, those from
 /// FirstAdded on, can be moved and removed; the edges of the figure are fixed.
 class PairMesh
 {
@@ -53,14 +53,14 @@ public:
   int IndexOf(int triangle, int vertex) const;
   TrianglePoints PointsOf(int triangle, int domain) const;
 
-  /// The triangles around a vertex, anticlockwise. False if the vertex is on the boundary: then they
+  /// The triangles around a vertex, counterclockwise. False if the vertex is on the boundary: then they
   /// begin with the boundary.
   bool Star(int vertex, std::vector<int>& star) const;
 
   /// The triangles that share a vertex with these, these first.
   std::vector<int> Grow(const std::vector<int>& triangles) const;
 
-  /// The corners of the closed walk around triangles, anticlockwise; false if they are not a disk or
+  /// The corners of the closed walk around triangles, counterclockwise; false if they are not a disk or
   /// contain a fixed edge.
   bool Outline(const std::vector<int>& triangles, std::vector<int>& outline) const;
 

@@ -79,7 +79,7 @@ double QualityOf(
     }
     if (count == 0)
     {
-      // Anticlockwise, but only just.
+      // Counterclockwise, but only just.
       return 0.0;
     }
   }

@@ -37,7 +37,7 @@ std::array<double, 3> Angles(const TrianglePoints& triangle);
 double Distortion(const TrianglePoints& source, const TrianglePoints& target);
 
 /// The quality of a pair of triangles, the higher the better, at most 60 (for NonObtuse 120); -1
-/// unless both triangles are anticlockwise, by exact orientation.
+/// unless both triangles are counterclockwise, by exact orientation.
 double QualityOf(
   PairQuality quality, const TrianglePoints& source, const TrianglePoints& target);
 
@@ -51,7 +51,7 @@ struct QualityTerm
 
 /// The terms whose smallest is the quality of a triangle in one domain, with their derivatives by
 /// that triangle's corners. @a other is the triangle in the other domain (for Distortion). Returns
-/// the number of terms, 0 if the triangle is not anticlockwise.
+/// the number of terms, 0 if the triangle is not counterclockwise.
 int QualityTerms(PairQuality quality, const TrianglePoints& triangle, const TrianglePoints& other,
   std::array<QualityTerm, 9>& terms);
 
