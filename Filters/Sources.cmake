@@ -91,6 +91,28 @@ set(construction_headers
   Construction/PairRefinement.h
   Construction/PairStatistics.h)
 
+# Pairs made from landmarks and outlines: nothing of VTK here either.
+set(figure_sources
+  Construction/CommonMap.cxx
+  Construction/ConstrainedTriangulation.cxx
+  Construction/FaceFilling.cxx
+  Construction/FigurePair.cxx
+  Construction/IsomorphicTriangulation.cxx
+  Construction/JointOptimization.cxx
+  Construction/LandmarkResiduals.cxx
+  Construction/PairMesh.cxx
+  Construction/PairQuality.cxx)
+set(figure_headers
+  Construction/CommonMap.h
+  Construction/ConstrainedTriangulation.h
+  Construction/FaceFilling.h
+  Construction/FigurePair.h
+  Construction/IsomorphicTriangulation.h
+  Construction/JointOptimization.h
+  Construction/LandmarkResiduals.h
+  Construction/PairMesh.h
+  Construction/PairQuality.h)
+
 # What the VTK classes share.
 set(pipeline_sources
   Pipeline/AttributeTransformation.cxx

@@ -392,8 +392,7 @@ std::vector<std::array<int, 3>> CommonMap::FaceTriangles(
   return triangles;
 }
 
-void CommonMap::Faces(
-  std::vector<std::array<int, 3>>& closed, std::vector<Face>& faces) const
+void CommonMap::Faces(std::vector<std::array<int, 3>>& closed, std::vector<Face>& faces) const
 {
   const Triangulation& drawing = this->Drawings[0];
   const auto& triangles = drawing.GetTriangles();
@@ -478,8 +477,8 @@ void CommonMap::Faces(
   }
 }
 
-std::vector<Vector2> CommonMap::Shorten(int domain, int from, int to,
-  const std::vector<std::array<int, 2>>& portals) const
+std::vector<Vector2> CommonMap::Shorten(
+  int domain, int from, int to, const std::vector<std::array<int, 2>>& portals) const
 {
   const auto& points = this->Points[domain];
   std::vector<Vector2> bends;
@@ -501,8 +500,7 @@ std::vector<Vector2> CommonMap::Shorten(int domain, int from, int to,
       {
         // The share of the portal that is visible between the wedge's sides.
         const Vector2 along = r - l;
-        const auto meet = [&](const Vector2& side)
-        {
+        const auto meet = [&](const Vector2& side) {
           const double denominator = Cross(side - at, along);
           return denominator != 0.0 ? Cross(l - at, side - at) / denominator : 0.5;
         };
@@ -585,8 +583,7 @@ std::vector<std::vector<Vector2>> CommonMap::FindWays(
         ++k;
       }
       // Seen from where the path comes, the edge's left end is the next corner of this triangle.
-      portals.push_back(
-        { triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
+      portals.push_back({ triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
     }
     std::reverse(portals.begin(), portals.end());
     ways.push_back(this->Shorten(domain, from, goal[0], portals));
@@ -736,9 +733,8 @@ CommonMap::Drawn CommonMap::Bridge(const Face& face)
       }
     }
   }
-  const auto best = std::min_element(routes.begin(), routes.end(),
-    [&](const Route& a, const Route& b)
-    {
+  const auto best =
+    std::min_element(routes.begin(), routes.end(), [&](const Route& a, const Route& b) {
       return std::make_pair(a.Cost, this->ScaledLength(a.From, a.To)) <
         std::make_pair(b.Cost, this->ScaledLength(b.From, b.To));
     });

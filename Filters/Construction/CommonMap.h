@@ -76,8 +76,8 @@ public:
   /// Joins two walks of a face by an edge or by a polygonal line with added vertices.
   Drawn Bridge(const Face& face);
 
-  /// Divides a face with one walk between two of its corners, by a polygonal line with few bends that
-  /// leaves many corners on both of its sides.
+  /// Divides a face with one walk between two of its corners, by a polygonal line with few bends
+  /// that leaves many corners on both of its sides.
   Drawn Split(const Face& face);
 
   /// Closes the faces that an even number of loops surround; edges in them are refused.
@@ -118,11 +118,11 @@ private:
   bool Flood(int domain, int start, std::size_t limit, std::vector<int>& region);
   std::vector<std::array<int, 2>> Signature(int domain, const std::vector<int>& region) const;
   std::vector<int> Fan(int domain, int vertex, int before) const;
-  std::vector<std::vector<Vector2>> FindWays(int domain, int from, int before,
-    const std::vector<std::array<int, 2>>& goals) const;
+  std::vector<std::vector<Vector2>> FindWays(
+    int domain, int from, int before, const std::vector<std::array<int, 2>>& goals) const;
   Drawn Draw(Route& route);
-  std::vector<Vector2> Shorten(int domain, int from, int to,
-    const std::vector<std::array<int, 2>>& portals) const;
+  std::vector<Vector2> Shorten(
+    int domain, int from, int to, const std::vector<std::array<int, 2>>& portals) const;
   std::vector<std::array<int, 3>> FaceTriangles(int domain, const std::vector<int>& walk) const;
 
   std::array<std::vector<Vector2>, 2> Points;

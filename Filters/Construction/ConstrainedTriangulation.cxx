@@ -92,15 +92,13 @@ std::vector<int> HilbertOrder(const std::vector<Vector2>& points)
   }
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-    [&](int a, int b)
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    if (cells[a] != cells[b])
     {
-      if (cells[a] != cells[b])
-      {
-        return cells[a] < cells[b];
-      }
-      return std::make_pair(points[a].x, points[a].y) < std::make_pair(points[b].x, points[b].y);
-    });
+      return cells[a] < cells[b];
+    }
+    return std::make_pair(points[a].x, points[a].y) < std::make_pair(points[b].x, points[b].y);
+  });
   return order;
 }
 
@@ -197,8 +195,8 @@ int ConstrainedTriangulation::Locate(const Vector2& point, int& onEdge) const
       {
         continue;
       }
-      const int sign = Orientation(
-        this->Points[t.Vertices[NextCorner(k)]], this->Points[t.Vertices[PreviousCorner(k)]], point);
+      const int sign = Orientation(this->Points[t.Vertices[NextCorner(k)]],
+        this->Points[t.Vertices[PreviousCorner(k)]], point);
       if (sign < 0)
       {
         exit = k;
@@ -530,8 +528,7 @@ void ConstrainedTriangulation::Constrain(int from, int to, const Trace& trace)
   this->Legalize();
 }
 
-int ConstrainedTriangulation::ConstrainedNeighborBefore(
-  int from, int to, const Trace& trace) const
+int ConstrainedTriangulation::ConstrainedNeighborBefore(int from, int to, const Trace& trace) const
 {
   // Clockwise from the triangle that the segment enters, or the one to the left of the edge.
   int t = trace.First;

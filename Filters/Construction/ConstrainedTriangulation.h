@@ -61,7 +61,8 @@ public:
     Outcome Result = Outcome::Clear;
     /// The constrained edge that is crossed, or the vertex that is met (twice).
     std::array<int, 2> Obstacle{ { -1, -1 } };
-    /// A triangle at the first vertex: the edge's left one if the edge exists, else the one entered.
+    /// A triangle at the first vertex: the edge's left one if the edge exists, else the one
+    /// entered.
     int First = -1;
     bool IsEdge = false;
     /// Vertices of the edges crossed: first those to the left of the segment, then the right.

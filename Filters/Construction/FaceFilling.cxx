@@ -30,8 +30,8 @@ bool IsBetween(int corner, const Chord& chord)
 /// Whether two diagonals separate each other's ends.
 bool Cross(const Chord& a, const Chord& b)
 {
-  return b.first != a.first && b.first != a.second && b.second != a.first &&
-    b.second != a.second && IsBetween(b.first, a) != IsBetween(b.second, a);
+  return b.first != a.first && b.first != a.second && b.second != a.first && b.second != a.second &&
+    IsBetween(b.first, a) != IsBetween(b.second, a);
 }
 
 /// A triangulation of a polygon by diagonals, which can be flipped.
@@ -192,8 +192,7 @@ std::vector<std::vector<int>> Walks(const Rotations& rotations)
 
 } // namespace
 
-bool FillByDiagonals(
-  const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles)
+bool FillByDiagonals(const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles)
 {
   const int m = static_cast<int>(polygons[0].size());
   if (m < 3)
@@ -202,8 +201,8 @@ bool FillByDiagonals(
   }
   const auto& source = polygons[0];
   const auto& target = polygons[1];
-  // The best quality of the part between corner i and corner j, and the third corner of the triangle
-  // at the diagonal between them.
+  // The best quality of the part between corner i and corner j, and the third corner of the
+  // triangle at the diagonal between them.
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::size_t size = static_cast<std::size_t>(m);
   std::vector<double> best(size * size, -1.0);
@@ -225,8 +224,8 @@ bool FillByDiagonals(
           best[static_cast<std::size_t>(k) * size + j]);
         if (parts > found)
         {
-          const double own = QualityOf(quality, { source[i], source[k], source[j] },
-            { target[i], target[k], target[j] });
+          const double own = QualityOf(
+            quality, { source[i], source[k], source[j] }, { target[i], target[k], target[j] });
           if (std::min(parts, own) > found)
           {
             found = std::min(parts, own);
@@ -367,8 +366,7 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
     for (const Chord& chord : diagonals[d])
     {
       auto& others = crossed[d][chord];
-      const auto key = [&](const Chord& other)
-      {
+      const auto key = [&](const Chord& other) {
         const bool first = IsBetween(other.first, chord);
         const int between = first ? other.first : other.second;
         const int outside = first ? other.second : other.first;
@@ -416,10 +414,9 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
         const int node = last
           ? chord.second
           : (d == 0 ? nodes[{ chord, others[i] }] : nodes[{ others[i], chord }]);
-        // Counterclockwise about a crossing: the source diagonal's first corner, the target diagonal's
-        // corner between, the source's second, the target's outside.
-        const auto spot = [&](const Chord& other, bool forward)
-        {
+        // Counterclockwise about a crossing: the source diagonal's first corner, the target
+        // diagonal's corner between, the source's second, the target's outside.
+        const auto spot = [&](const Chord& other, bool forward) {
           if (d == 0)
           {
             return forward ? 2 : 0;

@@ -24,10 +24,9 @@ using CornerTriangles = std::vector<std::array<int, 3>>;
 
 /// Triangulates by diagonals alone, with the best worst quality that there is (dynamic programming:
 /// Klincsek 1980; Aronov, Seidel, Souvaine 1993). False if no pair of triangulations has the same
-/// diagonals. Takes m^3 steps at most. No diagonal's visibility has to be tested: triangles that are
-/// counterclockwise in both domains cover the inside of the polygons exactly once.
-bool FillByDiagonals(
-  const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles);
+/// diagonals. Takes m^3 steps at most. No diagonal's visibility has to be tested: triangles that
+/// are counterclockwise in both domains cover the inside of the polygons exactly once.
+bool FillByDiagonals(const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles);
 
 /// A point of each domain from which the whole polygon is visible; false if there is none.
 bool FindStarCenter(const PolygonPair& polygons, std::array<Vector2, 2>& center);

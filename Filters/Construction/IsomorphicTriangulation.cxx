@@ -102,8 +102,7 @@ std::array<Vector2, 2> Bounds(const std::vector<Vector2>& points)
 
 std::array<Vector2, 2> Enlarged(const std::array<Vector2, 2>& bounds, double share)
 {
-  const double margin =
-    share * std::max(bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y);
+  const double margin = share * std::max(bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y);
   return { { { bounds[0].x - margin, bounds[0].y - margin },
     { bounds[1].x + margin, bounds[1].y + margin } } };
 }
@@ -138,11 +137,9 @@ std::vector<int> Hull(const std::vector<Vector2>& points)
 {
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-    [&](int a, int b)
-    {
-      return std::make_pair(points[a].x, points[a].y) < std::make_pair(points[b].x, points[b].y);
-    });
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::make_pair(points[a].x, points[a].y) < std::make_pair(points[b].x, points[b].y);
+  });
   std::vector<int> hull;
   for (int pass = 0; pass < 2; ++pass)
   {
@@ -187,8 +184,8 @@ class Builder
 {
 public:
   /// @param frameMargin how far an automatic frame is from the points, in shares of their extent
-  Builder(const FigurePair& figure, const IsomorphicTriangulationOptions& options,
-    double frameMargin)
+  Builder(
+    const FigurePair& figure, const IsomorphicTriangulationOptions& options, double frameMargin)
     : Figure(figure)
     , Options(options)
     , FrameMargin(frameMargin)
@@ -254,8 +251,7 @@ public:
         for (int d = 0; d < 2 && mesh.GetTriangles()[t].Alive; ++d)
         {
           const TrianglePoints p = mesh.PointsOf(t, d);
-          areas[d] +=
-            0.5 * Cross(p[1] - p[0], p[2] - p[0]) * this->Options.MaximumTriangleSize;
+          areas[d] += 0.5 * Cross(p[1] - p[0], p[2] - p[0]) * this->Options.MaximumTriangleSize;
         }
       }
       optimization.Refine(areas, limit >= 0 ? limit : std::numeric_limits<int>::max());
@@ -356,8 +352,7 @@ private:
       }
       std::vector<int> order(n);
       std::iota(order.begin(), order.end(), 0);
-      const auto key = [&](int i)
-      { return std::make_tuple(points[d][i].x, points[d][i].y, i); };
+      const auto key = [&](int i) { return std::make_tuple(points[d][i].x, points[d][i].y, i); };
       std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
       for (int i = 0; i + 1 < n; ++i)
       {
@@ -395,7 +390,8 @@ private:
     bool mirrored = false;
     if (!this->Loops.empty())
     {
-      mirrored = Sense(this->Points[0], this->Loops[0]) * Sense(this->Points[1], this->Loops[0]) < 0;
+      mirrored =
+        Sense(this->Points[0], this->Loops[0]) * Sense(this->Points[1], this->Loops[0]) < 0;
       for (std::size_t i = 1; i < this->Loops.size(); ++i)
       {
         const int senses =
@@ -643,8 +639,7 @@ private:
 
   void ChooseOrder()
   {
-    const auto sorted = [](const std::vector<Vector2>& points)
-    {
+    const auto sorted = [](const std::vector<Vector2>& points) {
       std::vector<std::pair<double, double>> keys;
       keys.reserve(points.size());
       for (const Vector2& p : points)
@@ -694,16 +689,15 @@ private:
     return points;
   }
 
-  /// Draws a segment of the figure, in pieces if it runs through points in both domains. Returns why
-  /// it cannot be drawn.
+  /// Draws a segment of the figure, in pieces if it runs through points in both domains. Returns
+  /// why it cannot be drawn.
   FigureProblems Draw(int from, int to, std::vector<std::array<int, 2>>& edges)
   {
     const CommonMap::Answer answer = this->Map->Add(from, to);
     FigureProblem problem;
     const int f = this->PointOf(from);
     const int t = this->PointOf(to);
-    problem.Domain =
-      answer.Domain < 0 ? -1 : (answer.Domain == 0 ? this->First : 1 - this->First);
+    problem.Domain = answer.Domain < 0 ? -1 : (answer.Domain == 0 ? this->First : 1 - this->First);
     switch (answer.Why)
     {
       case CommonMap::Refusal::None:
@@ -798,8 +792,7 @@ private:
   /// Asks the caller, once and for all, whether to go on.
   std::function<bool()> KeepGoing(double progress)
   {
-    return [this, progress]()
-    {
+    return [this, progress]() {
       this->Stopped =
         this->Stopped || (this->Options.Progress && !this->Options.Progress(progress));
       return !this->Stopped;
@@ -816,8 +809,8 @@ private:
         this->LoopOf[p] = static_cast<int>(i);
       }
     }
-    const auto note = [](const FigureProblems& found, int line, int loop, FigureProblems& problems)
-    {
+    const auto note = [](
+                        const FigureProblems& found, int line, int loop, FigureProblems& problems) {
       for (FigureProblem problem : found)
       {
         problem.Line = line;
@@ -830,8 +823,8 @@ private:
       const auto& loop = this->Loops[i];
       for (std::size_t k = 0; k < loop.size(); ++k)
       {
-        note(this->Draw(this->Vertex[loop[k]], this->Vertex[loop[(k + 1) % loop.size()]],
-               this->LoopEdges),
+        note(this->Draw(
+               this->Vertex[loop[k]], this->Vertex[loop[(k + 1) % loop.size()]], this->LoopEdges),
           -1, static_cast<int>(i), this->Result.Problems);
       }
     }
@@ -855,15 +848,13 @@ private:
     }
     // Short segments first: where some have to be left out, these are the more certain ones.
     std::vector<std::pair<std::pair<double, std::array<int, 2>>, int>> segments;
-    const auto collect = [&](const std::vector<int>& points, int line, bool closed)
-    {
+    const auto collect = [&](const std::vector<int>& points, int line, bool closed) {
       for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k)
       {
         const int a = this->Vertex[points[k]];
         const int b = this->Vertex[points[(k + 1) % points.size()]];
-        segments.push_back({ { this->Map->ScaledLength(a, b),
-                               { { std::min(a, b), std::max(a, b) } } },
-          line });
+        segments.push_back(
+          { { this->Map->ScaledLength(a, b), { { std::min(a, b), std::max(a, b) } } }, line });
       }
     };
     for (std::size_t i = 0; i < this->Figure.Lines.size(); ++i)
@@ -878,8 +869,7 @@ private:
     for (const auto& [key, line] : segments)
     {
       note(this->Draw(key.second[0], key.second[1], this->Segments), line, -1,
-        this->Options.LeaveOutConflictingSegments ? this->Result.LeftOut
-                                                  : this->Result.Problems);
+        this->Options.LeaveOutConflictingSegments ? this->Result.LeftOut : this->Result.Problems);
     }
     return this->Result.Problems.empty();
   }

@@ -35,8 +35,8 @@ struct IsomorphicTriangulationOptions
 {
   FigureDomain Domain = FigureDomain::Automatic;
   /// Corresponding corners of two convex polygons around the points; both empty: the source's
-  /// bounds, 5 percent larger, and their image by the affine map that fits best, or where that would
-  /// have to be much larger the target's bounds.
+  /// bounds, 5 percent larger, and their image by the affine map that fits best, or where that
+  /// would have to be much larger the target's bounds.
   std::array<std::vector<Vector2>, 2> Frames;
   PairQuality Quality = PairQuality::MinimumAngle;
   /// How many points may be added; -1: as many as necessary, and up to 100 for better triangles.
@@ -55,7 +55,8 @@ struct IsomorphicTriangulationOptions
 struct IsomorphicTriangulationResult
 {
   std::array<std::vector<Vector2>, 2> Points;
-  /// The figure's number of each point: i for the first points, -1 for frame corners and added ones.
+  /// The figure's number of each point: i for the first points, -1 for frame corners and added
+  /// ones.
   std::vector<int> OriginalIds;
   /// Counterclockwise in the source; in the target clockwise if the figures are mirror images.
   std::vector<std::array<int, 3>> Triangles;

@@ -25,16 +25,15 @@ constexpr std::size_t MovedTogether = 40;
 constexpr int IdlePoints = 7;
 
 /// Minimization with a limited memory of past steps (Nocedal, Wright, "Numerical Optimization",
-/// 2006, algorithm 7.4). @a evaluate returns the value, infinite where it must not go, and fills the
-/// gradient. @a firstStep is the largest component of the first step.
+/// 2006, algorithm 7.4). @a evaluate returns the value, infinite where it must not go, and fills
+/// the gradient. @a firstStep is the largest component of the first step.
 void Minimize(std::vector<double>& x,
   const std::function<double(const std::vector<double>&, std::vector<double>&)>& evaluate,
   double firstStep, int steps)
 {
   constexpr std::size_t memory = 8;
   const std::size_t n = x.size();
-  const auto dot = [n](const std::vector<double>& a, const std::vector<double>& b)
-  {
+  const auto dot = [n](const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i)
     {
@@ -62,8 +61,7 @@ void Minimize(std::vector<double>& x,
     }
     if (!moves.empty())
     {
-      const double scale =
-        dot(moves.back(), changes.back()) / dot(changes.back(), changes.back());
+      const double scale = dot(moves.back(), changes.back()) / dot(changes.back(), changes.back());
       for (double& component : direction)
       {
         component *= scale;
@@ -258,8 +256,7 @@ void JointOptimization::SmoothDomain(
   const PairQuality quality = this->Mesh.GetQuality();
   std::vector<std::array<QualityTerm, 9>> terms(moving.size());
   std::vector<int> counts(moving.size());
-  const auto evaluate = [&](const std::vector<double>& x, std::vector<double>& gradient)
-  {
+  const auto evaluate = [&](const std::vector<double>& x, std::vector<double>& gradient) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double least = infinity;
     for (std::size_t i = 0; i < moving.size(); ++i)
@@ -497,8 +494,7 @@ void JointOptimization::RemovePoints()
 {
   // Points wait until something near them has changed.
   std::vector<int> star;
-  const auto neighbors = [&](int vertex)
-  {
+  const auto neighbors = [&](int vertex) {
     std::vector<int> found;
     this->Mesh.Star(vertex, star);
     for (const int t : star)
@@ -514,8 +510,7 @@ void JointOptimization::RemovePoints()
     std::vector<char> waiting(static_cast<std::size_t>(this->Mesh.GetNumberOfPoints()), 0);
     std::priority_queue<std::pair<int, int>, std::vector<std::pair<int, int>>, std::greater<>>
       queue;
-    const auto wake = [&](int vertex)
-    {
+    const auto wake = [&](int vertex) {
       if (this->Mesh.IsFree(vertex) && !waiting[vertex])
       {
         this->Mesh.Star(vertex, star);
@@ -615,9 +610,9 @@ int JointOptimization::SplitEdge(int t, int k)
   }
   const std::size_t mark = this->Mesh.Mark();
   const int vertex = this->Mesh.AddPoint(middle[0], middle[1]);
-  for (const int made : this->Mesh.Replace({ t, n },
-         { { { vertex, a, b } }, { { vertex, b, d } }, { { vertex, d, c } },
-           { { vertex, c, a } } }))
+  for (const int made :
+    this->Mesh.Replace({ t, n },
+      { { { vertex, a, b } }, { { vertex, b, d } }, { { vertex, d, c } }, { { vertex, c, a } } }))
   {
     if (this->Mesh.GetTriangles()[made].Quality < 0.0)
     {
@@ -633,8 +628,7 @@ bool JointOptimization::InsertNear(int worst)
   // Candidates: centroids (edge -1) and midpoints of edges near the worst triangle.
   std::vector<std::pair<double, std::pair<int, int>>> tried;
   const std::vector<int> near = this->Neighborhood(worst, 2);
-  const auto insert = [&](const std::pair<int, int>& place, int rounds)
-  {
+  const auto insert = [&](const std::pair<int, int>& place, int rounds) {
     const int vertex = place.second < 0 ? this->SplitTriangle(place.first)
                                         : this->SplitEdge(place.first, place.second);
     if (vertex < 0)
@@ -725,8 +719,7 @@ void JointOptimization::AddPoints(double target, int maximum)
   PairMesh best = this->Mesh;
   double bestQuality = best.WorstQuality();
   int idle = 0;
-  const auto keepBest = [&]()
-  {
+  const auto keepBest = [&]() {
     const double quality = this->Mesh.WorstQuality();
     if (quality > bestQuality + 1e-6)
     {
@@ -761,8 +754,7 @@ void JointOptimization::AddPoints(double target, int maximum)
 
 void JointOptimization::Refine(const std::array<double, 2>& maximumArea, int maximum)
 {
-  const auto excess = [&](int t)
-  {
+  const auto excess = [&](int t) {
     double largest = 0.0;
     for (int d = 0; d < 2; ++d)
     {

@@ -40,7 +40,8 @@ public:
   void Refine(const std::array<double, 2>& maximumArea, int maximum);
 
 private:
-  /// What is moved in an optimization: the soft minimum of qualities, or the excess of obtuse angles.
+  /// What is moved in an optimization: the soft minimum of qualities, or the excess of obtuse
+  /// angles.
   enum class Goal
   {
     SoftMinimum,

@@ -33,8 +33,8 @@ public:
     const double height = high.y - this->Low.y;
     // Some four points a cell, and no more cells than points along a line.
     const double n = static_cast<double>(points.size());
-    this->Size = std::max({ std::sqrt(4.0 * width * height / n), 4.0 * width / n,
-      4.0 * height / n, std::numeric_limits<double>::min() });
+    this->Size = std::max({ std::sqrt(4.0 * width * height / n), 4.0 * width / n, 4.0 * height / n,
+      std::numeric_limits<double>::min() });
     this->Columns = static_cast<int>(width / this->Size) + 1;
     this->Rows = static_cast<int>(height / this->Size) + 1;
     this->Starts.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
@@ -144,7 +144,7 @@ Vector2 FitAtOrigin(const std::vector<Vector2>& from, const std::vector<Vector2>
   // A trace of preference for small coefficients decides where neighbors are on a line.
   for (int r = 1; r < terms; ++r)
   {
-    a[r][r] += (r < 3 ? 1e-9 : 1e-3) * a[0][0];
+    a[r][r] += (r < 3 ? 1e-12 : 1e-6) * a[0][0];
   }
   // Positive definite: elimination needs no pivots.
   for (int k = 0; k < terms; ++k)

@@ -59,9 +59,9 @@ PairMesh::PairMesh(const std::array<std::vector<Vector2>, 2>& points,
   {
     edges.push_back({ EdgeKey(edge[0], edge[1]), -1, 0 });
   }
-  std::sort(edges.begin(), edges.end(),
-    [](const KeyedEdge& a, const KeyedEdge& b)
-    { return a.Key != b.Key ? a.Key < b.Key : a.Triangle < b.Triangle; });
+  std::sort(edges.begin(), edges.end(), [](const KeyedEdge& a, const KeyedEdge& b) {
+    return a.Key != b.Key ? a.Key < b.Key : a.Triangle < b.Triangle;
+  });
   for (std::size_t i = 0; i < edges.size();)
   {
     std::size_t end = i;
@@ -125,8 +125,7 @@ bool PairMesh::Star(int vertex, std::vector<int>& star) const
   // Clockwise to the boundary, if there is one.
   for (;;)
   {
-    const int n =
-      this->Triangles[first].Neighbors[PreviousCorner(this->IndexOf(first, vertex))];
+    const int n = this->Triangles[first].Neighbors[PreviousCorner(this->IndexOf(first, vertex))];
     if (n < 0 || n == start)
     {
       first = n < 0 ? first : start;
@@ -169,9 +168,8 @@ bool PairMesh::IsFree(int vertex) const
 
 int PairMesh::CountAdded() const
 {
-  return static_cast<int>(
-    std::count_if(this->TriangleOf.begin() + this->FirstAdded, this->TriangleOf.end(),
-      [](int triangle) { return triangle >= 0; }));
+  return static_cast<int>(std::count_if(this->TriangleOf.begin() + this->FirstAdded,
+    this->TriangleOf.end(), [](int triangle) { return triangle >= 0; }));
 }
 
 std::vector<int> PairMesh::FreeVertices() const
@@ -231,8 +229,7 @@ bool PairMesh::Outline(const std::vector<int>& triangles, std::vector<int>& outl
       }
       if (!inside)
       {
-        edges.push_back(
-          { triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
+        edges.push_back({ triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
       }
     }
   }
@@ -464,8 +461,8 @@ bool PairMesh::FlipIfBetter(int t, int k, std::vector<int>& made)
   {
     const auto& p = this->Points[0];
     const auto& q = this->Points[1];
-    if (!(QualityOf(this->Quality, { p[v[0]], p[v[1]], p[v[2]] },
-            { q[v[0]], q[v[1]], q[v[2]] }) > least))
+    if (!(QualityOf(this->Quality, { p[v[0]], p[v[1]], p[v[2]] }, { q[v[0]], q[v[1]], q[v[2]] }) >
+          least))
     {
       return false;
     }
@@ -479,8 +476,7 @@ int PairMesh::Worst(const std::vector<char>& skip) const
   int worst = -1;
   for (int t = 0; t < static_cast<int>(this->Triangles.size()); ++t)
   {
-    if (this->Triangles[t].Alive &&
-      (t >= static_cast<int>(skip.size()) || !skip[t]) &&
+    if (this->Triangles[t].Alive && (t >= static_cast<int>(skip.size()) || !skip[t]) &&
       (worst < 0 || this->Triangles[t].Quality < this->Triangles[worst].Quality))
     {
       worst = t;

@@ -34,8 +34,8 @@ public:
 
   /// @param fixed the ends of fixed edges; those of the boundary are fixed anyway
   PairMesh(const std::array<std::vector<Vector2>, 2>& points,
-    const std::vector<std::array<int, 3>>& triangles,
-    const std::vector<std::array<int, 2>>& fixed, int firstAdded, PairQuality quality);
+    const std::vector<std::array<int, 3>>& triangles, const std::vector<std::array<int, 2>>& fixed,
+    int firstAdded, PairQuality quality);
 
   const std::vector<Triangle>& GetTriangles() const { return this->Triangles; }
   const std::vector<Vector2>& GetPoints(int domain) const { return this->Points[domain]; }
@@ -53,15 +53,15 @@ public:
   int IndexOf(int triangle, int vertex) const;
   TrianglePoints PointsOf(int triangle, int domain) const;
 
-  /// The triangles around a vertex, counterclockwise. False if the vertex is on the boundary: then they
-  /// begin with the boundary.
+  /// The triangles around a vertex, counterclockwise. False if the vertex is on the boundary: then
+  /// they begin with the boundary.
   bool Star(int vertex, std::vector<int>& star) const;
 
   /// The triangles that share a vertex with these, these first.
   std::vector<int> Grow(const std::vector<int>& triangles) const;
 
-  /// The corners of the closed walk around triangles, counterclockwise; false if they are not a disk or
-  /// contain a fixed edge.
+  /// The corners of the closed walk around triangles, counterclockwise; false if they are not a
+  /// disk or contain a fixed edge.
   bool Outline(const std::vector<int>& triangles, std::vector<int>& outline) const;
 
   /// Puts other triangles with the same outline in the place of some.

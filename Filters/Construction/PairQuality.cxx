@@ -59,8 +59,7 @@ double Distortion(const TrianglePoints& source, const TrianglePoints& target)
   return mean > 1.0 ? mean + std::sqrt((mean - 1.0) * (mean + 1.0)) : 1.0;
 }
 
-double QualityOf(
-  PairQuality quality, const TrianglePoints& source, const TrianglePoints& target)
+double QualityOf(PairQuality quality, const TrianglePoints& source, const TrianglePoints& target)
 {
   if (Orientation(source[0], source[1], source[2]) <= 0 ||
     Orientation(target[0], target[1], target[2]) <= 0)
@@ -124,8 +123,8 @@ int QualityTerms(PairQuality quality, const TrianglePoints& p, const TrianglePoi
     {
       const Vector2 opposite = p[PreviousCorner(k)] - p[NextCorner(k)];
       const Vector2 areaGradient{ -opposite.y, opposite.x };
-      term.Gradient[k] = (60.0 / energy) * areaGradient -
-        (60.0 * doubleArea / (energy * energy)) * gradient[k];
+      term.Gradient[k] =
+        (60.0 / energy) * areaGradient - (60.0 * doubleArea / (energy * energy)) * gradient[k];
     }
     return count;
   }

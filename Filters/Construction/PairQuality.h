@@ -38,8 +38,7 @@ double Distortion(const TrianglePoints& source, const TrianglePoints& target);
 
 /// The quality of a pair of triangles, the higher the better, at most 60 (for NonObtuse 120); -1
 /// unless both triangles are counterclockwise, by exact orientation.
-double QualityOf(
-  PairQuality quality, const TrianglePoints& source, const TrianglePoints& target);
+double QualityOf(PairQuality quality, const TrianglePoints& source, const TrianglePoints& target);
 
 /// One term of a smooth lower bound of the quality.
 struct QualityTerm

@@ -1,0 +1,521 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "Figures.h"
+
+#include "Construction/LandmarkResiduals.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+using namespace figures;
+using homeomorphism::FigureDomain;
+using homeomorphism::FigureProblem;
+using homeomorphism::MakeIsomorphicTriangulation;
+using homeomorphism::MeasurePair;
+using homeomorphism::PairQuality;
+using Kind = homeomorphism::FigureProblem::Kind;
+
+namespace
+{
+
+/// A square with a landmark in it; the target is given by changing the source.
+FigurePair Square()
+{
+  FigurePair figure =
+    Outline({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 } }, { { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 } });
+  Add(figure, { 1, 1 }, { 1, 1 });
+  Add(figure, { 3, 1 }, { 3, 1 });
+  Add(figure, { 2, 3 }, { 2, 3 });
+  return figure;
+}
+
+const FigureProblem& OnlyProblem(const IsomorphicTriangulationResult& result)
+{
+  EXPECT_EQ(1u, result.Problems.size());
+  EXPECT_TRUE(result.Triangles.empty());
+  static const FigureProblem none;
+  return result.Problems.empty() ? none : result.Problems[0];
+}
+
+FigureProblem Refusal(const FigurePair& figure, const IsomorphicTriangulationOptions& options = {})
+{
+  const FigureProblem problem = OnlyProblem(MakeIsomorphicTriangulation(figure, options));
+  EXPECT_FALSE(problem.Message().empty());
+  return problem;
+}
+
+using Ids = std::vector<int>;
+
+/// The triangles of a result by the positions of their corners, in both domains.
+std::set<std::set<std::array<double, 4>>> ByPosition(
+  const IsomorphicTriangulationResult& result, int first)
+{
+  std::set<std::set<std::array<double, 4>>> triangles;
+  for (const auto& t : result.Triangles)
+  {
+    std::set<std::array<double, 4>> corners;
+    for (const int v : t)
+    {
+      const Vector2& p = result.Points[first][v];
+      const Vector2& q = result.Points[1 - first][v];
+      corners.insert({ p.x, p.y, q.x, q.y });
+    }
+    triangles.insert(corners);
+  }
+  return triangles;
+}
+
+TEST(FigureRefusals, Empty)
+{
+  EXPECT_EQ(Kind::Empty, Refusal({}).What);
+}
+
+TEST(FigureRefusals, DifferentCounts)
+{
+  FigurePair figure = Square();
+  figure.Points[1].pop_back();
+  EXPECT_EQ(Kind::PointCountsDiffer, Refusal(figure).What);
+}
+
+TEST(FigureRefusals, NotFinite)
+{
+  FigurePair figure = Square();
+  figure.Points[1][5].x = std::numeric_limits<double>::quiet_NaN();
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::NotFinite, problem.What);
+  EXPECT_EQ(1, problem.Domain);
+  EXPECT_EQ(Ids{ 5 }, problem.Points);
+}
+
+TEST(FigureRefusals, Coincident)
+{
+  FigurePair figure = Square();
+  figure.Points[0][6] = figure.Points[0][4];
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::Coincident, problem.What);
+  EXPECT_EQ(0, problem.Domain);
+  EXPECT_EQ((Ids{ 4, 6 }), problem.Points);
+}
+
+TEST(FigureRefusals, Crossing)
+{
+  FigurePair figure = Square();
+  figure.Lines = { { 4, 5 }, { 6, 0 } };
+  // In the target the second line passes between the first one's ends.
+  figure.Points[1][6] = { 3, 2.5 };
+  figure.Points[0][6] = { 0.5, 3 };
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::Crossing, problem.What);
+  EXPECT_EQ(1, problem.Domain);
+  EXPECT_EQ((Ids{ 0, 6, 4, 5 }), problem.Points);
+  EXPECT_EQ(1, problem.Line);
+}
+
+TEST(FigureRefusals, PointOnSegment)
+{
+  FigurePair figure = Square();
+  figure.Lines = { { 4, 5 } };
+  figure.Points[1][6] = { 2, 1 };
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::PointOnSegment, problem.What);
+  EXPECT_EQ(1, problem.Domain);
+  EXPECT_EQ((Ids{ 6, 4, 5 }), problem.Points);
+}
+
+TEST(FigureRefusals, CyclicOrder)
+{
+  FigurePair figure = Square();
+  Add(figure, { 2, 1.5 }, { 2, 1.5 });
+  figure.Lines = { { 7, 4 }, { 7, 5 }, { 7, 6 } };
+  std::swap(figure.Points[1][4], figure.Points[1][5]);
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::CyclicOrder, problem.What);
+  EXPECT_EQ(-1, problem.Domain);
+  EXPECT_EQ(Ids{ 7 }, problem.Points);
+}
+
+TEST(FigureRefusals, OtherFace)
+{
+  FigurePair figure = Square();
+  Add(figure, { 2, 2 }, { 0.5, 3 });
+  figure.Lines = { { 4, 5, 6, 4 } };
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::OtherFace, problem.What);
+  EXPECT_EQ(-1, problem.Domain);
+  EXPECT_NE(problem.Points.end(), std::find(problem.Points.begin(), problem.Points.end(), 7));
+}
+
+TEST(FigureRefusals, OutlineAgainstHole)
+{
+  FigurePair figure = Square();
+  figure.Loops.push_back({ 4, 5, 6 });
+  for (const int i : { 4, 5, 6 })
+  {
+    figure.Points[1][i].x += 10.0;
+  }
+  const FigureProblem problem = MakeIsomorphicTriangulation(figure, {}).Problems.at(0);
+  EXPECT_EQ(Kind::OutlineAgainstHole, problem.What);
+  EXPECT_LE(0, problem.Loop);
+}
+
+TEST(FigureRefusals, LoopSense)
+{
+  FigurePair figure = Square();
+  figure.Loops.push_back({ 4, 5, 6 });
+  std::swap(figure.Points[1][4], figure.Points[1][5]);
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::LoopSense, problem.What);
+  EXPECT_EQ(1, problem.Loop);
+}
+
+TEST(FigureRefusals, OutsideDomain)
+{
+  FigurePair figure = Square();
+  Add(figure, { 9, 9 }, { 9, 9 });
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::OutsideDomain, problem.What);
+  EXPECT_EQ(Ids{ 7 }, problem.Points);
+}
+
+TEST(FigureRefusals, BadCells)
+{
+  FigurePair figure = Square();
+  figure.Lines = { { 4, 99 } };
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::BadCell, problem.What);
+  EXPECT_EQ(0, problem.Line);
+}
+
+TEST(FigureRefusals, Collinear)
+{
+  FigurePair figure;
+  Add(figure, { 0, 0 }, { 0, 0 });
+  Add(figure, { 1, 1 }, { 1, 0 });
+  Add(figure, { 3, 3 }, { 0, 1 });
+  const FigureProblem problem = Refusal(figure);
+  EXPECT_EQ(Kind::Collinear, problem.What);
+  EXPECT_EQ(0, problem.Domain);
+}
+
+TEST(FigureRefusals, HullsDiffer)
+{
+  IsomorphicTriangulationOptions options;
+  options.Domain = FigureDomain::ConvexHull;
+  FigurePair figure = Square();
+  figure.Loops.clear();
+  figure.Points[1][6] = { 2, 5 };
+  const FigureProblem problem = Refusal(figure, options);
+  EXPECT_EQ(Kind::HullsDiffer, problem.What);
+  EXPECT_EQ(Ids{ 6 }, problem.Points);
+}
+
+TEST(FigureRefusals, PointLimit)
+{
+  const FigurePair figure = Outline(Snake(40, false), Snake(40, true));
+  IsomorphicTriangulationOptions options;
+  options.MaximumNumberOfAddedPoints = 0;
+  const FigureProblem problem = Refusal(figure, options);
+  EXPECT_EQ(Kind::PointLimit, problem.What);
+  EXPECT_LT(0, problem.Count);
+  EXPECT_FALSE(problem.Points.empty());
+}
+
+TEST(FigureRefusals, StopsOnRequest)
+{
+  IsomorphicTriangulationOptions options;
+  options.Progress = [](double) { return false; };
+  EXPECT_EQ(Kind::Aborted, Refusal(Square(), options).What);
+}
+
+TEST(IsomorphicTriangulation, LeavesOutWhatConflicts)
+{
+  FigurePair figure = Square();
+  figure.Lines = { { 4, 5 }, { 6, 0 } };
+  figure.Points[1][6] = { 3, 2.5 };
+  figure.Points[0][6] = { 0.5, 3 };
+  IsomorphicTriangulationOptions options;
+  options.LeaveOutConflictingSegments = true;
+  const auto result = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_EQ("", Check(figure, result));
+  ASSERT_EQ(1u, result.LeftOut.size());
+  EXPECT_EQ(1, result.LeftOut[0].Line);
+  EXPECT_EQ(1u, result.Segments.size());
+}
+
+TEST(IsomorphicTriangulation, PointsOnFramesAndOutlines)
+{
+  // A landmark in the middle of the outline's edge, and others on edges and corners of a frame.
+  FigurePair figure = Square();
+  Add(figure, { 2, 0 }, { 1, 0 });
+  auto result = MakeIsomorphicTriangulation(figure, {});
+  EXPECT_EQ("", Check(figure, result));
+  figure.Loops.clear();
+  IsomorphicTriangulationOptions options;
+  for (auto& frame : options.Frames)
+  {
+    frame = { { 0, 0 }, { 4, 0 }, { 4, 6 }, { 0, 6 } };
+  }
+  result = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_EQ("", Check(figure, result));
+  EXPECT_EQ(2, result.NumberOfFrameCorners);
+  figure.Points[1].back().y = 0.25;
+  const FigureProblem problem = Refusal(figure, options);
+  EXPECT_EQ(Kind::PointOnSegment, problem.What);
+  EXPECT_EQ(0, problem.Domain);
+  EXPECT_EQ(Ids{ 7 }, problem.Points);
+}
+
+TEST(IsomorphicTriangulation, ConvexHullOfMirroredPoints)
+{
+  FigurePair figure = Smooth(100, 5);
+  for (int d = 0; d < 2; ++d)
+  {
+    const auto circle = Circle(12, 2.0, { 0.5, 0.5 });
+    figure.Points[d].insert(figure.Points[d].end(), circle.begin(), circle.end());
+  }
+  for (Vector2& p : figure.Points[1])
+  {
+    p.x = 15e6 - 1000.0 * p.x;
+    p.y = 4e6 + 1000.0 * p.y;
+  }
+  IsomorphicTriangulationOptions options;
+  options.Domain = FigureDomain::ConvexHull;
+  const auto result = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_TRUE(result.Mirrored);
+  EXPECT_EQ(0, result.NumberOfAddedPoints);
+  EXPECT_EQ("", Check(figure, result));
+}
+
+TEST(IsomorphicTriangulation, HolesAndIslands)
+{
+  const auto make = [](double turn) {
+    std::vector<Vector2> points = Circle(24, 10.0);
+    for (const auto& [count, radius] : { std::pair<int, double>{ 16, 6.0 }, { 12, 3.0 } })
+    {
+      for (Vector2 p : Circle(count, radius))
+      {
+        points.push_back({ std::cos(turn) * p.x - std::sin(turn) * p.y,
+          std::sin(turn) * p.x + std::cos(turn) * p.y });
+      }
+    }
+    points.push_back({ 8.0, 0.5 });
+    points.push_back({ 0.5, 0.5 });
+    return points;
+  };
+  FigurePair figure;
+  figure.Points = { { make(0.0), make(1.0) } };
+  figure.Loops = { Range(0, 24), Range(24, 40), Range(40, 52) };
+  const auto result = MakeIsomorphicTriangulation(figure, {});
+  EXPECT_EQ("", Check(figure, result));
+}
+
+TEST(IsomorphicTriangulation, OrderOfLandmarksDoesNotMatter)
+{
+  const FigurePair figure = Noise(200, 0.3, 3);
+  FigurePair shuffled = figure;
+  Random random(4);
+  for (std::size_t i = figure.Points[0].size(); i-- > 1;)
+  {
+    const std::size_t k = static_cast<std::size_t>(random() * static_cast<double>(i + 1));
+    std::swap(shuffled.Points[0][i], shuffled.Points[0][k]);
+    std::swap(shuffled.Points[1][i], shuffled.Points[1][k]);
+  }
+  IsomorphicTriangulationOptions options;
+  for (auto& frame : options.Frames)
+  {
+    frame = { { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } };
+  }
+  const auto a = MakeIsomorphicTriangulation(figure, options);
+  const auto b = MakeIsomorphicTriangulation(shuffled, options);
+  EXPECT_EQ("", Check(figure, a));
+  EXPECT_EQ("", Check(shuffled, b));
+  EXPECT_EQ(ByPosition(a, 0), ByPosition(b, 0));
+}
+
+TEST(IsomorphicTriangulation, SwappingSourceAndTargetSwapsThePair)
+{
+  FigurePair figure = Noise(200, 0.3, 8);
+  for (const bool mirrored : { false, true })
+  {
+    IsomorphicTriangulationOptions options;
+    options.Frames[0] = { { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } };
+    options.Frames[1] = options.Frames[0];
+    if (mirrored)
+    {
+      for (auto* points : { &figure.Points[1], &options.Frames[1] })
+      {
+        for (Vector2& p : *points)
+        {
+          p.y = -p.y;
+        }
+      }
+    }
+    FigurePair swapped = figure;
+    std::swap(swapped.Points[0], swapped.Points[1]);
+    IsomorphicTriangulationOptions swappedOptions = options;
+    std::swap(swappedOptions.Frames[0], swappedOptions.Frames[1]);
+    const auto a = MakeIsomorphicTriangulation(figure, options);
+    const auto b = MakeIsomorphicTriangulation(swapped, swappedOptions);
+    EXPECT_EQ(mirrored, a.Mirrored);
+    EXPECT_EQ("", Check(figure, a));
+    EXPECT_EQ("", Check(swapped, b));
+    EXPECT_EQ(ByPosition(a, 0), ByPosition(b, 1));
+  }
+}
+
+TEST(IsomorphicTriangulation, NoisyAndUnrelatedPoints)
+{
+  for (const double spacings : { 0.1, 0.5, 1.0 })
+  {
+    const FigurePair figure = Noise(150, spacings, 11);
+    EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {}))) << spacings;
+  }
+  const FigurePair figure = Unrelated(25, 12);
+  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
+}
+
+TEST(IsomorphicTriangulation, FloatCoordinatesOfAMap)
+{
+  FigurePair figure = Smooth(300, 13);
+  for (auto& points : figure.Points)
+  {
+    for (Vector2& p : points)
+    {
+      p = { static_cast<float>(1.5e7 + 1e4 * p.x), static_cast<float>(-4e6 - 1e4 * p.y) };
+    }
+  }
+  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
+}
+
+TEST(IsomorphicTriangulation, LargeTrianglesAreDivided)
+{
+  const FigurePair figure = Square();
+  IsomorphicTriangulationOptions options;
+  options.MaximumTriangleSize = 0.002;
+  const auto result = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_EQ("", Check(figure, result));
+  for (const auto& t : result.Triangles)
+  {
+    for (const auto& p : result.Points)
+    {
+      EXPECT_GE(16.0 * 0.002, 0.5 * Cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
+    }
+  }
+}
+
+TEST(IsomorphicTriangulation, AddedPointsImproveAngles)
+{
+  Random random(17);
+  const FigurePair figure = Outline(RandomStar(12, random), RandomStar(12, random));
+  double before = 0.0;
+  for (const int count : { 2, 6 })
+  {
+    IsomorphicTriangulationOptions options;
+    options.MaximumNumberOfAddedPoints = count;
+    options.TargetQuality = 60.0;
+    const auto result = MakeIsomorphicTriangulation(figure, options);
+    ASSERT_EQ("", Check(figure, result));
+    EXPECT_GE(count, result.NumberOfAddedPoints);
+    const auto statistics = MeasurePair(result.Points, result.Triangles);
+    const double now = std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]);
+    EXPECT_LT(before, now);
+    before = now;
+  }
+}
+
+TEST(LandmarkResiduals, WrongLandmarksComeFirst)
+{
+  FigurePair figure = Smooth(60, 19);
+  figure.Points[1][7].x += 0.06;
+  figure.Points[1][41].y -= 0.06;
+  const std::vector<double> residuals = LandmarkResiduals(figure.Points);
+  std::vector<int> order = Range(0, 60);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return residuals[a] > residuals[b]; });
+  EXPECT_EQ((std::set<int>{ 7, 41 }), (std::set<int>{ order[0], order[1] }));
+}
+
+TEST(LandmarkResiduals, QuadraticMapsLeaveNone)
+{
+  FigurePair figure = Mapped(50, 23, [](const Vector2& p, Random&) {
+    return Vector2{ 3.0 + p.x + 2.0 * p.y * p.y, p.y - p.x * p.y };
+  });
+  for (const double residual : LandmarkResiduals(figure.Points))
+  {
+    // The preference for small coefficients is felt where neighbors lie to one side only.
+    EXPECT_NEAR(0.0, residual, 3e-3);
+  }
+}
+
+class RealLandmarks : public testing::TestWithParam<const char*>
+{
+};
+
+TEST_P(RealLandmarks, NeedNoAddedPoints)
+{
+  FigurePair figure;
+  if (!Read(GetParam(), figure, true))
+  {
+    GTEST_SKIP() << "The shared data is absent.";
+  }
+  IsomorphicTriangulationOptions options;
+  options.MaximumNumberOfAddedPoints = 0;
+  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, options)));
+}
+
+INSTANTIATE_TEST_SUITE_P(HistoricalMaps, RealLandmarks,
+  testing::Values("nobeoka", "nobeoka-inset", "fushimi-castle", "tatebayashi-town"));
+
+TEST(RealFigures, SchematicMap)
+{
+  for (const char* name : { "uno-bus", "uno-bus-bent" })
+  {
+    FigurePair figure;
+    if (!Read(name, figure, true))
+    {
+      GTEST_SKIP() << "The shared data is absent.";
+    }
+    IsomorphicTriangulationOptions options;
+    options.LeaveOutConflictingSegments = true;
+    const auto result = MakeIsomorphicTriangulation(figure, options);
+    EXPECT_EQ("", Check(figure, result)) << name;
+    EXPECT_FALSE(result.LeftOut.empty());
+    if (figure.Points[0].size() < 400)
+    {
+      EXPECT_GE(40, result.NumberOfAddedPoints);
+    }
+  }
+}
+
+TEST(RealFigures, PublishedOutlines)
+{
+  // The best that there is without added points, and the angles that were published.
+  struct Expected
+  {
+    const char* Name;
+    int Points;
+    double Angle;
+  };
+  for (const Expected& expected :
+    { Expected{ "letters-U-S", 0, 3.40 }, { "letters-U-S", 7, 19.5 }, { "outlines-37", 12, 15.9 } })
+  {
+    FigurePair figure;
+    if (!Read(expected.Name, figure, false))
+    {
+      GTEST_SKIP() << "The shared data is absent.";
+    }
+    figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
+    IsomorphicTriangulationOptions options;
+    options.MaximumNumberOfAddedPoints = expected.Points;
+    options.TargetQuality = 60.0;
+    const auto result = MakeIsomorphicTriangulation(figure, options);
+    EXPECT_EQ("", Check(figure, result));
+    const auto statistics = MeasurePair(result.Points, result.Triangles);
+    EXPECT_LE(expected.Angle, std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]))
+      << expected.Name << " with " << expected.Points << " points";
+  }
+}
+
+} // namespace
