@@ -42,6 +42,7 @@ set(cubic_headers
 # Meshes, read and validated once, and the map between two of them.
 set(mesh_sources
   Mesh/ChartedTriangulation.cxx
+  Mesh/CubicHomeomorphism.cxx
   Mesh/Homeomorphism.cxx
   Mesh/LargeArray.cxx
   Mesh/MeshDiagnostic.cxx
@@ -54,6 +55,7 @@ set(mesh_headers
   Mesh/Box.h
   Mesh/BoxTree.h
   Mesh/ChartedTriangulation.h
+  Mesh/CubicHomeomorphism.h
   Mesh/Homeomorphism.h
   Mesh/LargeArray.h
   Mesh/MeshDiagnostic.h

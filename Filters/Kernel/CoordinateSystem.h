@@ -38,7 +38,10 @@ enum class CoordinateSystem
   Contour = 1,
   /// The contours of the equilateral triangle, mapped by a chart that is twice continuously
   /// differentiable across edges.
-  Smooth = 2
+  Smooth = 2,
+  /// A piecewise cubic map that is continuously differentiable, vertices included, and bends little.
+  /// Planar pairs only. It is a map, not a chart: its triangular coordinates are Linear's.
+  Cubic = 3
 };
 
 /// The triangular coordinates (e, p, c) of a point of a triangle.

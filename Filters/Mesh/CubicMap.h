@@ -39,6 +39,13 @@ struct CubicMapOptions
   double CertificateMargin = 0.02;
   /// With least bending: how often triangles are cut into four before.
   int FairnessRefinement = 0;
+
+  bool operator==(const CubicMapOptions& other) const
+  {
+    return this->Bending == other.Bending && this->MaximumDeviation == other.MaximumDeviation &&
+      this->CertificateMargin == other.CertificateMargin &&
+      this->FairnessRefinement == other.FairnessRefinement;
+  }
 };
 
 struct CubicMapStatistics

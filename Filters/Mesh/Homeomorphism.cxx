@@ -181,6 +181,29 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
       return nullptr;
     }
   }
+  if (options.System == CoordinateSystem::Cubic)
+  {
+    for (const Domain domain : domains)
+    {
+      if (!result->Pair->GetGeometry(domain).IsPlanar())
+      {
+        MeshDiagnostic problem;
+        problem.What = MeshDiagnostic::Kind::NotPlanar;
+        problem.Where = domain == Domain::Source ? "source" : "target";
+        problem.Details = "The " + problem.Where +
+          " does not lie in a plane, and the Cubic system maps plane meshes only";
+        problems.push_back(problem);
+      }
+    }
+    if (IsRefused(problems))
+    {
+      return nullptr;
+    }
+    if (target)
+    {
+      result->Cubic = std::make_unique<CubicHomeomorphism>(*result->Pair, options.Cubic);
+    }
+  }
   for (const Domain domain : domains)
   {
     result->Charts[int(domain)] = std::make_unique<ChartedTriangulation>(
@@ -346,6 +369,11 @@ int Homeomorphism::LocateBlock(
 void Homeomorphism::MapBlock(Domain from, PointBlock& block) const
 {
   const ChartedTriangulation& charts = this->GetCharts(from);
+  if (this->Cubic)
+  {
+    this->MapByCubics(from, block);
+    return;
+  }
   if (charts.GetSystem() == CoordinateSystem::Smooth)
   {
     this->MapByStrips(from, block);
@@ -450,6 +478,17 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
   }
 }
 
+void Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
+{
+  for (int i = 0; i < block.Count; ++i)
+  {
+    if (block.Triangles[i] >= 0)
+    {
+      this->MapPoint(from, block.GetSurfacePoint(i), block.Points[i]);
+    }
+  }
+}
+
 /// From barycentric coordinates in the target's affine chart of a triangle to its points.
 void Homeomorphism::LeaveTriangle(
   Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const
@@ -506,6 +545,19 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
       image);
     return;
   }
+  if (this->Cubic)
+  {
+    Vector2 inPlane;
+    Matrix2 derivative;
+    this->Cubic->MapPoint(
+      from, surfacePoint.Triangle, surfacePoint.Point.InPlane, inPlane, derivative);
+    // Heights are measured as in the triangle's frame.
+    const double orientation = target.IsColumnar()
+      ? 1.0
+      : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
+    target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
+    return;
+  }
   FramePoint point;
   point.Offset = offset;
   point.InPlane = this->VisitCharts(
@@ -528,6 +580,14 @@ Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle, const Chart&
 
 Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoint) const
 {
+  if (this->Cubic)
+  {
+    Vector2 image;
+    Matrix2 derivative;
+    this->Cubic->MapPoint(
+      from, surfacePoint.Triangle, surfacePoint.Point.InPlane, image, derivative);
+    return this->FromFrames(from, surfacePoint.Triangle, derivative, derivative.Determinant());
+  }
   return this->VisitCharts(
     from, surfacePoint.Triangle, [this, from, &surfacePoint](const auto& chart, const auto& other) {
       return this->Derive(
@@ -538,6 +598,11 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoin
 Jacobian Homeomorphism::GetJacobian(
   Domain from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const
 {
+  if (this->Cubic)
+  {
+    const Vector2 point = this->GetCharts(from).FromCoordinates(triangle, coordinates);
+    return this->GetJacobian(from, SurfacePoint{ triangle, { point, 0.0 }, -1 });
+  }
   return this->VisitCharts(
     from, triangle, [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
       return this->Derive(from, triangle, chart, other, chart.FromCoordinates(coordinates));

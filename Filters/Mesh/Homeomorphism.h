@@ -9,6 +9,7 @@
 #define homeomorphism_Homeomorphism_h
 
 #include "ChartedTriangulation.h"
+#include "CubicHomeomorphism.h"
 #include "TriangulationPair.h"
 
 #include <memory>
@@ -27,6 +28,8 @@ struct HomeomorphismOptions
   bool MaskInvalidTriangles = false;
   /// Let the Linear system carry discordant triangles instead of refusing the meshes.
   bool DiscordantByLinear = false;
+  /// Of the Cubic system. The deviation is in the target's units.
+  CubicMapOptions Cubic;
 };
 
 /// The map's derivative, in the coordinates of the input.
@@ -95,6 +98,8 @@ public:
     const HomeomorphismOptions& options, MeshDiagnostics& problems);
 
   const TriangulationPair& GetPair() const { return *this->Pair; }
+  /// The map of the Cubic system, null in the others.
+  const CubicHomeomorphism* GetCubic() const { return this->Cubic.get(); }
   const ChartedTriangulation& GetCharts(Domain domain) const { return *this->Charts[int(domain)]; }
 
   /// The distance, in normalized coordinates, up to which a point is taken to the nearest point of
@@ -159,6 +164,7 @@ private:
   }
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;
+  void MapByCubics(Domain from, PointBlock& block) const;
   void LeaveTriangle(
     Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
 
@@ -176,6 +182,7 @@ private:
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;
+  std::unique_ptr<const CubicHomeomorphism> Cubic;
 };
 
 } // namespace homeomorphism

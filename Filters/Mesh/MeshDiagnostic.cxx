@@ -83,6 +83,8 @@ const char* Advice(MeshDiagnostic::Kind kind)
     case Kind::Discordant:
       return "Use the Smooth system, which takes any triangle, or let the Linear system carry them "
              "(DiscordantTriangles).";
+    case Kind::NotPlanar:
+      return "Use the Smooth system, which maps surfaces too.";
   }
   return "";
 }
@@ -103,7 +105,7 @@ std::string MeshDiagnostic::Message() const
 {
   std::ostringstream text;
   if (this->What == Kind::PointCountsDiffer || this->What == Kind::CellCountsDiffer ||
-    this->What == Kind::TooManyTriangles)
+    this->What == Kind::TooManyTriangles || this->What == Kind::NotPlanar)
   {
     text << this->Details;
   }

@@ -33,7 +33,8 @@ struct MeshDiagnostic
     NonOrientable,
     Flipped,
     Overlapping,
-    Discordant
+    Discordant,
+    NotPlanar
   };
 
   /// What happened to the triangles concerned.

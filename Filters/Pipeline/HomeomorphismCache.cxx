@@ -57,7 +57,8 @@ std::shared_ptr<const Homeomorphism> HomeomorphismCache::Get(
   const bool sameOptions = options.System == this->Options.System &&
     options.Center == this->Options.Center &&
     options.MaskInvalidTriangles == this->Options.MaskInvalidTriangles &&
-    options.DiscordantByLinear == this->Options.DiscordantByLinear;
+    options.DiscordantByLinear == this->Options.DiscordantByLinear &&
+    options.Cubic == this->Options.Cubic;
   if (this->NumberOfBuilds == 0 || !sameMeshes || !sameOptions)
   {
     this->Problems.clear();

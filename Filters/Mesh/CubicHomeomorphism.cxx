@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "CubicHomeomorphism.h"
+
+#include "vtkSMPTools.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+namespace homeomorphism
+{
+
+CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOptions options)
+  : Pair(pair)
+{
+  const Triangulation& topology = pair.GetTriangulation();
+  const MeshGeometry& source = pair.GetGeometry(Domain::Source);
+  const MeshGeometry& target = pair.GetGeometry(Domain::Target);
+  const TriangleIndex count = topology.GetNumberOfTriangles();
+  PlanarPair planar;
+  this->Numbers.assign(count, -1);
+  std::vector<std::uint8_t> reversed;
+  // Parts that touch in a point may be mirrored independently: then the point is taken twice.
+  std::array<std::unordered_map<std::int32_t, std::int32_t>, 2> pointNumbers;
+  for (TriangleIndex t = 0; t < count; ++t)
+  {
+    if (topology.IsMasked(t))
+    {
+      continue;
+    }
+    const bool mirrored = source.GetOrientation(t) != target.GetOrientation(t);
+    Triangulation::Corners corners = topology.GetCorners(t);
+    const bool isReversed = source.GetOrientation(t) < 0;
+    if (isReversed)
+    {
+      std::swap(corners[1], corners[2]);
+    }
+    for (std::int32_t& corner : corners)
+    {
+      const auto number = pointNumbers[mirrored ? 1 : 0].emplace(
+        corner, static_cast<std::int32_t>(planar.Source.size()));
+      if (number.second)
+      {
+        this->Points.push_back(corner);
+        planar.Source.push_back(source.GetPlanePoint(corner));
+        const Vector2& image = target.GetPlanePoint(corner);
+        planar.Target.push_back(mirrored ? Vector2{ -image.x, image.y } : image);
+      }
+      corner = number.first->second;
+    }
+    this->Numbers[t] = static_cast<std::int32_t>(planar.Triangles.size());
+    this->Triangles.push_back(t);
+    this->Mirrored.push_back(mirrored);
+    reversed.push_back(isReversed);
+    planar.Triangles.push_back(corners);
+  }
+  planar.Neighbors.resize(planar.Triangles.size());
+  for (std::size_t n = 0; n < planar.Triangles.size(); ++n)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const TriangleIndex twin = topology.GetTwin(this->Triangles[n], k).Triangle;
+      // Edge k is opposite corner k, and two corners may have been exchanged.
+      const int edge = reversed[n] && k > 0 ? 3 - k : k;
+      planar.Neighbors[n][edge] = twin < 0 ? -1 : this->Numbers[twin];
+    }
+  }
+  options.MaximumDeviation *= target.GetScale();
+  this->Map = std::make_unique<CubicMap>(std::move(planar), options,
+    [](std::int64_t size, const std::function<void(std::int64_t, std::int64_t)>& body)
+    {
+      vtkSMPTools::For(
+        0, static_cast<vtkIdType>(size), [&body](vtkIdType begin, vtkIdType end) { body(begin, end); });
+    });
+}
+
+void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame,
+  Vector2& image, Matrix2& derivative) const
+{
+  const PlaneFrame& here = this->Pair.GetGeometry(from).GetPlaneFrame(triangle);
+  const PlaneFrame& there = this->Pair.GetGeometry(Opposite(from)).GetPlaneFrame(triangle);
+  Vector2 point = here.FromFrame(inFrame);
+  int number = this->Numbers[triangle];
+  const bool mirrored = this->Mirrored[number] != 0;
+  Matrix2 forward;
+  if (from == Domain::Source)
+  {
+    this->Map->MapPoint(number, point, image, forward);
+  }
+  else
+  {
+    point.x = mirrored ? -point.x : point.x;
+    this->Map->FindPreimage(point, number, image);
+    Vector2 again;
+    this->Map->MapPoint(number, image, again, forward);
+  }
+  if (mirrored)
+  {
+    image.x = from == Domain::Source ? -image.x : image.x;
+    forward.ImageOfX.x = -forward.ImageOfX.x;
+    forward.ImageOfY.x = -forward.ImageOfY.x;
+  }
+  if (from == Domain::Target)
+  {
+    const double determinant = forward.Determinant();
+    forward = (1.0 / determinant) *
+      Matrix2{ { forward.ImageOfY.y, -forward.ImageOfX.y },
+        { -forward.ImageOfY.x, forward.ImageOfX.x } };
+  }
+  // From the planes' axes to those of the frames.
+  const auto toFrame = [](const PlaneFrame& frame, const Vector2& v)
+  {
+    return Vector2{ Dot(frame.Tangent, v), frame.Orientation * Cross(frame.Tangent, v) };
+  };
+  const Vector2 inward{ -here.Orientation * here.Tangent.y, here.Orientation * here.Tangent.x };
+  derivative = { toFrame(there, forward * here.Tangent), toFrame(there, forward * inward) };
+}
+
+std::vector<std::int32_t> CubicHomeomorphism::GetExceptionalPoints(bool interior) const
+{
+  const CubicMapStatistics& statistics = this->Map->GetStatistics();
+  std::vector<std::int32_t> points;
+  for (std::int32_t point :
+    interior ? statistics.ExceptionalInteriorPoints : statistics.ExceptionalBoundaryPoints)
+  {
+    points.push_back(this->Points[point]);
+  }
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file CubicHomeomorphism.h
+/// The Cubic map between the planes of two meshes.
+
+#ifndef homeomorphism_CubicHomeomorphism_h
+#define homeomorphism_CubicHomeomorphism_h
+
+#include "CubicMap.h"
+#include "TriangulationPair.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace homeomorphism
+{
+
+/// A CubicMap of a planar TriangulationPair, in both meshes' normalized coordinates. Triangles are
+/// turned anticlockwise for it, and parts that the target mirrors are mirrored back. Immutable; any
+/// number of threads may use it.
+class CubicHomeomorphism
+{
+public:
+  /// Both meshes must be planar. The options' MaximumDeviation is in the target's input units.
+  CubicHomeomorphism(const TriangulationPair& pair, CubicMapOptions options);
+
+  const CubicMap& GetMap() const { return *this->Map; }
+
+  /// The image of a point of a triangle's frame, and the derivative from frame to frame. Both are
+  /// in the plane of the other mesh.
+  void MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame, Vector2& image,
+    Matrix2& derivative) const;
+
+  /// The least Bernstein coefficient of the determinant over the piecewise linear map's, 0 for a
+  /// masked triangle.
+  double GetCertificate(TriangleIndex triangle) const
+  {
+    return this->Numbers[triangle] < 0 ? 0.0
+                                       : this->Map->GetCertificates()[this->Numbers[triangle]];
+  }
+
+  /// Points of the mesh at which the map has no derivative, ascending.
+  std::vector<std::int32_t> GetExceptionalPoints(bool interior) const;
+
+private:
+  const TriangulationPair& Pair;
+  std::unique_ptr<CubicMap> Map;
+  /// Triangles and points of the map by those of the meshes, and back; -1 for masked ones.
+  std::vector<std::int32_t> Numbers;
+  std::vector<std::int32_t> Triangles;
+  std::vector<std::int32_t> Points;
+  std::vector<std::uint8_t> Mirrored;
+};
+
+} // namespace homeomorphism
+
+#endif
