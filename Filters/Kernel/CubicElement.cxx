@@ -122,33 +122,149 @@ CubicOrdinates<Vector<T>> MakeOrdinates(
   return b;
 }
 
-// The derivatives of D towards the start and towards the end of a piece's edge, both from the
-// centroid, are quadratic. Their Bernstein ordinates, by weights of start, end and centroid: 200,
-// 110, 020, 101, 011, 002.
-template <typename V>
-struct DerivativeOrdinates
+// A matrix by the images of two axes: the plane's, or those of a right angle.
+template <typename T>
+struct Matrix
 {
-  std::array<V, 6> ToStart;
-  std::array<V, 6> ToEnd;
+  Vector<T> First;
+  Vector<T> Second;
 };
 
-template <typename V, typename T>
-DerivativeOrdinates<V> Differentiate(const CubicOrdinates<V>& b, int k, T three)
+template <typename T>
+Matrix<T> operator+(const Matrix<T>& a, const Matrix<T>& b)
 {
-  const int i = NextCorner(k);
-  const int j = PreviousCorner(k);
-  const V fromCentroid[6] = { b.Inner[i], b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j],
-    b.Center };
-  const V fromStart[6] = { b.Corner[i], b.AfterStart[k], b.BeforeEnd[k], b.Inner[i], b.Middle[k],
-    b.Spoke[i] };
-  const V fromEnd[6] = { b.AfterStart[k], b.BeforeEnd[k], b.Corner[j], b.Middle[k], b.Inner[j],
-    b.Spoke[j] };
-  DerivativeOrdinates<V> d;
-  for (int n = 0; n < 6; ++n)
+  return { a.First + b.First, a.Second + b.Second };
+}
+
+template <typename T>
+Matrix<T> operator-(const Matrix<T>& a, const Matrix<T>& b)
+{
+  return { a.First - b.First, a.Second - b.Second };
+}
+
+template <typename T>
+Matrix<T> operator*(const T& s, const Matrix<T>& m)
+{
+  return { s * m.First, s * m.Second };
+}
+
+// D' is continuous and quadratic in each piece. Its Bernstein ordinates: at the corners, in the
+// middle of the edges, in the middle of the segments from the corners to the centroid, and there.
+template <typename T>
+struct DerivativeOrdinates
+{
+  std::array<Matrix<T>, 3> Corner;
+  std::array<Matrix<T>, 3> Edge;
+  std::array<Matrix<T>, 3> Spoke;
+  Matrix<T> Center;
+};
+
+template <typename T>
+void FinishDerivative(DerivativeOrdinates<T>& d)
+{
+  d.Center = T(1.0) / T(3.0) * (d.Spoke[0] + d.Spoke[1] + d.Spoke[2]);
+}
+
+// Along an edge D' takes the edge to the derivative of a cubic, and the normal to the mean of the
+// ends' normal derivatives. Beside a corner i, D' e = G_i e + (E - G_i) o for both edges e at i,
+// with E the ordinate in the middle of e, and o from i to the centroid.
+template <typename T>
+DerivativeOrdinates<T> MakeDerivative(const CubicElement& element)
+{
+  const T half(0.5);
+  const auto apply = [](const Matrix<T>& m, const Vector<T>& v) {
+    return v.x * m.First + v.y * m.Second;
+  };
+  DerivativeOrdinates<T> d;
+  for (int i = 0; i < 3; ++i)
   {
-    d.ToStart[n] = three * (fromStart[n] - fromCentroid[n]);
-    d.ToEnd[n] = three * (fromEnd[n] - fromCentroid[n]);
+    d.Corner[i] = { Vector<T>(element.Gradients[i].ImageOfX),
+      Vector<T>(element.Gradients[i].ImageOfY) };
   }
+  std::array<Vector<T>, 3> edges;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    const Vector<T> edge = Vector<T>(element.Points[j]) - Vector<T>(element.Points[i]);
+    edges[k] = edge;
+    const Matrix<T> sum = d.Corner[i] + d.Corner[j];
+    const Vector<T> difference = Vector<T>(element.Values[j]) - Vector<T>(element.Values[i]);
+    const Vector<T> bend =
+      T(1.0) / Dot(edge, edge) * (T(3.0) * difference - T(1.5) * apply(sum, edge));
+    d.Edge[k] = half * sum + Matrix<T>{ edge.x * bend, edge.y * bend };
+  }
+  const T area = edges[0].x * edges[1].y - edges[0].y * edges[1].x;
+  const T third = T(1.0) / T(3.0);
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vector<T> next = edges[PreviousCorner(i)];
+    const Vector<T> previous = T(-1.0) * edges[NextCorner(i)];
+    const Vector<T> inward = third * (next + previous);
+    const Vector<T> first = apply(d.Edge[PreviousCorner(i)] - d.Corner[i], inward);
+    const Vector<T> second = apply(d.Edge[NextCorner(i)] - d.Corner[i], inward);
+    const T scale = T(1.0) / area;
+    d.Spoke[i] = d.Corner[i] +
+      Matrix<T>{ scale * (previous.y * first - next.y * second),
+        scale * (next.x * second - previous.x * first) };
+  }
+  FinishDerivative(d);
+  return d;
+}
+
+// The same in the frame of a right angle, worked out by hand: with P the start, R the right angle
+// and S the third corner, mu = |RS| / |PR|. The differences that a thin triangle divides by mu are
+// divided before they are taken.
+template <typename T>
+DerivativeOrdinates<T> MakeRightDerivative(const CubicElement& element)
+{
+  const RightAngle& right = element.Right;
+  const int p = right.Start;
+  const int r = right.Corner;
+  const int s = 3 - p - r;
+  const T half(0.5);
+  const T third = T(1.0) / T(3.0);
+  const T mu = T(right.AlongNormal) / T(right.AlongTangent);
+  DerivativeOrdinates<T> d;
+  for (int i = 0; i < 3; ++i)
+  {
+    d.Corner[i] = { Vector<T>(right.ByTangent[i]), Vector<T>(right.ByNormal[i]) };
+  }
+  const Vector<T>& aP = d.Corner[p].First;
+  const Vector<T>& bP = d.Corner[p].Second;
+  const Vector<T>& aR = d.Corner[r].First;
+  const Vector<T>& bR = d.Corner[r].Second;
+  const Vector<T>& aS = d.Corner[s].First;
+  const Vector<T>& bS = d.Corner[s].Second;
+  const Vector<T> alongLeg =
+    T(1.0) / T(right.AlongTangent) * (Vector<T>(element.Values[r]) - Vector<T>(element.Values[p]));
+  const Vector<T> alongOther =
+    T(1.0) / T(right.AlongNormal) * (Vector<T>(element.Values[s]) - Vector<T>(element.Values[r]));
+  Matrix<T>& pr = d.Edge[s];
+  Matrix<T>& rs = d.Edge[p];
+  Matrix<T>& ps = d.Edge[r];
+  pr = { T(3.0) * alongLeg - (aP + aR), half * (bP + bR) };
+  rs = { half * (aR + aS), T(3.0) * alongOther - (bR + bS) };
+  const Vector<T> a = aP + aS;
+  const Vector<T> b = bP + bS;
+  const T scale = T(1.0) / (T(1.0) + mu * mu);
+  // (ps - pr) along the tangent, divided by mu.
+  const Vector<T> turn = T(1.0) / mu * (aR - aS) +
+    scale * (T(1.5) * (mu * a - b) + T(3.0) * (alongOther - mu * alongLeg));
+  ps.First = pr.First + mu * turn;
+  ps.Second =
+    half * b + mu * scale * (T(3.0) * (alongLeg + mu * alongOther) - T(1.5) * (a + mu * b));
+  d.Spoke[p] = d.Corner[p] +
+    Matrix<T>{ T(2.0) * third * (pr.First - aP) + mu * third * (pr.Second - bP),
+      T(2.0) * third * turn + third * (ps.Second - pr.Second) };
+  const Vector<T> lean = half * third / mu * (aS - aR);
+  d.Spoke[r] = d.Corner[r] +
+    Matrix<T>{ third * (pr.First - aR) - mu * third * (pr.Second - bR),
+      third * (rs.Second - bR) - lean };
+  d.Spoke[s] = d.Corner[s] +
+    Matrix<T>{ third * (ps.First - rs.First) + T(2.0) * mu * third * (ps.Second - rs.Second),
+      T(2.0) * third * (rs.Second - bS) - lean };
+  FinishDerivative(d);
   return d;
 }
 
@@ -184,23 +300,24 @@ double QuarticMultiplicity(const QuarticIndex& index)
 template <typename T>
 void MakeDeterminant(const CubicElement& element, std::array<T, 45>& coefficients)
 {
-  const std::array<Vector<T>, 3> toCentroid = ToCentroid<T>(element.Points);
-  const CubicOrdinates<Vector<T>> ordinates = MakeOrdinates<T>(element, toCentroid);
-  // The areas of the three pieces are equal.
-  const Vector<T> first = Vector<T>(element.Points[1]) - Vector<T>(element.Points[0]);
-  const Vector<T> second = Vector<T>(element.Points[2]) - Vector<T>(element.Points[0]);
-  const T scale = T(3.0) / Cross(first, second);
+  const bool isRight = element.Right.Corner >= 0;
+  const DerivativeOrdinates<T> d =
+    isRight ? MakeRightDerivative<T>(element) : MakeDerivative<T>(element);
+  Matrix<T> affine{ Vector<T>(element.Affine.ImageOfX), Vector<T>(element.Affine.ImageOfY) };
+  T sign(1.0);
+  if (isRight)
+  {
+    affine = { Apply(element.Affine, Vector<T>(element.Right.Tangent)),
+      Apply(element.Affine, Vector<T>(element.Right.Normal)) };
+    sign = T(Cross(element.Right.Tangent, element.Right.Normal) > 0.0 ? 1.0 : -1.0);
+  }
   const std::array<QuarticIndex, 15>& indices = QuarticIndices();
   for (int k = 0; k < 3; ++k)
   {
-    DerivativeOrdinates<Vector<T>> d = Differentiate(ordinates, k, T(3.0));
-    const Vector<T> toStart = Apply(element.Affine, toCentroid[NextCorner(k)]);
-    const Vector<T> toEnd = Apply(element.Affine, toCentroid[PreviousCorner(k)]);
-    for (int n = 0; n < 6; ++n)
-    {
-      d.ToStart[n] = d.ToStart[n] - toStart;
-      d.ToEnd[n] = d.ToEnd[n] - toEnd;
-    }
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    const Matrix<T> ordinates[6] = { affine + d.Corner[i], affine + d.Edge[k], affine + d.Corner[j],
+      affine + d.Spoke[i], affine + d.Spoke[j], affine + d.Center };
     T sums[15] = {};
     for (int m = 0; m < 6; ++m)
     {
@@ -210,12 +327,13 @@ void MakeDeterminant(const CubicElement& element, std::array<T, 45>& coefficient
         const int centroid = QuadraticWeights[m][2] + QuadraticWeights[n][2];
         T& sum = sums[QuarticNumber(end, centroid)];
         sum = sum +
-          T(QuadraticMultiplicity[m] * QuadraticMultiplicity[n]) * Cross(d.ToStart[m], d.ToEnd[n]);
+          T(QuadraticMultiplicity[m] * QuadraticMultiplicity[n]) *
+            Cross(ordinates[m].First, ordinates[n].Second);
       }
     }
     for (int n = 0; n < 15; ++n)
     {
-      coefficients[15 * k + n] = scale * sums[n] / T(QuarticMultiplicity(indices[n]));
+      coefficients[15 * k + n] = sign * sums[n] / T(QuarticMultiplicity(indices[n]));
     }
   }
 }
@@ -375,14 +493,19 @@ void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, con
     centroid = centroid + weights[n] * fromCentroid[n];
   }
   value = u * start + v * end + w * centroid;
-  const Vector2 along = 3.0 * (end - start);
-  const Vector2 inward = 3.0 * (centroid - start);
-  // The derivative takes edge to along and the vector from the start to the centroid to inward.
-  const Vector2 edge = element.Points[j] - element.Points[i];
-  const Vector2 toCentroid = (1.0 / 3.0) * (edge + (element.Points[k] - element.Points[i]));
-  const double area = Cross(edge, toCentroid);
-  derivative = { (1.0 / area) * (toCentroid.y * along - edge.y * inward),
-    (1.0 / area) * (edge.x * inward - toCentroid.x * along) };
+  const bool isRight = element.Right.Corner >= 0;
+  const DerivativeOrdinates<double> d =
+    isRight ? MakeRightDerivative<double>(element) : MakeDerivative<double>(element);
+  const Matrix<double> sum = weights[0] * d.Corner[i] + weights[1] * d.Edge[k] +
+    weights[2] * d.Corner[j] + weights[3] * d.Spoke[i] + weights[4] * d.Spoke[j] +
+    weights[5] * d.Center;
+  derivative = { { sum.First.x, sum.First.y }, { sum.Second.x, sum.Second.y } };
+  if (isRight)
+  {
+    // From the frame's axes to the plane's.
+    derivative = OuterProduct(derivative.ImageOfX, element.Right.Tangent) +
+      OuterProduct(derivative.ImageOfY, element.Right.Normal);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -51,6 +51,23 @@ inline double SquaredNorm(const Matrix2& m)
 /// every entry if the differences of the corners are exact.
 Matrix2 AffineDerivative(const std::array<Vector2, 3>& from, const std::array<Vector2, 3>& to);
 
+/// The frame of a triangle with a right angle, however thin: unit vectors along its two legs, and
+/// the legs' lengths. In the formulas for such a triangle nothing cancels.
+struct RightAngle
+{
+  /// The corner with the right angle, -1 if there is none; Tangent leads to it from the corner
+  /// Start, Normal leads from it to the third corner.
+  int Corner = -1;
+  int Start = 0;
+  Vector2 Tangent;
+  Vector2 Normal;
+  double AlongTangent = 0.0;
+  double AlongNormal = 0.0;
+  /// D's derivatives at the corners along Tangent and Normal, which are used instead of Gradients.
+  std::array<Vector2, 3> ByTangent = {};
+  std::array<Vector2, 3> ByNormal = {};
+};
+
 /// The map f(x) = Affine x + D(x) on a triangle. D is the reduced Hsieh-Clough-Tocher interpolant
 /// of the Values and Gradients at the corners: C1, cubic in each of the three pieces about the
 /// centroid, cubic along each edge with a normal derivative that is linear there (Clough, Tocher
@@ -65,6 +82,7 @@ struct CubicElement
   std::array<Vector2, 3> Values = {};
   /// The derivative of D at the corners.
   std::array<Matrix2, 3> Gradients = {};
+  RightAngle Right = {};
 };
 
 /// Bernstein ordinates of D. The piece opposite corner k has the corners i = NextCorner(k),

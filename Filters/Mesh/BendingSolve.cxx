@@ -265,8 +265,7 @@ void Solver::FindBoundary()
     }
     else
     {
-      boundary.Derivative =
-        AffineDerivative({ Vector2{}, out, in }, { Vector2{}, imageOfOut, imageOfIn });
+      boundary.Derivative = FitBoundary(this->Template.GetFan(point, fan));
     }
   }
 }
@@ -428,6 +427,10 @@ CubicElement Solver::GetElement(const Element& element, bool aim) const
     const BendingNode& data = aim ? node.Aim : node.Now;
     result.Values[i] = data.Value;
     result.Gradients[i] = data.Gradient - this->Affine[t];
+  }
+  if (element.Number >= 0)
+  {
+    this->Template.GetCut(t).SetRightAngle(element.Number, result);
   }
   return result;
 }
@@ -969,6 +972,7 @@ CubicElement BendingSolution::GetElement(const PlanarPair& pair, const TriangleC
     result.Values[i] = node.Value;
     result.Gradients[i] = node.Gradient - affine;
   }
+  cut.SetRightAngle(element, result);
   return result;
 }
 

@@ -69,10 +69,9 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
   }
   options.MaximumDeviation *= target.GetScale();
   this->Map = std::make_unique<CubicMap>(std::move(planar), options,
-    [](std::int64_t size, const std::function<void(std::int64_t, std::int64_t)>& body)
-    {
-      vtkSMPTools::For(
-        0, static_cast<vtkIdType>(size), [&body](vtkIdType begin, vtkIdType end) { body(begin, end); });
+    [](std::int64_t size, const std::function<void(std::int64_t, std::int64_t)>& body) {
+      vtkSMPTools::For(0, static_cast<vtkIdType>(size),
+        [&body](vtkIdType begin, vtkIdType end) { body(begin, end); });
     });
 }
 
@@ -110,8 +109,7 @@ void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vec
         { -forward.ImageOfY.x, forward.ImageOfX.x } };
   }
   // From the planes' axes to those of the frames.
-  const auto toFrame = [](const PlaneFrame& frame, const Vector2& v)
-  {
+  const auto toFrame = [](const PlaneFrame& frame, const Vector2& v) {
     return Vector2{ Dot(frame.Tangent, v), frame.Orientation * Cross(frame.Tangent, v) };
   };
   const Vector2 inward{ -here.Orientation * here.Tangent.y, here.Orientation * here.Tangent.x };

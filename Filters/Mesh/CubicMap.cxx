@@ -195,6 +195,11 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
     this->Bending = std::make_unique<BendingSolution>(
       SolveForLeastBending(*this->Template, bending, isFree, parallelFor));
     this->Statistics.Bending = this->Bending->Statistics;
+    if (this->Statistics.Bending.TookTemplate)
+    {
+      // In closed form it is more accurate than through its nodes.
+      this->Bending.reset();
+    }
   }
   double coordinates = 0.0;
   for (const Vector2& target : this->Pair.Target)

@@ -35,7 +35,8 @@ FanSector GetSector(const TriangleCut& cut, const Matrix2& affine, int corner)
   const int out = PreviousCorner(corner);
   const int in = NextCorner(corner);
   return { cut.GetNode(3 + 2 * out, corner), cut.GetNode(9 + 2 * out, corner),
-    cut.GetNode(10 + 2 * in, corner), cut.GetNode(4 + 2 * in, corner), affine };
+    cut.GetNode(10 + 2 * in, corner), cut.GetNode(4 + 2 * in, corner), affine, cut.Radii[corner],
+    { cut.Along[out], -1.0 * cut.Along[in] }, { cut.Heights[out], cut.Heights[in] } };
 }
 
 // A direction relative to a sector's fan: beside the first ray (0), in the middle (1), beside the
@@ -182,6 +183,48 @@ int TriangleCut::Find(const Vector2& point) const
     }
   }
   return FirstMiddle + 3;
+}
+
+//------------------------------------------------------------------------------
+bool TriangleCut::SetRightAngle(int element, CubicElement& result) const
+{
+  if (element >= FirstMiddle || (element < FirstStrip && element % 3 == 1))
+  {
+    return false;
+  }
+  RightAngle& right = result.Right;
+  int k;
+  if (element < FirstStrip)
+  {
+    // (corner, edge point, inner point) or (corner, inner point, edge point).
+    const int c = element / 3;
+    const bool first = element % 3 == 0;
+    k = first ? PreviousCorner(c) : NextCorner(c);
+    right.Start = 0;
+    right.Corner = first ? 1 : 2;
+    right.Tangent = first ? this->Along[k] : -1.0 * this->Along[k];
+    right.Normal = Normal(this->Along[k]);
+    right.AlongTangent = this->Radii[c];
+  }
+  else
+  {
+    // (edge point, edge point, inner point) or (edge point, inner point, inner point).
+    k = (element - FirstStrip) / 2;
+    const bool first = (element - FirstStrip) % 2 == 0;
+    right.Start = first ? 0 : 1;
+    right.Corner = first ? 1 : 2;
+    right.Tangent = first ? this->Along[k] : -1.0 * this->Along[k];
+    right.Normal = (first ? 1.0 : -1.0) * Normal(this->Along[k]);
+    right.AlongTangent =
+      this->Lengths[k] - this->Radii[NextCorner(k)] - this->Radii[PreviousCorner(k)];
+  }
+  right.AlongNormal = this->Heights[k];
+  for (int i = 0; i < 3; ++i)
+  {
+    right.ByTangent[i] = result.Gradients[i] * right.Tangent;
+    right.ByNormal[i] = result.Gradients[i] * right.Normal;
+  }
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -408,7 +451,7 @@ TriangleCut CubicTemplate::GetCut(int triangle) const
 
 //------------------------------------------------------------------------------
 Matrix2 CubicTemplate::GetGradient(
-  const TriangleCut&, const Matrix2& affine, int triangle, int node) const
+  const TriangleCut& cut, const Matrix2& affine, int triangle, int node) const
 {
   if (node < 3)
   {
@@ -419,7 +462,16 @@ Matrix2 CubicTemplate::GetGradient(
     return {};
   }
   const int neighbor = this->Pair.Neighbors[triangle][(node - 3) / 2];
-  return neighbor < 0 ? Matrix2{} : HarmonicMean(affine, this->Pair.GetAffine(neighbor)) - affine;
+  if (neighbor < 0)
+  {
+    return {};
+  }
+  // Across the edge only: w n^T is what the two affine maps differ by.
+  const Vector2 normal = Normal(cut.Along[(node - 3) / 2]);
+  const Matrix2 across = this->Pair.GetAffine(neighbor);
+  const double d = affine.Determinant();
+  const double share = d / (d + across.Determinant());
+  return OuterProduct(share * ((across - affine) * normal), normal);
 }
 
 //------------------------------------------------------------------------------
@@ -434,6 +486,18 @@ CubicElement CubicTemplate::GetElement(
     const int node = TriangleCut::Elements[element][i];
     result.Points[i] = cut.GetNode(node, origin);
     result.Gradients[i] = this->GetGradient(cut, affine, triangle, node);
+  }
+  if (!cut.SetRightAngle(element, result))
+  {
+    return result;
+  }
+  // At edge points exactly nothing changes along the edge.
+  RightAngle& right = result.Right;
+  for (int i = 0; i < 3; ++i)
+  {
+    const bool atVertex = TriangleCut::Elements[element][i] < 3;
+    right.ByTangent[i] = atVertex ? result.Gradients[i] * right.Tangent : Vector2{};
+    right.ByNormal[i] = result.Gradients[i] * right.Normal;
   }
   return result;
 }

@@ -60,6 +60,9 @@ struct TriangleCut
   /// A node relative to the corner @a origin.
   Vector2 GetNode(int node, int origin) const;
 
+  /// Gives an element its frame if it has a right angle: beside the edges. Returns whether.
+  bool SetRightAngle(int element, CubicElement& result) const;
+
   /// The element that contains a point of the triangle, relative to corner 0.
   int Find(const Vector2& point) const;
 };

@@ -195,35 +195,6 @@ std::vector<Matrix2> GetBasis(const VertexFan& fan)
     OuterProduct(imageOfEnd, (1.0 / area) * Rotated(start)) };
 }
 
-// A linear map with positive determinant between the same boundary directions.
-Matrix2 FitBoundary(const VertexFan& fan)
-{
-  const FanSector& first = fan.Sectors.front();
-  const FanSector& last = fan.Sectors.back();
-  const Vector2 start = Normalized(first.Start);
-  const Vector2 imageOfStart = first.Affine * start;
-  if (!fan.Straight)
-  {
-    const Vector2 end = Normalized(last.End);
-    const double area = Cross(start, end);
-    return OuterProduct(imageOfStart, (-1.0 / area) * Rotated(end)) +
-      OuterProduct(last.Affine * end, (1.0 / area) * Rotated(start));
-  }
-  const Vector2 imageOfEnd = last.Affine * Normalized(last.End);
-  const double stretch =
-    std::sqrt(std::sqrt(Dot(imageOfEnd, imageOfEnd) / Dot(imageOfStart, imageOfStart)));
-  const Vector2 normal = Rotated(start);
-  Vector2 imageOfNormal = first.Affine * normal;
-  for (const FanSector& sector : fan.Sectors)
-  {
-    if (Cross(sector.Start, normal) >= 0.0 && Cross(normal, sector.End) >= 0.0)
-    {
-      imageOfNormal = sector.Affine * normal;
-    }
-  }
-  return OuterProduct(stretch * imageOfStart, start) + OuterProduct(imageOfNormal, normal);
-}
-
 double MeanStretch(const VertexFan& fan)
 {
   double sum = 0.0;
@@ -560,6 +531,64 @@ bool IsRingCertified(
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
+Matrix2 FitBoundary(const VertexFan& fan)
+{
+  const FanSector& first = fan.Sectors.front();
+  const FanSector& last = fan.Sectors.back();
+  const Vector2 start = Normalized(first.Start);
+  const Vector2 imageOfStart = first.Affine * start;
+  if (!fan.Straight)
+  {
+    // The stretches along the two edges that bring the map closest to those of the sectors: where
+    // the boundary is almost straight, unequal ones would shear.
+    const std::vector<Matrix2> basis = GetBasis(fan);
+    const Vector2 imageOfEnd = last.Affine * Normalized(last.End);
+    const auto product = [](const Matrix2& a, const Matrix2& b) {
+      return Dot(a.ImageOfX, b.ImageOfX) + Dot(a.ImageOfY, b.ImageOfY);
+    };
+    Matrix2 mean{};
+    double total = 0.0;
+    for (const FanSector& sector : fan.Sectors)
+    {
+      const double area = Cross(sector.Start, sector.End);
+      mean = mean + area * sector.Affine;
+      total += area;
+    }
+    mean = (1.0 / total) * mean;
+    const double aa = product(basis[0], basis[0]);
+    const double ab = product(basis[0], basis[1]);
+    const double bb = product(basis[1], basis[1]);
+    const double am = product(basis[0], mean);
+    const double bm = product(basis[1], mean);
+    const double determinant = aa * bb - ab * ab;
+    std::array<double, 2> stretches{ std::sqrt(Dot(imageOfStart, imageOfStart)),
+      std::sqrt(Dot(imageOfEnd, imageOfEnd)) };
+    const std::array<double, 2> best{ (am * bb - bm * ab) / determinant,
+      (bm * aa - am * ab) / determinant };
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      // Cubics along the edges stay monotone up to three times their slope.
+      const double own = stretches[i];
+      stretches[i] = std::isfinite(best[i]) ? std::clamp(best[i], 0.2 * own, 2.5 * own) : own;
+    }
+    return stretches[0] * basis[0] + stretches[1] * basis[1];
+  }
+  const Vector2 imageOfEnd = last.Affine * Normalized(last.End);
+  const double stretch =
+    std::sqrt(std::sqrt(Dot(imageOfEnd, imageOfEnd) / Dot(imageOfStart, imageOfStart)));
+  const Vector2 normal = Rotated(start);
+  Vector2 imageOfNormal = first.Affine * normal;
+  for (const FanSector& sector : fan.Sectors)
+  {
+    if (Cross(sector.Start, normal) >= 0.0 && Cross(normal, sector.End) >= 0.0)
+    {
+      imageOfNormal = sector.Affine * normal;
+    }
+  }
+  return OuterProduct(stretch * imageOfStart, start) + OuterProduct(imageOfNormal, normal);
+}
+
+//------------------------------------------------------------------------------
 Matrix2 HarmonicMean(const Matrix2& a, const Matrix2& b)
 {
   const double d = a.Determinant();
@@ -593,12 +622,30 @@ std::array<CubicElement, 3> GetCornerElements(const FanSector& sector, const Mat
 {
   const Matrix2& affine = sector.Affine;
   const Matrix2 atVertex = derivative - affine;
-  return { { { { Vector2{}, sector.Start, sector.InnerStart }, affine, {},
-               { atVertex, startGradient - affine, Matrix2{} } },
+  std::array<CubicElement, 3> elements{ { { { Vector2{}, sector.Start, sector.InnerStart }, affine,
+                                            {}, { atVertex, startGradient - affine, Matrix2{} },
+                                            {} },
     { { Vector2{}, sector.InnerStart, sector.InnerEnd }, affine, {},
-      { atVertex, Matrix2{}, Matrix2{} } },
+      { atVertex, Matrix2{}, Matrix2{} }, {} },
     { { Vector2{}, sector.InnerEnd, sector.End }, affine, {},
-      { atVertex, Matrix2{}, endGradient - affine } } } };
+      { atVertex, Matrix2{}, endGradient - affine }, {} } } };
+  for (int end = 0; end < 2; ++end)
+  {
+    // The right angle is at the edge point, where the map differs from the affine one across the
+    // edge only.
+    CubicElement& element = elements[end == 0 ? 0 : 2];
+    RightAngle& right = element.Right;
+    right.Corner = end == 0 ? 1 : 2;
+    right.Start = 0;
+    right.Tangent = sector.Along[end];
+    right.Normal = end == 0 ? Rotated(right.Tangent) : Vector2{ right.Tangent.y, -right.Tangent.x };
+    right.AlongTangent = sector.Radius;
+    right.AlongNormal = sector.Heights[end];
+    right.ByTangent[0] = atVertex * right.Tangent;
+    right.ByNormal[0] = atVertex * right.Normal;
+    right.ByNormal[right.Corner] = element.Gradients[right.Corner] * right.Normal;
+  }
+  return elements;
 }
 
 //------------------------------------------------------------------------------

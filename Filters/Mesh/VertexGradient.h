@@ -26,6 +26,11 @@ struct FanSector
   Vector2 End;
   /// The piecewise linear map's derivative.
   Matrix2 Affine;
+  /// The edge points' distance from the vertex, and of the first and the last edge the direction in
+  /// which it leaves the vertex and the height of the inner point above it.
+  double Radius = 0.0;
+  std::array<Vector2, 2> Along = {};
+  std::array<double, 2> Heights = {};
 };
 
 /// The corners at a vertex, anticlockwise. Open at a boundary vertex.
@@ -49,6 +54,10 @@ struct VertexDerivative
 
 /// det J's derivative on the ray between two sectors: their det-harmonic mean.
 Matrix2 HarmonicMean(const Matrix2& a, const Matrix2& b);
+
+/// A linear map with positive determinant that takes the boundary directions of an open fan to
+/// those of their images and is close to the piecewise linear map.
+Matrix2 FitBoundary(const VertexFan& fan);
 
 /// The derivatives on the rays of a fan: det-harmonic means; at the ends of an open fan the
 /// sector's own. Element i lies before sector i.

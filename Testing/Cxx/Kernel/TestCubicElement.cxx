@@ -408,3 +408,50 @@ TEST(LinearProgram, FindsTheBestCorner)
   }
   EXPECT_GT(solved, 200);
 }
+
+TEST(CubicElement, RightAnglesChangeNothingButRounding)
+{
+  Random random(8);
+  for (int n = 0; n < 500; ++n)
+  {
+    const double leg = random(0.5, 2.0);
+    const double height = n % 2 == 0 ? random(0.3, 3.0) : std::exp2(random(-20.0, 0.0));
+    const double angle = random(-3.0, 3.0);
+    const Vector2 tangent{ std::cos(angle), std::sin(angle) };
+    const bool left = n % 4 < 2;
+    const Vector2 normal =
+      left ? Vector2{ -tangent.y, tangent.x } : Vector2{ tangent.y, -tangent.x };
+    CubicElement element{ {}, random.Matrix(1.0), {}, {}, {} };
+    // Start, right angle and third corner, anticlockwise.
+    const int start = n % 3;
+    const int corner = left ? NextCorner(start) : PreviousCorner(start);
+    const int third = 3 - start - corner;
+    element.Points[corner] = leg * tangent;
+    element.Points[third] = leg * tangent + height * normal;
+    for (int i = 0; i < 3; ++i)
+    {
+      element.Values[i] = height * random.Vector(1.0);
+      element.Gradients[i] = random.Matrix(1.0);
+    }
+    CubicElement right = element;
+    right.Right = { corner, start, tangent, normal, leg, height, {}, {} };
+    for (int i = 0; i < 3; ++i)
+    {
+      right.Right.ByTangent[i] = element.Gradients[i] * tangent;
+      right.Right.ByNormal[i] = element.Gradients[i] * normal;
+    }
+    const DeterminantCoefficients a = GetDeterminantCoefficients(element);
+    const DeterminantCoefficients b = GetDeterminantCoefficients(right);
+    for (std::size_t k = 0; k < a.size(); ++k)
+    {
+      EXPECT_NEAR(a[k], b[k], 1e-12 / height / height);
+    }
+    const Barycentric l = random.Point();
+    Vector2 value[2];
+    Matrix2 derivative[2];
+    Evaluate(element, GetOrdinates(element), l, value[0], derivative[0]);
+    Evaluate(right, GetOrdinates(right), l, value[1], derivative[1]);
+    EXPECT_LT(Norm(value[0] - value[1]), 1e-14);
+    EXPECT_LT(std::sqrt(SquaredNorm(derivative[0] - derivative[1])), 1e-13 / height / height);
+  }
+}
