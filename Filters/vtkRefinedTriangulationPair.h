@@ -2,31 +2,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkRefinedTriangulationPair
- * @brief   a finer pair whose piecewise linear map is close to a homeomorphism
+ * @brief   a finer pair whose piecewise linear map approximates a homeomorphism
  *
  * vtkRefinedTriangulationPair takes a pair of triangulations, the source (input port 0) and the
- * target (input port 1), and divides their triangles until the piecewise linear map of the finer
- * pair is within MaximumError of the pair's homeomorphism in the given coordinate system. Software
- * that knows no maps but piecewise linear ones, such as PROJ (tinshift), can then use that
- * homeomorphism to a known accuracy.
+ * target (input port 1), and subdivides their triangles until the piecewise linear map of the finer
+ * pair differs from the homeomorphism of the pair in the given coordinate system by at most
+ * MaximumError. Software that supports only piecewise linear maps, such as PROJ (tinshift), can
+ * then use the homeomorphism with a known accuracy.
  *
  * Output port 0 is the finer source, port 1 the finer target. Both have the same triangles. The
- * first points are those of the inputs, unchanged and with their ids. Points added in the source
- * divide edges in half; in the target they are where the homeomorphism takes them, and on the
- * boundary, which every system maps linearly, in the middle of the edge. No vertex lies within an
- * edge of another triangle. The finer pair is validated like any pair.
+ * first points are those of the inputs, unchanged and with their ids. Added points bisect edges of
+ * the source. In the target they are the images of those points or, on the boundary, which every
+ * system maps linearly, the midpoints of edges. The finer meshes are conforming: no vertex lies
+ * inside an edge of another triangle. The finer pair is validated like any pair.
  *
- * Point data of each mesh is interpolated on the points added with their barycentric coordinates in
- * the original triangle. So are heights by PROJ, and those of the finer pair are the same functions
- * of the point. Cell data is that of the original triangle. A cell array `OriginalCellIds`
- * (vtkIdType) has the id of the triangle of the input that each triangle is a part of. Cells that
- * are not triangles are left out.
+ * Point data of each mesh is interpolated at added points with their barycentric coordinates in the
+ * original triangle. PROJ interpolates heights in the same way, so heights of the finer pair are
+ * the same functions of the point. Cell data is that of the original triangle. The cell array
+ * `OriginalCellIds` (vtkIdType) has the cell id of the original triangle. Cells that are not
+ * triangles are dropped.
  *
- * The error is measured at 595 points of each triangle, its edges included; it is not bounded in
+ * The error is measured at 595 points of each triangle, including its edges; it is not bounded in
  * between. Triangles are measured in parallel (vtkSMPTools); results do not depend on the number of
  * threads. The meshes are requested whole; the outputs are part of piece 0.
  *
- * If MaximumError cannot be kept, the outputs are empty and an error is reported; see Results.
+ * If MaximumError cannot be reached, the outputs are empty and an error is reported; see Results.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
  */
@@ -46,13 +46,13 @@ public:
   vtkTypeMacro(vtkRefinedTriangulationPair, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// How the last update ended.
+  /// The result of the last update.
   enum Results
   {
     REFINED = 0,            ///< the error is within MaximumError
-    TOO_MANY_TRIANGLES = 1, ///< MaximumError takes more than MaximumNumberOfTriangles
-    BELOW_ROUNDING = 2,     ///< MaximumError takes edges shorter than the rounding of coordinates
-    INVALID = 3,            ///< the meshes were refused, or in rounding the finer ones are no pair
+    TOO_MANY_TRIANGLES = 1, ///< MaximumError needs more than MaximumNumberOfTriangles
+    BELOW_ROUNDING = 2,     ///< MaximumError needs edges shorter than the rounding of coordinates
+    INVALID = 3,            ///< the meshes were refused, or rounding makes the finer pair invalid
     ABORTED = 4             ///< the update was aborted
   };
 
@@ -64,14 +64,14 @@ public:
     SMOOTH = 2
   };
 
-  /// Where the contours of the Contour system start.
+  /// The start of the contours of the Contour system.
   enum CenterPoints
   {
     CENTROID = 0,
     INCENTER = 1
   };
 
-  /// What becomes of discordant triangles in the Contour system.
+  /// The treatment of discordant triangles in the Contour system.
   enum DiscordantTrianglesModes
   {
     REFUSE = 0,
@@ -96,8 +96,8 @@ public:
   ///@}
 
   ///@{
-  /// The homeomorphism: LINEAR, CONTOUR or SMOOTH (default), and how it is to be understood. See
-  /// vtkDifferentiableHomeomorphism. Triangles left out are no part of the finer pair.
+  /// The options of the homeomorphism: LINEAR, CONTOUR or SMOOTH (default), and others. See
+  /// vtkDifferentiableHomeomorphism. Masked triangles are not part of the finer pair.
   vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
   vtkGetMacro(CoordinateSystem, int);
   vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
@@ -110,15 +110,15 @@ public:
   ///@}
 
   ///@{
-  /// The largest distance allowed between the image of a point by the finer pair's piecewise linear
-  /// map and by the homeomorphism, in the target's units. 0 (default) stands for 1e-4 times the
-  /// diagonal of the target's bounding box.
+  /// The greatest distance between the images of a point under the piecewise linear map of the
+  /// finer pair and under the homeomorphism, in units of the target. 0 (default) stands for 1e-4
+  /// times the diagonal of the target's bounding box.
   vtkSetClampMacro(MaximumError, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumError, double);
   ///@}
 
   ///@{
-  /// The largest number of triangles allowed. 2,000,000 by default, from 1.
+  /// The greatest number of triangles. 2,000,000 by default, at least 1.
   vtkSetClampMacro(MaximumNumberOfTriangles, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(MaximumNumberOfTriangles, vtkIdType);
   ///@}
@@ -126,11 +126,11 @@ public:
   /// See Results.
   vtkGetMacro(Result, int);
 
-  /// The largest error measured, in the target's units. If the refinement failed, the largest that
-  /// was left when it stopped, infinite if triangles are turned over.
+  /// The largest measured error, in units of the target. If the refinement failed, the largest
+  /// error when it stopped, infinite if triangles are flipped.
   vtkGetMacro(LargestError, double);
 
-  /// The number of points at which the error was measured in the end.
+  /// The number of points at which the final error was measured.
   vtkGetMacro(NumberOfSamples, vtkIdType);
 
 protected:

@@ -24,7 +24,7 @@ Vector2 Mean(const std::vector<Vector2>& points)
   return { sum.x / count, sum.y / count };
 }
 
-/// v turned by an angle and scaled by exp(logFactor).
+/// v rotated by an angle and scaled by exp(logFactor).
 Vector2 Turned(const Vector2& v, double angle, double logFactor)
 {
   const double factor = std::exp(logFactor);
@@ -33,7 +33,7 @@ Vector2 Turned(const Vector2& v, double angle, double logFactor)
   return { c * v.x - s * v.y, s * v.x + c * v.y };
 }
 
-/// Accurate to the last bits, so that needles have the right sign but for the last few.
+/// Accurate to the last few bits, so that needles usually have the correct sign.
 double AccurateCross(const Vector2& a, const Vector2& b)
 {
   return DifferenceOfProducts(a.x, b.y, a.y, b.x);
@@ -115,7 +115,7 @@ PathFolds InBetweenPath::FindFolds(const std::vector<std::array<std::int64_t, 3>
     const int sign = Orientation(corner(source, 0), corner(source, 1), corner(source, 2));
     if (sign == 0 || sign != Orientation(corner(target, 0), corner(target, 1), corner(target, 2)))
     {
-      // At one end already, and until the other.
+      // Folded at one end, and until the other.
       ++folds.Triangles;
       const double begin = sign == 0 ? 0.0 : 1.0;
       if (folds.FirstTriangle < 0 || begin < folds.Begin)
@@ -126,7 +126,7 @@ PathFolds InBetweenPath::FindFolds(const std::vector<std::array<std::int64_t, 3>
       folds.End = 1.0;
       continue;
     }
-    // Twice the area at t, over |a|^(2t), is start (1 - t)^2 + middle t (1 - t) + end t^2.
+    // Twice the area at t, divided by |a|^(2t), is start (1 - t)^2 + middle t (1 - t) + end t^2.
     const Vector2 p[2] = { corner(source, 1) - corner(source, 0),
       corner(source, 2) - corner(source, 0) };
     const Vector2 q[2] = { this->Unturned(corner(target, 1) - corner(target, 0)),
@@ -134,7 +134,8 @@ PathFolds InBetweenPath::FindFolds(const std::vector<std::array<std::int64_t, 3>
     const double start = sign * AccurateCross(p[0], p[1]);
     const double middle = sign * (AccurateCross(p[0], q[1]) + AccurateCross(q[0], p[1]));
     const double end = sign * AccurateCross(q[0], q[1]);
-    // With both ends positive there are zeros in between only if the middle is negative and large.
+    // If both ends are positive, zeros in between require a negative middle coefficient of
+    // sufficient size.
     const double root = std::sqrt(start) * std::sqrt(end);
     if (!(middle <= -2.0 * root))
     {

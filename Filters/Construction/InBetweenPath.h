@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file InBetweenPath.h
-/// Paths of a planar mesh's points from a source to a target, and where triangles fold on the way.
+/// Paths of planar meshes from a source to a target, and the times at which triangles fold.
 
 #ifndef homeomorphism_InBetweenPath_h
 #define homeomorphism_InBetweenPath_h
@@ -16,35 +16,35 @@
 namespace homeomorphism
 {
 
-/// The triangles that are turned over at a time between 0 and 1, on a path from a source to a
+/// The triangles that fold at a time between 0 and 1 on a path from a source to a
 /// target.
 struct PathFolds
 {
-  /// Number of triangles that have another orientation than in the source, or none, at some time.
+  /// Number of triangles that are degenerate or flipped relative to the source at some time.
   std::int64_t Triangles = 0;
-  /// The one that folds first, an index from 0; -1 if none does.
+  /// Index of the triangle that folds first; -1 if none does.
   std::int64_t FirstTriangle = -1;
-  /// When the first triangle folds and when the last has unfolded: a closed interval within [0, 1],
-  /// empty (1, 0) if none folds.
+  /// The time at which the first triangle folds and the time at which the last one has unfolded: a
+  /// closed interval within [0, 1], empty (1, 0) if none folds.
   double Begin = 1.0;
   double End = 0.0;
 };
 
-/// A path from a source to a target, two planar meshes with the same triangles: in the complex
-/// plane the point p at time t, on its way to q, is at
+/// A path from a source to a target, two planar meshes with the same triangles. In the complex
+/// plane, the point with source p and target q is at time t at
 ///
 ///     (1 - t) c + t d + a^t ((1 - t) (p - c) + t (q - d) / a),     a^t = |a|^t exp(i t arg a),
 ///
 /// with the centers c, d and the similarity a. With a = 1 this is the straight path. Otherwise the
-/// mesh turns and scales as a whole by a^t while its points move straight relative to it. In both
-/// cases the area of a triangle is |a|^(2t) times a quadratic function of t, so that the times at
-/// which it folds are known in closed form.
+/// mesh rotates and scales as a whole by a^t while its points move along straight lines relative to
+/// it. In both cases the area of a triangle is |a|^(2t) times a quadratic function of t, so the
+/// times at which it folds are known in closed form.
 class InBetweenPath
 {
 public:
-  /// The path whose similarity fits best (least squares over the points), if @a rotating, or the
-  /// straight path. The points are those of all vertices, in the same order. A mesh without extent
-  /// has the straight path only.
+  /// The path with the best-fitting similarity (least squares over the points) if @a rotating,
+  /// otherwise the straight path. The points are those of all vertices, in the same order. A mesh
+  /// without extent has the straight path only.
   InBetweenPath(
     const std::vector<Vector2>& source, const std::vector<Vector2>& target, bool rotating);
 
@@ -52,7 +52,7 @@ public:
   double GetAngle() const { return this->Angle; }
   double GetFactor() const;
 
-  /// The position of a point at a time. At 0 and 1 the very points of source and target.
+  /// The position of a point at a time. Exactly the points of source and target at 0 and 1.
   Vector2 GetPosition(const Vector2& source, const Vector2& target, double time) const;
 
   /// The folds of triangles, given as triples of indices of points.
@@ -60,7 +60,7 @@ public:
     const std::vector<Vector2>& source, const std::vector<Vector2>& target) const;
 
 private:
-  /// The target's vector relative to the moving mesh: v / a.
+  /// A vector of the target relative to the moving mesh: v / a.
   Vector2 Unturned(const Vector2& v) const;
 
   Vector2 Centers[2];

@@ -31,7 +31,7 @@ struct Part
   std::array<Weights, 3> Corners;
   TriangleIndex Original;
   bool Divided = false;
-  /// The number of grids on which it was close enough to the map, and its error on the last.
+  /// The number of grids on which the error was acceptable, and the error on the last one.
   std::size_t Passed = 0;
   double Error = 0.0;
 };
@@ -44,14 +44,14 @@ struct EdgeHash
   }
 };
 
-/// Triangles that are lower than this, over their longest edge, are not made still longer: the
-/// slightest bend would turn needles over.
+/// Triangles with a smaller height over longest edge are not elongated further, because the
+/// slightest bend would flip needles.
 constexpr double Needle = 0.03;
 
-/// How far the linear map of a part is from the homeomorphism.
+/// The distance between the linear map of a part and the homeomorphism.
 struct PartError
 {
-  /// At the inner points of the part and of its edges; infinite if the part is turned over.
+  /// At the inner points of the part and of its edges; infinite if the part is flipped.
   double Largest = 0.0;
   /// At the inner points of each edge.
   std::array<double, 3> OfEdges{ 0.0, 0.0, 0.0 };
@@ -117,10 +117,10 @@ public:
 
   vtkIdType GetNumberOfParts() const { return this->NumberOfParts; }
   bool IsDivided(std::size_t index) const { return this->Parts[index].Divided; }
-  /// Whether an edge could not be halved.
+  /// Whether an edge could not be bisected.
   bool IsBelowRounding() const { return this->BelowRounding; }
 
-  /// The undivided parts that have passed so many grids, ascending.
+  /// The undivided parts that have passed a given number of grids, ascending.
   std::vector<std::size_t> GetParts(std::size_t passed) const
   {
     std::vector<std::size_t> parts;
@@ -134,7 +134,7 @@ public:
     return parts;
   }
 
-  /// A part has been measured on one more grid and is close enough.
+  /// Records that a part has passed another grid.
   void Pass(std::size_t index, double error)
   {
     ++this->Parts[index].Passed;
@@ -156,8 +156,9 @@ public:
     return errors;
   }
 
-  /// Halves edges of a part that is too far from the map: those that are too far themselves or, if
-  /// none is, the farthest; if it is turned over, its longest.
+  /// Bisects edges of a part whose error is too large: those whose own error is too large or, if
+  /// there are none, the one with the largest error. If the part is flipped, bisects its longest
+  /// edge.
   void Divide(std::size_t index, const PartError& error, double maximum)
   {
     std::size_t worst = 0;
@@ -257,8 +258,8 @@ private:
     return error;
   }
 
-  /// Whether the part is oriented otherwise than its original triangle, or has no area, in source
-  /// or target.
+  /// Whether the part, in source or target, is degenerate or differs in orientation from its
+  /// original triangle.
   bool IsTurnedOver(const Part& part) const
   {
     for (const Domain domain : { Domain::Source, Domain::Target })
@@ -292,7 +293,7 @@ private:
     return false;
   }
 
-  /// The two points of an edge, which is opposite a part's point.
+  /// The two points of an edge, which is opposite a point of the part.
   Ends Edge(std::size_t part, std::size_t edge) const
   {
     const auto& points = this->Parts[part].Points;
@@ -306,7 +307,7 @@ private:
     return Length(Difference(this->GetPoint(0, ends[1]), this->GetPoint(0, ends[0])));
   }
 
-  /// Of edges of the same length, the points' ids decide: for both parts alike.
+  /// Point ids decide between edges of equal length, consistently for both parts.
   std::size_t LongestEdge(std::size_t part) const
   {
     const auto key = [&](std::size_t edge) {
@@ -337,7 +338,7 @@ private:
     }
   }
 
-  /// Removes a part that has been divided, and its edges where it was alone.
+  /// Removes a part that has been divided, and its edges that belong to no other part.
   void Remove(std::size_t index)
   {
     this->Parts[index].Divided = true;
@@ -358,8 +359,8 @@ private:
     }
   }
 
-  /// Halves an edge, unless that has been done; where a part that has it is a needle, the needle's
-  /// longest edge first.
+  /// Bisects an edge unless that has been done. If a part at the edge is a needle, bisects the
+  /// longest edge of the needle first.
   void HalveWithCare(const Ends& ends)
   {
     for (auto found = this->PartsOfEdge.find(ends);
@@ -380,7 +381,7 @@ private:
         this->Halve(ends);
         return;
       }
-      // Each step leads to a longer edge, so it ends.
+      // Each step leads to a longer edge, so the loop ends.
       this->HalveWithCare(first);
     }
   }
@@ -396,7 +397,7 @@ private:
     return Length(Cross3(a, b)) < Needle;
   }
 
-  /// Halves an edge and the parts on both sides of it.
+  /// Bisects an edge and the parts on both sides of it.
   void Halve(const Ends& ends)
   {
     const std::array<std::size_t, 2> parts = this->PartsOfEdge.find(ends)->second;
@@ -411,7 +412,7 @@ private:
       positions[side] = Combine(
         weights, [&](std::size_t k) -> const Vector3& { return this->GetPoint(side, corners[k]); });
     }
-    // The boundary is mapped linearly; where there is no second part, the edge lies on it.
+    // The boundary is mapped linearly. An edge without a second part lies on it.
     if (parts[0] != parts[1])
     {
       positions[1] = this->MapInTriangle(part.Original, weights);
@@ -476,7 +477,7 @@ private:
   std::vector<RefinedPair::Point> NewPoints;
   std::vector<Part> Parts;
   vtkIdType NumberOfParts = 0;
-  /// The one or two undivided parts at an edge; one twice on the boundary.
+  /// The one or two undivided parts at an edge; the same part twice on the boundary.
   std::unordered_map<Ends, std::array<std::size_t, 2>, EdgeHash> PartsOfEdge;
   bool BelowRounding = false;
 };
@@ -488,7 +489,7 @@ RefinedPair Refine(const Homeomorphism& map, vtkPolyData* source, vtkPolyData* t
 {
   Refiner refiner(map, source, target);
   RefinedPair result;
-  // A part is measured on finer and finer grids. The first two leave a margin for what is farther
+  // Parts are measured on increasingly fine grids. The first two leave a margin for larger errors
   // between their points.
   const std::array<std::vector<Weights>, 3> grids{ MakeGrid(6), MakeGrid(20), MakeGrid(33) };
   const std::array<double, 3> limits{ 0.8 * maximumError, 0.8 * maximumError, maximumError };

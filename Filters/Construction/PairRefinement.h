@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PairRefinement.h
-/// A pair of finer triangulations whose piecewise linear map is close to a homeomorphism.
+/// A pair of finer triangulations whose piecewise linear map approximates a homeomorphism.
 
 #ifndef homeomorphism_PairRefinement_h
 #define homeomorphism_PairRefinement_h
@@ -25,52 +25,52 @@ struct RefinedPair
 {
   enum class Outcome
   {
-    /// The maximum error is kept.
+    /// The maximum error was reached.
     Refined,
-    /// The maximum error would take more triangles than are allowed.
+    /// The maximum error would need more triangles than allowed.
     TooManyTriangles,
-    /// The maximum error would take edges that cannot be halved, because no coordinates lie
+    /// The maximum error would need edges that cannot be bisected, because no coordinates lie
     /// between those of their ends.
     BelowRounding,
-    /// The caller asked to stop.
+    /// The caller aborted.
     Aborted
   };
 
-  /// A point added: where in the original pair's source it is.
+  /// An added point: its position in the source of the original pair.
   struct Point
   {
     TriangleIndex Triangle;
-    /// Barycentric coordinates with respect to the triangle's corners: multiples of powers of 1/2,
-    /// unrounded.
+    /// Barycentric coordinates in the triangle: multiples of powers of 1/2,
+    /// exact.
     std::array<double, 3> Weights;
   };
 
   Outcome Result = Outcome::Refined;
-  /// Triples of point ids, in the order of the original triangles, whose windings they have.
+  /// Triples of point ids, in the order and with the windings of the original triangles.
   std::vector<std::array<vtkIdType, 3>> Triangles;
-  /// The original triangle of each.
+  /// The original triangle of each triangle.
   std::vector<TriangleIndex> Originals;
   std::vector<Point> NewPoints;
-  /// Coordinates in source and target of the points added.
+  /// Coordinates of the added points in source and target.
   std::array<std::vector<Vector3>, 2> NewPositions;
   /// The largest distance between the piecewise linear map and the homeomorphism over all samples,
-  /// in the target's units; of an unfinished refinement, the largest that was last seen.
+  /// in units of the target. For an unfinished refinement, the last known value.
   double LargestError = 0.0;
-  /// The number of points at which the distance was measured last, over all triangles.
+  /// The number of points of the last measurement, over all triangles.
   vtkIdType Samples = 0;
 };
 
-/// Halves edges, with the triangles on both sides of each, so that no vertex lies within an edge
-/// (Rivara: bisection), until the piecewise linear map of the finer pair is nowhere farther from
-/// the homeomorphism than @a maximumError, in the target's units, as sampled at 595 points of each
-/// triangle, and turns no triangle over. The edges are chosen by the distances found on them, so
-/// that triangles become long where the map bends in one direction only; triangles lower than 0.03
-/// of their longest edge are made no longer.
+/// Bisects edges, with the triangles on both sides of each, so that the meshes stay conforming
+/// (Rivara), until the piecewise linear map of the finer pair differs from the homeomorphism by at
+/// most @a maximumError, in units of the target, at 595 sample points of each triangle, and flips
+/// no triangle. Edges are chosen by the errors measured on them, so triangles become elongated
+/// where the map bends in one direction only. Triangles with a height below 0.03 of their longest
+/// edge are not elongated further.
 ///
-/// Points added on the boundary stay on its edges; the others go where the homeomorphism takes
-/// them. @a source and @a target are the meshes that @a map was made from. Triangles are measured
-/// in parallel; the result does not depend on the number of threads. @a isAborted is asked now and
-/// then.
+/// Added points on the boundary stay on its edges; the others are mapped by the homeomorphism. @a
+/// source and @a target are the meshes from which @a map was made. Triangles are measured in
+/// parallel; the result does not depend on the number of threads. @a isAborted is called
+/// repeatedly.
 RefinedPair Refine(const Homeomorphism& map, vtkPolyData* source, vtkPolyData* target,
   double maximumError, vtkIdType maximumTriangles, const std::function<bool()>& isAborted);
 

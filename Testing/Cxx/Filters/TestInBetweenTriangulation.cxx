@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Meshes between a source and a target: where they are, and that the folds reported are those that
-// an exact look at the frames finds.
+// Meshes between a source and a target: positions of points, and agreement of the reported folds
+// with exact tests of the frames.
 
 #include "FilterRuns.h"
 
@@ -25,7 +25,7 @@ vtkSmartPointer<vtkInBetweenTriangulation> MakeFilter(
   return filter;
 }
 
-/// The mesh turned about the origin, scaled and shifted.
+/// The mesh rotated about the origin, scaled and translated.
 vtkSmartPointer<vtkPolyData> Moved(
   vtkPolyData* mesh, double degrees, double factor, const Point& shift)
 {
@@ -56,7 +56,7 @@ double AreaOf(vtkPolyData* mesh, vtkIdType triangle)
   return Cross(p[1] - p[0], p[2] - p[0])[2];
 }
 
-/// The straight path turns the mesh by almost 180 degrees: triangles of different shape fold near
+/// The straight path rotates the mesh by almost 180 degrees: triangles of different shape fold near
 /// the middle.
 MeshPair FoldingPair()
 {
@@ -65,7 +65,7 @@ MeshPair FoldingPair()
   return pair;
 }
 
-TEST(InBetweenTriangulation, IsTheSourceAtZeroAndTheTargetAtOneToTheBit)
+TEST(InBetweenTriangulation, IsExactlySourceAtZeroAndTargetAtOne)
 {
   for (const int path :
     { vtkInBetweenTriangulation::STRAIGHT, vtkInBetweenTriangulation::ROTATING })
@@ -99,7 +99,7 @@ TEST(InBetweenTriangulation, MovesStraightWhereNothingFolds)
   }
 }
 
-TEST(InBetweenTriangulation, ASimilarityTurnsAtAConstantRateWithoutFolds)
+TEST(InBetweenTriangulation, ASimilarityRotatesAtAConstantRateWithoutFolds)
 {
   const vtkSmartPointer<vtkPolyData> source = MakePlanarPair(6, 11).Source;
   for (const double degrees : { 30.0, 135.0, -179.0 })
@@ -113,7 +113,7 @@ TEST(InBetweenTriangulation, ASimilarityTurnsAtAConstantRateWithoutFolds)
       EXPECT_EQ(filter->GetNumberOfFoldingTriangles(), 0);
       EXPECT_NEAR(filter->GetRotationAngle(), degrees, 1e-9);
       EXPECT_NEAR(filter->GetScaleFactor(), 0.25, 1e-12);
-      // Every edge has turned by the same angle and scaled by the same factor.
+      // Every edge has rotated by the same angle and scaled by the same factor.
       const Matrix turn = Rotation({ 0, 0, 1 }, vtkMath::RadiansFromDegrees(t * degrees));
       for (vtkIdType i = 1; i < source->GetNumberOfPoints(); ++i)
       {
@@ -176,7 +176,7 @@ TEST(InBetweenTriangulation, ReportsExactlyTheTimesAtWhichFramesFold)
   const auto seen = std::count(everFolded.begin(), everFolded.end(), true);
   EXPECT_GT(seen, 0);
   EXPECT_LE(seen, filter->GetNumberOfFoldingTriangles());
-  // Just after the reported time, the reported triangle is folded; just before, it is not.
+  // Just after the reported time the reported triangle is folded; just before it is not.
   const double begin = filter->GetFirstFoldTime();
   const vtkIdType first = filter->GetFirstFoldingTriangle();
   for (const double step : { -1e-9, 1e-9 })
@@ -188,7 +188,7 @@ TEST(InBetweenTriangulation, ReportsExactlyTheTimesAtWhichFramesFold)
   }
 }
 
-TEST(InBetweenTriangulation, AMirrorImageFoldsAltogether)
+TEST(InBetweenTriangulation, AllTrianglesOfAMirrorImageFold)
 {
   MeshPair pair = MakePlanarPair(3, 17, 0.2);
   for (vtkIdType i = 0; i < pair.Target->GetNumberOfPoints(); ++i)
@@ -231,7 +231,7 @@ TEST(InBetweenTriangulation, SurfacesMoveStraightAndReportNoFolds)
     4 * Ulp);
 }
 
-TEST(InBetweenTriangulation, RefusesWhatIsNoPair)
+TEST(InBetweenTriangulation, RefusesInvalidPairs)
 {
   const MeshPair pair{ MakePlanarPair(3, 1).Source, MakePlanarPair(4, 1).Target };
   const auto filter = MakeFilter(pair);

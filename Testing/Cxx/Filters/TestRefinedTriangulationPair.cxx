@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Finer pairs: the piecewise linear map keeps the tolerance where it was not measured, the meshes
-// are valid and conforming, and data is interpolated as in the original triangles.
+// Finer pairs: the piecewise linear map keeps the tolerance between the samples, the meshes are
+// valid and conforming, and data is interpolated as in the original triangles.
 
 #include "FilterRuns.h"
 
@@ -26,7 +26,7 @@ vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, do
   return filter;
 }
 
-/// The images of points by the homeomorphism of a pair.
+/// The images of points under the homeomorphism of a pair.
 vtkSmartPointer<vtkPointSet> MapPoints(
   vtkPolyData* source, vtkPolyData* target, vtkPolyData* cloud, int coordinateSystem)
 {
@@ -35,15 +35,15 @@ vtkSmartPointer<vtkPointSet> MapPoints(
   map->SetTargetData(target);
   map->SetDataObject(cloud);
   map->SetCoordinateSystem(coordinateSystem);
-  // On surfaces points between corners are off the surface by rounding.
+  // On surfaces, points between corners are off the surface by rounding.
   map->SetTolerance(1e-12);
   map->Update();
   EXPECT_EQ(map->GetNumberOfOutsidePoints(), 0);
   return vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
 }
 
-/// The largest distance between a pair's homeomorphism and the finer pair's piecewise linear map at
-/// points at random, a part of them close to edges and vertices.
+/// The largest distance between the homeomorphism of a pair and the piecewise linear map of the
+/// finer pair at random points, some of them close to edges and vertices.
 double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter, int system)
 {
   const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 5));
@@ -58,7 +58,7 @@ double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter, i
   return largest;
 }
 
-TEST(RefinedTriangulationPair, KeepsTheMaximumErrorAtPointsAtRandom)
+TEST(RefinedTriangulationPair, KeepsTheMaximumErrorAtRandomPoints)
 {
   const MeshPair pair = MakePlanarPair(4, 23);
   vtkIdType triangles = pair.Source->GetNumberOfCells();
@@ -92,7 +92,7 @@ TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfContourAndOnSurfaces)
   EXPECT_LE(LargestError(closed, surface, vtkDifferentiableHomeomorphism::SMOOTH), 0.0105);
 }
 
-TEST(RefinedTriangulationPair, DividesNothingWhereTheMapIsLinear)
+TEST(RefinedTriangulationPair, DividesNoTriangleOfALinearMap)
 {
   const MeshPair pair = MakePlanarPair(4, 37);
   const auto filter = MakeFilter(pair, 1e-9);
@@ -125,8 +125,8 @@ TEST(RefinedTriangulationPair, IsConformingAndKeepsPointsAndAreas)
     }
     EXPECT_NEAR(area, 16.0, 1e-11);
   }
-  // Every edge has two triangles, or lies on the boundary of the square: none ends at a vertex
-  // within an edge.
+  // Every edge has two triangles or lies on the boundary of the square, so no edge ends at a vertex
+  // inside another edge.
   std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
   for (vtkIdType c = 0; c < meshes[0]->GetNumberOfCells(); ++c)
   {
@@ -224,7 +224,7 @@ TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
   }
 }
 
-TEST(RefinedTriangulationPair, ReportsWhatItCannotDo)
+TEST(RefinedTriangulationPair, ReportsFailures)
 {
   const MeshPair pair = MakePlanarPair(3, 61);
   const auto few = MakeFilter(pair, 1e-4);
