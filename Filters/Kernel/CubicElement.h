@@ -75,7 +75,7 @@ struct RightAngle
 /// edge therefore agree in both along the whole edge.
 struct CubicElement
 {
-  /// Corners, anticlockwise, relative to an origin nearby.
+  /// Corners, counterclockwise, relative to an origin nearby.
   std::array<Vector2, 3> Points;
   Matrix2 Affine;
   /// D at the corners.

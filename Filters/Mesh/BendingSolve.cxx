@@ -221,7 +221,7 @@ void Solver::FindBoundary()
       {
         continue;
       }
-      // The boundary runs anticlockwise: this edge leaves its start and arrives at its end.
+      // The boundary runs counterclockwise: this edge leaves its start and arrives at its end.
       const int ends[2] = { this->Pair.Triangles[t][NextCorner(k)],
         this->Pair.Triangles[t][PreviousCorner(k)] };
       for (int end = 0; end < 2; ++end)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PlanarPair.h
-/// Two isomorphic triangulations of the plane as plain arrays, anticlockwise in both.
+/// Two isomorphic triangulations of the plane as plain arrays, counterclockwise in both.
 
 #ifndef homeomorphism_PlanarPair_h
 #define homeomorphism_PlanarPair_h
@@ -76,7 +76,7 @@ struct PlanarPair
   PlanarPair Refine() const;
 };
 
-/// The triangles around a point, anticlockwise, beginning at the boundary if the point is on it.
+/// The triangles around a point, counterclockwise, beginning at the boundary if the point is on it.
 struct PointFan
 {
   std::vector<int> Triangles;

@@ -33,7 +33,7 @@ struct FanSector
   std::array<double, 2> Heights = {};
 };
 
-/// The corners at a vertex, anticlockwise. Open at a boundary vertex.
+/// The corners at a vertex, counterclockwise. Open at a boundary vertex.
 struct VertexFan
 {
   std::vector<FanSector> Sectors;
