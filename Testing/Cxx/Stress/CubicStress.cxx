@@ -1,0 +1,454 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Builds Cubic maps of as many pairs as asked for and prints the tables of Documentation/cubic.md.
+// Fails if a map is not certified, folds at a sampled point, or does not come back.
+//
+//   CubicStress [SHARE] [pairs|stars|needles|far|bending]...
+//
+// SHARE is how much of the full run is made, 1 by default. The results depend on it alone.
+
+#include "CubicPairs.h"
+
+#include "Mesh/CubicMap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace homeomorphism;
+using namespace cubic_test;
+
+double Share = 1.0;
+bool Failed = false;
+
+int Count(int full)
+{
+  return std::max(1, static_cast<int>(full * Share));
+}
+
+double Norm(const Vector2& v)
+{
+  return std::hypot(v.x, v.y);
+}
+
+Vector2 MapLinearly(const PlanarPair& pair, int t, const Vector2& point)
+{
+  const std::int32_t corner = pair.Triangles[t][0];
+  return pair.Target[corner] + pair.GetAffine(t) * (point - pair.Source[corner]);
+}
+
+/// The triangle of a mesh that contains a point, walking from one of them; -1 outside.
+int Locate(const PlanarPair& pair, const std::vector<Vector2>& points, int t, const Vector2& point)
+{
+  for (int step = 0; step < 10000; ++step)
+  {
+    const std::array<Vector2, 3> corners = PlanarPair::GetCorners(points, pair.Triangles[t]);
+    const Barycentric l = ToBarycentric(corners, point - points[pair.Triangles[t][0]]);
+    const int least = static_cast<int>(std::min_element(l.begin(), l.end()) - l.begin());
+    if (l[least] >= -1e-12 || pair.Neighbors[t][least] < 0)
+    {
+      return l[least] >= -1e-9 ? t : -1;
+    }
+    t = pair.Neighbors[t][least];
+  }
+  return -1;
+}
+
+struct Result
+{
+  std::int64_t Points = 0;
+  int Maps = 0;
+  int Uncertified = 0;
+  int ExceptionalInterior = 0;
+  int Rings = 0;
+  int TookTemplate = 0;
+  double LeastCertificate = 1e300;
+  double LeastRatio = 1e300;
+  std::int64_t Folds = 0;
+  std::int64_t Lost = 0;
+  double RoundTrip = 0.0;
+};
+
+void Measure(const CubicMap& map, int points, std::mt19937_64& random, Result& result)
+{
+  const PlanarPair& pair = map.GetPair();
+  const CubicMapStatistics& statistics = map.GetStatistics();
+  ++result.Maps;
+  result.Uncertified += statistics.UncertifiedTriangles;
+  result.ExceptionalInterior += static_cast<int>(statistics.ExceptionalInteriorPoints.size());
+  result.Rings += statistics.Rings;
+  result.TookTemplate += statistics.Bending.TookTemplate ? 1 : 0;
+  for (double certificate : map.GetCertificates())
+  {
+    result.LeastCertificate = std::min(result.LeastCertificate, certificate);
+  }
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  double size = 0.0;
+  for (const Vector2& p : pair.Target)
+  {
+    size = std::max({ size, std::abs(p.x), std::abs(p.y) });
+  }
+  for (int n = 0; n < points; ++n)
+  {
+    const int t =
+      static_cast<int>(random() % static_cast<std::uint64_t>(pair.GetNumberOfTriangles()));
+    // A third anywhere, a third beside edges, a third beside vertices.
+    Barycentric l{ uniform(random), std::pow(uniform(random), n % 3 == 2 ? 10.0 : 1.0),
+      std::pow(uniform(random), n % 3 > 0 ? 10.0 : 1.0) };
+    std::rotate(l.begin(), l.begin() + n / 3 % 3, l.end());
+    const double sum = l[0] + l[1] + l[2];
+    const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
+    const Vector2 point =
+      pair.Source[pair.Triangles[t][0]] + (1.0 / sum) * (l[1] * corners[1] + l[2] * corners[2]);
+    Vector2 image;
+    Matrix2 derivative;
+    map.MapPoint(t, point, image, derivative);
+    ++result.Points;
+    const double determinant = derivative.Determinant();
+    result.Folds += determinant > 0.0 ? 0 : 1;
+    result.LeastRatio = std::min(result.LeastRatio, determinant / pair.GetAffine(t).Determinant());
+    int at = Locate(pair, pair.Target, t, image);
+    at = at < 0 ? t : at;
+    Vector2 back;
+    if (!map.FindPreimage(image, at, back))
+    {
+      ++result.Lost;
+      continue;
+    }
+    Vector2 again;
+    map.MapPoint(at, back, again, derivative);
+    result.RoundTrip = std::max(result.RoundTrip, Norm(again - image) / size);
+  }
+}
+
+void Print(const char* what, const Result& r)
+{
+  std::printf("| %s | %d | %d | %d | %d | %.1e | %.1e | %lld of %lld | %lld | %.1e |\n", what,
+    r.Maps, r.Uncertified, r.ExceptionalInterior, r.Rings, r.LeastCertificate, r.LeastRatio,
+    static_cast<long long>(r.Folds), static_cast<long long>(r.Points),
+    static_cast<long long>(r.Lost), r.RoundTrip);
+  std::fflush(stdout);
+  Failed = Failed || r.Uncertified > 0 || r.Folds > 0 || r.Lost > 0 || !(r.RoundTrip < 1e-13);
+}
+
+void PrintHead()
+{
+  std::printf("| pairs | maps | uncertified triangles | exceptional interior vertices | rings | "
+              "least certificate | least determinant, sampled, over the affine one | "
+              "determinants <= 0 | preimages not found | round trip |\n"
+              "|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void RunPairs()
+{
+  PrintHead();
+  for (double strength : { 0.5, 1.2, 2.0, 3.0, 4.0 })
+  {
+    for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+    {
+      const bool least = bending == CubicBending::Least;
+      Result result;
+      std::mt19937_64 random(1);
+      for (int seed = 0; seed < Count(least ? 6 : 60); ++seed)
+      {
+        CubicMapOptions options;
+        options.Bending = bending;
+        const CubicMap map(RandomPair(seed, strength, 11), options);
+        Measure(map, 2000, random, result);
+      }
+      char name[64];
+      std::snprintf(name, sizeof(name), "random, %.1f, %s", strength, least ? "LEAST" : "LOCAL");
+      Print(name, result);
+    }
+  }
+}
+
+void RunNeedles()
+{
+  PrintHead();
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto apex = [&](double sign) {
+    return Vector2{ 20.0 * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) };
+  };
+  Result result;
+  for (int n = 0; n < Count(10000); ++n)
+  {
+    PlanarPair pair;
+    pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
+    pair.Target = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
+    pair.Triangles = { { 0, 1, 2 }, { 1, 0, 3 } };
+    pair.FindNeighbors();
+    CubicMapOptions options;
+    options.Bending = CubicBending::Local;
+    const CubicMap map(std::move(pair), options);
+    Measure(map, 20, random, result);
+  }
+  Print("two needles, LOCAL", result);
+}
+
+/// Angles of the rays of a star, no sector wider than 172 degrees.
+std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
+{
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  constexpr double turn = 2.0 * 3.141592653589793;
+  while (true)
+  {
+    std::vector<double> angles{ turn * uniform(random) };
+    double sum = 0.0;
+    std::vector<double> steps;
+    for (int i = 0; i < valence; ++i)
+    {
+      steps.push_back(0.02 + std::pow(uniform(random), 2.0));
+      sum += steps.back();
+    }
+    double widest = 0.0;
+    for (int i = 0; i < valence; ++i)
+    {
+      const double step = steps[static_cast<std::size_t>(i)] * turn / sum;
+      widest = std::max(widest, step);
+      angles.push_back(angles.back() + step);
+    }
+    if (widest < turn * 172.0 / 360.0)
+    {
+      angles.pop_back();
+      return angles;
+    }
+  }
+}
+
+void RunStars()
+{
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr double turn = 2.0 * 3.141592653589793;
+  // By whether the rays turn within 90 degrees: stars, with a derivative at once, in rings, none.
+  int numbers[2][4] = {};
+  int uncertified = 0;
+  std::vector<int> rings;
+  for (int n = 0; n < Count(10000); ++n)
+  {
+    const int valence = 3 + n % 7;
+    const std::vector<double> from = RandomAngles(random, valence);
+    const std::vector<double> to = RandomAngles(random, valence);
+    PlanarPair pair;
+    double least = 1e300;
+    double greatest = -1e300;
+    double before = to[0] - from[0];
+    for (int i = 0; i < valence; ++i)
+    {
+      const std::size_t k = static_cast<std::size_t>(i);
+      const double radius = std::exp(uniform(random));
+      const double image = std::exp(2.8 * uniform(random));
+      pair.Source.push_back({ radius * std::cos(from[k]), radius * std::sin(from[k]) });
+      pair.Target.push_back({ image * std::cos(to[k]), image * std::sin(to[k]) });
+      pair.Triangles.push_back({ valence, i, (i + 1) % valence });
+      double angle = to[k] - from[k];
+      angle -= turn * std::round((angle - before) / turn);
+      before = angle;
+      least = std::min(least, angle);
+      greatest = std::max(greatest, angle);
+    }
+    pair.Source.push_back({});
+    pair.Target.push_back({});
+    pair.FindNeighbors();
+    CubicMapOptions options;
+    options.Bending = CubicBending::Local;
+    const CubicMap map(std::move(pair), options);
+    const CubicMapStatistics& statistics = map.GetStatistics();
+    uncertified += statistics.UncertifiedTriangles;
+    int* row = numbers[greatest - least < 0.25 * turn ? 0 : 1];
+    ++row[0];
+    if (!statistics.ExceptionalInteriorPoints.empty())
+    {
+      ++row[3];
+    }
+    else if (statistics.Rings > 0)
+    {
+      ++row[2];
+      rings.push_back(statistics.Rings);
+    }
+    else
+    {
+      ++row[1];
+    }
+  }
+  std::sort(rings.begin(), rings.end());
+  std::printf("| rays turn within | stars | derivative at once | inside rings | exceptional |\n"
+              "|---|---|---|---|---|\n");
+  for (int wide = 0; wide < 2; ++wide)
+  {
+    std::printf("| %s | %d | %d | %d | %d |\n", wide ? "more than 90 degrees" : "90 degrees",
+      numbers[wide][0], numbers[wide][1], numbers[wide][2], numbers[wide][3]);
+  }
+  std::printf("\nuncertified triangles: %d; rings where needed: median %d, at most %d\n",
+    uncertified, rings.empty() ? 0 : rings[rings.size() / 2], rings.empty() ? 0 : rings.back());
+  Failed = Failed || uncertified > 0;
+}
+
+void RunFar()
+{
+  PrintHead();
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    Result result;
+    std::mt19937_64 random(4);
+    for (int seed = 0; seed < Count(10); ++seed)
+    {
+      // A map sheet of 10 km at coordinates of 10^7 m, in millimeters.
+      PlanarPair pair = RandomPair(seed, 0.5, 11);
+      for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+      {
+        for (Vector2& p : *points)
+        {
+          p = { 1e7 + std::round(1e7 * p.x) / 1000.0, 1e7 + std::round(1e7 * p.y) / 1000.0 };
+        }
+      }
+      CubicMapOptions options;
+      options.Bending = bending;
+      const CubicMap map(std::move(pair), options);
+      Measure(map, 2000, random, result);
+    }
+    Print(bending == CubicBending::Least ? "at 10^7, LEAST" : "at 10^7, LOCAL", result);
+  }
+  Result result;
+  std::mt19937_64 random(5);
+  for (int seed = 0; seed < Count(10); ++seed)
+  {
+    // Cells that shrink by 0.7 from one to the next.
+    PlanarPair pair = RandomPair(seed, 0.5, 11);
+    const auto grade = [](double x) {
+      return (1.0 - std::pow(0.7, 11.0 * x)) / (1.0 - std::pow(0.7, 11.0));
+    };
+    for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+    {
+      for (Vector2& p : *points)
+      {
+        p = { grade(p.x), p.y };
+      }
+    }
+    bool valid = true;
+    for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+    {
+      const std::array<Vector2, 3> a = pair.GetSourceCorners(t);
+      const std::array<Vector2, 3> b = pair.GetTargetCorners(t);
+      valid = valid && Cross(a[1], a[2]) > 0.0 && Cross(b[1], b[2]) > 0.0;
+    }
+    if (valid)
+    {
+      CubicMapOptions options;
+      options.Bending = CubicBending::Local;
+      const CubicMap map(std::move(pair), options);
+      Measure(map, 2000, random, result);
+    }
+  }
+  Print("graded, LOCAL", result);
+}
+
+/// Root mean square of the second differences at a step of a tenth of an edge, edges being 1.
+double SecondDifferences(const CubicMap& map, bool linear, int cells)
+{
+  const PlanarPair& pair = map.GetPair();
+  const double h = 0.1 / cells;
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(h, 1.0 - h);
+  double sum = 0.0;
+  const int count = 4000;
+  int t = 0;
+  for (int n = 0; n < count; ++n)
+  {
+    const Vector2 x{ uniform(random), uniform(random) };
+    const auto value = [&](const Vector2& p) {
+      t = std::max(0, Locate(pair, pair.Source, t, p));
+      Vector2 image;
+      Matrix2 derivative;
+      map.MapPoint(t, p, image, derivative);
+      return linear ? MapLinearly(pair, t, p) : image;
+    };
+    const Vector2 middle = value(x);
+    const auto difference = [&](const Vector2& d) {
+      return (1.0 / (h * h)) * (value(x + d) + value(x - d) - 2.0 * middle);
+    };
+    const Vector2 xx = difference({ h, 0.0 });
+    const Vector2 yy = difference({ 0.0, h });
+    const double diagonal = h * std::sqrt(0.5);
+    const Vector2 xy = difference({ diagonal, diagonal }) - 0.5 * (xx + yy);
+    sum += Dot(xx, xx) + Dot(yy, yy) + 2.0 * Dot(xy, xy);
+  }
+  return std::sqrt(sum / count) / cells;
+}
+
+void RunBending()
+{
+  std::printf(
+    "| strength | refinement | Linear | LOCAL | LEAST | LEAST / Linear | cut | equal to "
+    "the template | elements | rounds, proximal |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  constexpr int cells = 11;
+  for (double strength : { 0.0, 0.5, 1.2, 2.0, 3.0 })
+  {
+    const PlanarPair pair = RandomPair(100, strength, cells);
+    CubicMapOptions options;
+    options.Bending = CubicBending::Local;
+    const CubicMap local(pair, options);
+    options.Bending = CubicBending::Least;
+    const double linear = SecondDifferences(local, true, cells);
+    for (int level = 0; level < (Share < 1.0 ? 1 : 2); ++level)
+    {
+      options.FairnessRefinement = level;
+      const CubicMap least(pair, options);
+      const double bending = SecondDifferences(least, false, cells);
+      const CubicMapStatistics& s = least.GetStatistics();
+      const int triangles = pair.GetNumberOfTriangles() << (2 * level);
+      std::printf("| %.1f | %d | %.2f | %.2f | %.2f | %.2f | %d of %d | %d | %lld | %d, %d |\n",
+        strength, level, linear, SecondDifferences(local, false, cells), bending, bending / linear,
+        s.Bending.CutTriangles, triangles, s.Bending.TemplateTriangles,
+        static_cast<long long>(s.Elements), s.Bending.Rounds, s.Bending.ProximalRounds);
+      std::fflush(stdout);
+      Failed = Failed || s.UncertifiedTriangles > 0;
+    }
+  }
+}
+
+} // anonymous namespace
+
+int main(int argc, char* argv[])
+{
+  std::set<std::string> parts;
+  for (int i = 1; i < argc; ++i)
+  {
+    char* end;
+    const double number = std::strtod(argv[i], &end);
+    if (end != argv[i])
+    {
+      Share = number;
+    }
+    else
+    {
+      parts.insert(argv[i]);
+    }
+  }
+  const struct
+  {
+    const char* Name;
+    void (*Run)();
+  } all[] = { { "pairs", RunPairs }, { "needles", RunNeedles }, { "stars", RunStars },
+    { "far", RunFar }, { "bending", RunBending } };
+  for (const auto& part : all)
+  {
+    if (parts.empty() || parts.count(part.Name) != 0)
+    {
+      std::printf("\n%s\n\n", part.Name);
+      part.Run();
+    }
+  }
+  return Failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
