@@ -117,6 +117,7 @@ set(figure_headers
 set(pipeline_sources
   Pipeline/AttributeTransformation.cxx
   Pipeline/CoordinateLines.cxx
+  Pipeline/DiagnosticMessages.cxx
   Pipeline/HomeomorphismCache.cxx
   Pipeline/ImageSampling.cxx
   Pipeline/ProcessStatistics.cxx)
@@ -124,6 +125,7 @@ set(pipeline_headers
   Pipeline/AttributeTransformation.h
   Pipeline/CellPoints.h
   Pipeline/CoordinateLines.h
+  Pipeline/DiagnosticMessages.h
   Pipeline/FilterSupport.h
   Pipeline/HomeomorphismCache.h
   Pipeline/ImageSampling.h

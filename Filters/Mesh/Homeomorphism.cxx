@@ -7,6 +7,8 @@
 
 #include "Kernel/Simd/Vectorize.h"
 
+#include "vtkPolyData.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -131,10 +133,10 @@ double Determinant(const ContourChart&, const ContourChart&, const TriangleShape
 } // namespace
 
 std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vtkPolyData* target,
-  const HomeomorphismOptions& options, MeshDiagnostics& problems)
+  const HomeomorphismOptions& options, MeshDiagnostics& diagnostics)
 {
   std::unique_ptr<Homeomorphism> result(new Homeomorphism);
-  result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
+  result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, diagnostics);
   if (!result->Pair)
   {
     return nullptr;
@@ -159,24 +161,24 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
         continue;
       }
       mappedByLinear.resize(topology.GetNumberOfTriangles(), 0);
-      MeshDiagnostic problem;
-      problem.What = MeshDiagnostic::Kind::Discordant;
-      problem.Where = !target ? "triangulation" : (domain == Domain::Source ? "source" : "target");
-      problem.Count = static_cast<vtkIdType>(discordant.size());
-      problem.Result = options.DiscordantByLinear ? MeshDiagnostic::Outcome::MappedByLinear
-                                                  : MeshDiagnostic::Outcome::Refused;
+      vtkPolyData* mesh = domain == Domain::Source ? source : target;
+      MeshDiagnostic diagnostic;
+      diagnostic.What = MeshDiagnostic::Kind::Discordant;
+      diagnostic.Where = !target ? MeshDiagnostic::Mesh::Triangulation
+        : domain == Domain::Source ? MeshDiagnostic::Mesh::Source
+                                   : MeshDiagnostic::Mesh::Target;
+      diagnostic.Result = options.DiscordantByLinear ? MeshDiagnostic::Outcome::MappedByLinear
+                                                     : MeshDiagnostic::Outcome::Refused;
+      diagnostic.Ids.reserve(discordant.size());
       for (const TriangleIndex t : discordant)
       {
         mappedByLinear[t] = 1;
-        if (problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
-        {
-          problem.FirstCells.push_back(
-            FirstPolygon(domain == Domain::Source ? source : target) + t);
-        }
+        diagnostic.Ids.push_back(FirstPolygon(mesh) + t);
       }
-      problems.push_back(problem);
+      mesh->GetPoint(topology.GetCorners(discordant.front())[0], diagnostic.Position.data());
+      diagnostics.push_back(std::move(diagnostic));
     }
-    if (IsRefused(problems))
+    if (IsRefused(diagnostics))
     {
       return nullptr;
     }

@@ -90,9 +90,9 @@ class Homeomorphism
 {
 public:
   /// Reads, validates and prepares. @a target may be null: then only coordinates can be asked for.
-  /// Defects are added to @a problems; returns null if they made the meshes be refused.
+  /// Defects are added to @a diagnostics; returns null if they made the meshes be refused.
   static std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target,
-    const HomeomorphismOptions& options, MeshDiagnostics& problems);
+    const HomeomorphismOptions& options, MeshDiagnostics& diagnostics);
 
   const TriangulationPair& GetPair() const { return *this->Pair; }
   const ChartedTriangulation& GetCharts(Domain domain) const { return *this->Charts[int(domain)]; }

@@ -21,52 +21,38 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace homeomorphism
 {
 namespace
 {
 
-/// Collects the offenders of one kind.
-class Offenders
+/// Adds the cells with one kind of defect to the diagnostics, if there are any.
+void Report(MeshDiagnostic::Kind kind, MeshDiagnostic::Mesh where, std::vector<vtkIdType> ids,
+  MeshDiagnostics& diagnostics)
 {
-public:
-  Offenders(MeshDiagnostic::Kind kind, const std::string& where)
+  if (ids.empty())
   {
-    this->Problem.What = kind;
-    this->Problem.Where = where;
+    return;
   }
+  MeshDiagnostic diagnostic;
+  diagnostic.What = kind;
+  diagnostic.Where = where;
+  diagnostic.Ids = std::move(ids);
+  diagnostics.push_back(std::move(diagnostic));
+}
 
-  void Add(vtkIdType cell)
-  {
-    ++this->Problem.Count;
-    if (this->Problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
-    {
-      this->Problem.FirstCells.push_back(cell);
-    }
-  }
-
-  void Report(MeshDiagnostics& problems, const std::string& details = std::string()) const
-  {
-    if (this->Problem.Count > 0)
-    {
-      problems.push_back(this->Problem);
-      problems.back().Details = details;
-    }
-  }
-
-private:
-  MeshDiagnostic Problem;
-};
-
-/// The whole mesh is at fault, not some of its triangles.
-void ReportWhole(MeshDiagnostic::Kind kind, const std::string& details, MeshDiagnostics& problems)
+/// Adds a defect of a mesh as a whole, of which two numbers are known.
+void ReportCounts(MeshDiagnostic::Kind kind, MeshDiagnostic::Mesh where, vtkIdType first,
+  vtkIdType second, MeshDiagnostics& diagnostics)
 {
-  MeshDiagnostic problem;
-  problem.What = kind;
-  problem.Count = 1;
-  problem.Details = details;
-  problems.push_back(problem);
+  MeshDiagnostic diagnostic;
+  diagnostic.What = kind;
+  diagnostic.Where = where;
+  diagnostic.Counts = { first, second };
+  diagnostics.push_back(diagnostic);
 }
 
 vtkIdType CountCells(vtkCellArray* cells)
@@ -111,8 +97,8 @@ vtkSmartPointer<Int64Array> AsInt64Array(vtkDataArray* ids)
 template <typename Id>
 void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
   vtkAOSDataArrayTemplate<Id>* connectivityArray, vtkIdType numberOfPoints, vtkIdType firstCell,
-  LargeArray<Triangulation::Corners>& triangles, Offenders& notTriangles,
-  Offenders& badConnectivity)
+  LargeArray<Triangulation::Corners>& triangles, std::vector<vtkIdType>& notTriangles,
+  std::vector<vtkIdType>& badConnectivity)
 {
   const vtkIdType cells = std::max<vtkIdType>(0, offsetArray->GetNumberOfValues() - 1);
   const vtkIdType entries = connectivityArray->GetNumberOfValues();
@@ -126,12 +112,12 @@ void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
     const vtkIdType end = offsets[cell + 1];
     if (begin < 0 || end < begin || end > entries)
     {
-      badConnectivity.Add(firstCell + cell);
+      badConnectivity.push_back(firstCell + cell);
       continue;
     }
     if (end - begin != 3)
     {
-      notTriangles.Add(firstCell + cell);
+      notTriangles.push_back(firstCell + cell);
       continue;
     }
     bool exist = true;
@@ -143,7 +129,7 @@ void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
     }
     if (!exist)
     {
-      badConnectivity.Add(firstCell + cell);
+      badConnectivity.push_back(firstCell + cell);
     }
   }
 }
@@ -401,24 +387,20 @@ vtkIdType FirstPolygon(vtkPolyData* mesh)
 }
 
 LargeArray<Triangulation::Corners> ReadTriangles(
-  vtkPolyData* mesh, const std::string& where, MeshDiagnostics& problems)
+  vtkPolyData* mesh, MeshDiagnostic::Mesh where, MeshDiagnostics& diagnostics)
 {
   LargeArray<Triangulation::Corners> triangles;
   const vtkIdType firstCell = FirstPolygon(mesh);
-  Offenders notTriangles(MeshDiagnostic::Kind::NotTriangles, where);
-  Offenders badConnectivity(MeshDiagnostic::Kind::BadConnectivity, where);
+  std::vector<vtkIdType> notTriangles;
+  std::vector<vtkIdType> badConnectivity;
   vtkCellArray* polygons = mesh->GetPolys();
   const vtkIdType count = CountCells(polygons);
   const vtkIdType numberOfPoints = mesh->GetNumberOfPoints();
   if (count >= Triangulation::MaximumTriangles ||
     numberOfPoints >= std::numeric_limits<std::int32_t>::max())
   {
-    ReportWhole(MeshDiagnostic::Kind::TooManyTriangles,
-      "The " + where + " has " + std::to_string(count) + " polygons and " +
-        std::to_string(numberOfPoints) + " points; fewer than " +
-        std::to_string(Triangulation::MaximumTriangles) + " and " +
-        std::to_string(std::numeric_limits<std::int32_t>::max()) + " can be numbered",
-      problems);
+    ReportCounts(
+      MeshDiagnostic::Kind::TooManyTriangles, where, count, numberOfPoints, diagnostics);
     return triangles;
   }
   if (count > 0)
@@ -438,41 +420,35 @@ LargeArray<Triangulation::Corners> ReadTriangles(
         firstCell, triangles, notTriangles, badConnectivity);
     }
   }
-  notTriangles.Report(problems, "polygon with another number of corners than three");
-  badConnectivity.Report(problems);
+  Report(MeshDiagnostic::Kind::NotTriangles, where, std::move(notTriangles), diagnostics);
+  Report(MeshDiagnostic::Kind::BadConnectivity, where, std::move(badConnectivity), diagnostics);
 
-  Offenders strips(MeshDiagnostic::Kind::NotTriangles, where);
-  for (vtkIdType strip = 0; strip < CountCells(mesh->GetStrips()); ++strip)
-  {
-    strips.Add(firstCell + count + strip);
-  }
-  strips.Report(problems, "triangle strip");
+  std::vector<vtkIdType> strips(static_cast<std::size_t>(CountCells(mesh->GetStrips())));
+  std::iota(strips.begin(), strips.end(), firstCell + count);
+  Report(MeshDiagnostic::Kind::TriangleStrips, where, std::move(strips), diagnostics);
   return triangles;
 }
 
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
-  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& problems)
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& diagnostics)
 {
   if (source->GetNumberOfPoints() != target->GetNumberOfPoints())
   {
-    ReportWhole(MeshDiagnostic::Kind::PointCountsDiffer,
-      "The source has " + std::to_string(source->GetNumberOfPoints()) + " points, the target " +
-        std::to_string(target->GetNumberOfPoints()),
-      problems);
+    ReportCounts(MeshDiagnostic::Kind::PointCountsDiffer, MeshDiagnostic::Mesh::Pair,
+      source->GetNumberOfPoints(), target->GetNumberOfPoints(), diagnostics);
   }
   if (sourceTriangles.size() != targetTriangles.size())
   {
-    ReportWhole(MeshDiagnostic::Kind::CellCountsDiffer,
-      "The source has " + std::to_string(sourceTriangles.size()) + " triangles, the target " +
-        std::to_string(targetTriangles.size()),
-      problems);
+    ReportCounts(MeshDiagnostic::Kind::CellCountsDiffer, MeshDiagnostic::Mesh::Pair,
+      static_cast<vtkIdType>(sourceTriangles.size()),
+      static_cast<vtkIdType>(targetTriangles.size()), diagnostics);
   }
-  if (IsRefused(problems))
+  if (IsRefused(diagnostics))
   {
     return;
   }
-  Offenders different(MeshDiagnostic::Kind::ConnectivityDiffers, "pair");
+  std::vector<vtkIdType> different;
   const vtkIdType firstCell = FirstPolygon(source);
   for (std::size_t t = 0; t < sourceTriangles.size(); ++t)
   {
@@ -480,10 +456,11 @@ void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
       !std::is_permutation(
         sourceTriangles[t].begin(), sourceTriangles[t].end(), targetTriangles[t].begin()))
     {
-      different.Add(firstCell + static_cast<vtkIdType>(t));
+      different.push_back(firstCell + static_cast<vtkIdType>(t));
     }
   }
-  different.Report(problems);
+  Report(MeshDiagnostic::Kind::ConnectivityDiffers, MeshDiagnostic::Mesh::Pair,
+    std::move(different), diagnostics);
 }
 
 vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* attributes, vtkIdType tuples)

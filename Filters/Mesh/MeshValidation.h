@@ -14,7 +14,6 @@
 #include "PointLocation.h"
 #include "Triangulation.h"
 
-#include <string>
 #include <vector>
 
 class vtkDataSetAttributes;
@@ -32,15 +31,15 @@ vtkIdType FirstPolygon(vtkPolyData* mesh);
 
 /// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
 /// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
-/// exist, and counts beyond what can be numbered. @a where names the mesh in messages.
+/// exist, and counts beyond what can be numbered.
 LargeArray<Triangulation::Corners> ReadTriangles(
-  vtkPolyData* mesh, const std::string& where, MeshDiagnostics& problems);
+  vtkPolyData* mesh, MeshDiagnostic::Mesh where, MeshDiagnostics& diagnostics);
 
 /// Reports what keeps source and target from being the same mesh: counts, and triangles that do not
 /// have the same three points. The order of the three points is free.
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
-  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& problems);
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& diagnostics);
 
 /// The array of some attributes that marks what is hidden or belongs to another piece
 /// (vtkGhostType); null if there is none that has one value for each of @a tuples points or cells.

@@ -9,8 +9,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
-#include <algorithm>
-#include <string>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,11 +21,12 @@ class TriangulationPair::Builder
 {
 public:
   Builder(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems)
+    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& diagnostics)
     : Meshes{ source, target }
-    , Names{ target ? "source" : "triangulation", "target" }
+    , Names{ target ? MeshDiagnostic::Mesh::Source : MeshDiagnostic::Mesh::Triangulation,
+      MeshDiagnostic::Mesh::Target }
     , MaskInvalidTriangles(maskInvalidTriangles)
-    , Problems(problems)
+    , Diagnostics(diagnostics)
     , Pair(new TriangulationPair)
   {
   }
@@ -39,20 +39,20 @@ public:
     do
     {
       this->HasMasked = false;
-      if (!IsRefused(this->Problems))
+      if (!IsRefused(this->Diagnostics))
       {
         this->ReadGeometry();
       }
-      if (!IsRefused(this->Problems))
+      if (!IsRefused(this->Diagnostics))
       {
         this->FindAdjacency();
       }
-      if (!IsRefused(this->Problems))
+      if (!IsRefused(this->Diagnostics))
       {
         this->ExcludeOverlaps();
       }
-    } while (this->HasMasked && !IsRefused(this->Problems));
-    if (IsRefused(this->Problems))
+    } while (this->HasMasked && !IsRefused(this->Diagnostics));
+    if (IsRefused(this->Diagnostics))
     {
       return nullptr;
     }
@@ -67,52 +67,56 @@ public:
   }
 
 private:
-  /// Masks or refuses triangles. Returns whether there were any.
-  /// Of a pair's defects, the ids are those of the source's cells.
-  bool Exclude(
-    MeshDiagnostic::Kind kind, int domain, const std::string& where, const TriangleList& triangles)
+  /// Masks or refuses triangles, and returns whether there were any. Of a pair's defects, the ids
+  /// are those of the source's cells.
+  bool Exclude(MeshDiagnostic::Kind kind, int domain, MeshDiagnostic::Mesh where,
+    const TriangleList& triangles, double size = std::numeric_limits<double>::quiet_NaN())
   {
     if (triangles.empty())
     {
       return false;
     }
-    MeshDiagnostic problem;
-    problem.What = kind;
-    problem.Where = where;
-    problem.Count = static_cast<vtkIdType>(triangles.size());
-    // One side only surfaces are not the fault of single triangles.
+    MeshDiagnostic diagnostic;
+    diagnostic.What = kind;
+    diagnostic.Where = where;
+    diagnostic.Size = size;
+    // No single triangle makes a surface non-orientable.
     const bool mask = this->MaskInvalidTriangles && kind != MeshDiagnostic::Kind::NonOrientable;
-    problem.Result = mask ? MeshDiagnostic::Outcome::Masked : MeshDiagnostic::Outcome::Refused;
+    diagnostic.Result = mask ? MeshDiagnostic::Outcome::Masked : MeshDiagnostic::Outcome::Refused;
+    const vtkIdType firstCell = FirstPolygon(this->Meshes[domain]);
+    diagnostic.Ids.reserve(triangles.size());
     for (const TriangleIndex t : triangles)
     {
-      if (problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
-      {
-        problem.FirstCells.push_back(FirstPolygon(this->Meshes[domain]) + t);
-      }
+      diagnostic.Ids.push_back(firstCell + t);
       if (mask)
       {
         this->Pair->Topology.Mask(t);
         this->HasMasked = true;
       }
     }
-    this->Problems.push_back(problem);
+    if (this->Meshes[domain]->GetPoints())
+    {
+      const Triangulation::Corners& corners = this->Pair->Topology.GetCorners(triangles.front());
+      this->Meshes[domain]->GetPoint(corners[0], diagnostic.Position.data());
+    }
+    this->Diagnostics.push_back(std::move(diagnostic));
     return true;
   }
 
   void ReadTopology()
   {
     LargeArray<Triangulation::Corners> triangles =
-      ReadTriangles(this->Meshes[0], this->Names[0], this->Problems);
+      ReadTriangles(this->Meshes[0], this->Names[0], this->Diagnostics);
     LargeArray<Triangulation::Corners> others;
     if (this->Meshes[1])
     {
-      others = ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
-      if (!IsRefused(this->Problems))
+      others = ReadTriangles(this->Meshes[1], this->Names[1], this->Diagnostics);
+      if (!IsRefused(this->Diagnostics))
       {
-        CompareConnectivity(this->Meshes[0], this->Meshes[1], triangles, others, this->Problems);
+        CompareConnectivity(this->Meshes[0], this->Meshes[1], triangles, others, this->Diagnostics);
       }
     }
-    if (IsRefused(this->Problems))
+    if (IsRefused(this->Diagnostics))
     {
       return;
     }
@@ -161,9 +165,9 @@ private:
         geometry->SetColumnar(planar);
       }
     }
-    if (planar && this->Meshes[1] && !IsRefused(this->Problems))
+    if (planar && this->Meshes[1] && !IsRefused(this->Diagnostics))
     {
-      this->Exclude(MeshDiagnostic::Kind::Flipped, 0, "pair",
+      this->Exclude(MeshDiagnostic::Kind::Flipped, 0, MeshDiagnostic::Mesh::Pair,
         FindFlipped(topology, *this->Pair->Geometries[0], *this->Pair->Geometries[1]));
     }
   }
@@ -201,17 +205,17 @@ private:
   }
 
   std::array<vtkPolyData*, 2> Meshes;
-  std::array<std::string, 2> Names;
+  std::array<MeshDiagnostic::Mesh, 2> Names;
   bool MaskInvalidTriangles;
   bool HasMasked = false;
-  MeshDiagnostics& Problems;
+  MeshDiagnostics& Diagnostics;
   std::unique_ptr<TriangulationPair> Pair;
 };
 
 std::shared_ptr<const TriangulationPair> TriangulationPair::Read(
-  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems)
+  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& diagnostics)
 {
-  return Builder(source, target, maskInvalidTriangles, problems).Build();
+  return Builder(source, target, maskInvalidTriangles, diagnostics).Build();
 }
 
 } // namespace homeomorphism
