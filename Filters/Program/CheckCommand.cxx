@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "Pipeline/DiagnosticMessages.h"
 #include "Canvas.h"
 #include "Command.h"
 #include "Console.h"
@@ -63,6 +64,8 @@ const char* NameOf(MeshDiagnostic::Kind kind)
       return "too many triangles";
     case Kind::NotTriangles:
       return "not triangles";
+    case Kind::TriangleStrips:
+      return "triangle strips";
     case Kind::BadConnectivity:
       return "bad connectivity";
     case Kind::ConnectivityDiffers:
@@ -83,6 +86,8 @@ const char* NameOf(MeshDiagnostic::Kind kind)
       return "overlapping";
     case Kind::Discordant:
       return "discordant";
+    case Kind::NearlyPlanar:
+      return "nearly planar";
   }
   return "";
 }
@@ -95,8 +100,8 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   for (const MeshDiagnostic& problem : report.Problems)
   {
     json["problems"].push_back(
-      { { "kind", NameOf(problem.What) }, { "where", problem.Where }, { "count", problem.Count },
-        { "first_cells", problem.FirstCells }, { "message", Describe(problem, leaveOut) } });
+      { { "kind", NameOf(problem.What) }, { "where", homeomorphism::GetName(problem.Where) },
+        { "count", problem.Ids.size() }, { "first_cells", problem.Ids }, { "message", Describe(problem, leaveOut) } });
   }
   const char* const domains[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
@@ -186,7 +191,7 @@ void PrintMeshes(const PairReport& report)
   both("duplicate points", [](const MeshReport& mesh) {
     return std::to_string(mesh.DuplicatePoints) +
       (mesh.DuplicatePoints > 0
-          ? " (" + ListIds({ mesh.FirstDuplicates.front() }, mesh.DuplicatePoints) + ")"
+          ? " (" + ListIds(mesh.FirstDuplicates) + ")"
           : std::string());
   });
   if (!report.Measured)
