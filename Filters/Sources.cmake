@@ -41,6 +41,7 @@ set(cubic_headers
 
 # Meshes, read and validated once, and the map between two of them.
 set(mesh_sources
+  Mesh/BoundarySweep.cxx
   Mesh/ChartedTriangulation.cxx
   Mesh/Homeomorphism.cxx
   Mesh/LargeArray.cxx
@@ -51,6 +52,7 @@ set(mesh_sources
   Mesh/Triangulation.cxx
   Mesh/TriangulationPair.cxx)
 set(mesh_headers
+  Mesh/BoundarySweep.h
   Mesh/Box.h
   Mesh/BoxTree.h
   Mesh/ChartedTriangulation.h

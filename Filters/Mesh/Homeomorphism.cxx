@@ -268,7 +268,7 @@ int Homeomorphism::LocateBlock(
   for (int i = 0; i < block.Count;)
   {
     start = scattered && steps == 0 ? seeds[i] : start;
-    if (planar && start >= 0 && steps < MaximumSteps)
+    if (planar && start >= 0 && steps < MaximumSteps && !location.IsOverlapping(start))
     {
       // Points in a row are often in one triangle: as many are tried as there were last time, and
       // more.

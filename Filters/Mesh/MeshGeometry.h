@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 class vtkPoints;
@@ -102,6 +103,22 @@ public:
   /// Relative rounding error of the coordinates as they were stored: half an ulp of float or
   /// double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
+
+  /// How far, in normalized coordinates, a point that should lie on an edge may be from it because
+  /// coordinates are rounded: 8 u L + 16 v L, with L the largest coordinate, u the precision of the
+  /// stored coordinates, and v that of double.
+  ///
+  /// A point a + t (b - a) of an edge from a to b, computed in the precision of the coordinates, has
+  /// rounding errors of at most 2 u L (difference), 2 u L (product) and u L (sum) in each coordinate,
+  /// together less than 8 u L in any direction of the plane. If a, b and the point have each been
+  /// rounded instead, their distances add up to less than 4 u L. In a plane that is not parallel to
+  /// two axes, the two coordinates in the plane are sums of three products, with errors of less than
+  /// 6 v L each, in the point and in the edge. Distances are computed as doubles.
+  double GetRounding() const
+  {
+    return (8.0 * this->CoordinatePrecision + 8.0 * std::numeric_limits<double>::epsilon()) *
+      this->LargestCoordinate;
+  }
 
   Vector3 ToNormalized(const double point[3]) const
   {

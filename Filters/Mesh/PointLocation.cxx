@@ -158,6 +158,16 @@ void PointLocation::PlantSeeds()
   }
 }
 
+void PointLocation::SetOverlapping(const std::vector<TriangleIndex>& triangles)
+{
+  this->Overlapping.clear();
+  for (const TriangleIndex t : triangles)
+  {
+    this->Overlapping.resize(static_cast<std::size_t>(this->Topology.GetNumberOfTriangles()), 0);
+    this->Overlapping[t] = 1;
+  }
+}
+
 SurfacePoint PointLocation::Find(
   const Vector3& normalized, double tolerance, TriangleIndex hint) const
 {
@@ -218,6 +228,10 @@ TriangleIndex PointLocation::Walk(
     const PlaneRelation relation(frame, point);
     if (relation.IsInside())
     {
+      if (this->IsOverlapping(t))
+      {
+        return -1;
+      }
       location.Triangle = t;
       location.Point.InPlane = relation.InPlane;
       return t;
@@ -262,12 +276,14 @@ TriangleIndex PointLocation::Walk(
       {
         if (edges == 0)
         {
-          return t;
+          return this->IsOverlapping(t) ? -1 : t;
         }
         // Within an edge of two triangles there is no third. At a vertex or on the boundary there
         // may be more, also such that share no point of the mesh with this one.
         const TriangleIndex other = edges == 1 ? this->Topology.GetTwin(t, onEdge).Triangle : -1;
-        return other >= 0 ? std::min(t, other) : -1;
+        return other >= 0 && !this->IsOverlapping(t) && !this->IsOverlapping(other)
+          ? std::min(t, other)
+          : -1;
       }
     }
     t = this->Topology.GetTwin(t, edge).Triangle;

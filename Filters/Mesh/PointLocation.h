@@ -87,6 +87,15 @@ public:
   /// Refers to the two, which must outlive it. Masked triangles are not found.
   PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry);
 
+  /// Sets the triangles of a planar mesh, ascending, that overlap others by the rounding of their
+  /// coordinates. Of several triangles that contain a point, the one with the lowest number counts.
+  void SetOverlapping(const std::vector<TriangleIndex>& triangles);
+  /// Whether a triangle overlaps others by the rounding of their coordinates.
+  bool IsOverlapping(TriangleIndex triangle) const
+  {
+    return !this->Overlapping.empty() && this->Overlapping[triangle] != 0;
+  }
+
   /// @a normalized is the point in the geometry's normalized coordinates, @a tolerance a distance
   /// in them, @a hint the triangle where the point probably is, or -1. The geometry must have its
   /// frames.
@@ -127,6 +136,8 @@ private:
   const Triangulation& Topology;
   const MeshGeometry& Geometry;
   BoxTree<3> SpaceTree;
+  // For each triangle, or empty if there are none.
+  std::vector<std::uint8_t> Overlapping;
   // Made when it is first needed, by whichever thread does first: often no point is outside or on
   // an edge, and one of the two directions is not used at all.
   mutable std::once_flag HasPlaneTree;

@@ -193,9 +193,14 @@ private:
     {
       const MeshGeometry& geometry = *this->Pair->Geometries[domain];
       this->Pair->Locations[domain] = std::make_unique<PointLocation>(topology, geometry);
-      if (geometry.IsPlanar() &&
-        this->Exclude(MeshDiagnostic::Kind::Overlapping, domain, this->Names[domain],
-          FindOverlapping(topology, geometry, *this->Pair->Locations[domain])) &&
+      if (!geometry.IsPlanar())
+      {
+        continue;
+      }
+      const Overlaps overlaps = FindOverlapping(topology, geometry, *this->Pair->Locations[domain]);
+      this->Pair->Locations[domain]->SetOverlapping(overlaps.WithinRounding);
+      if (this->Exclude(MeshDiagnostic::Kind::Overlapping, domain, this->Names[domain],
+            overlaps.Triangles, overlaps.Depth / geometry.GetScale()) &&
         this->MaskInvalidTriangles)
       {
         // What has been left out is gone for the other mesh, too, before it is looked at.
