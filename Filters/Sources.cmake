@@ -71,12 +71,15 @@ set(continuity_sources
   Continuity/EdgeCrossings.cxx
   Continuity/InnerLines.cxx
   Continuity/JacobianJump.cxx
+  Continuity/MapUnderTest.cxx
   Continuity/MeasuredFeatures.cxx
   Continuity/RayFans.cxx)
 set(continuity_headers
   Continuity/EdgeCrossings.h
+  Continuity/FeatureKind.h
   Continuity/InnerLines.h
   Continuity/JacobianJump.h
+  Continuity/MapUnderTest.h
   Continuity/MeasuredFeatures.h
   Continuity/OneSidedDerivative.h
   Continuity/RayFans.h)

@@ -510,11 +510,15 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   }
   FramePoint point;
   point.Offset = offset;
-  point.InPlane = this->VisitCharts(
-    from, surfacePoint.Triangle, [&surfacePoint](const auto& chart, const auto& other) {
-      return homeomorphism::MapPoint(chart, other, surfacePoint.Point.InPlane);
-    });
+  point.InPlane = this->MapInFrame(from, surfacePoint.Triangle, surfacePoint.Point.InPlane);
   target.FromNormalized(target.FromFrame(surfacePoint.Triangle, point), image);
+}
+
+Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const
+{
+  return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {
+    return homeomorphism::MapPoint(chart, other, point);
+  });
 }
 
 template <typename Chart>

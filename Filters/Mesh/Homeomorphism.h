@@ -110,6 +110,9 @@ public:
   /// The image of a place of @a from's domain. Corners go to corners exactly.
   void MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
 
+  /// The image, in the frame of the target's triangle, of a point in the frame of @a from's.
+  Vector2 MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const;
+
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
   int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const;
 

@@ -98,6 +98,10 @@ public:
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
   /// The box around the points of a planar mesh that triangles use, in its plane.
   const Box<2>& GetPlaneBounds() const { return this->PlaneBounds; }
+  /// Of a surface whose points lie almost in a plane, within a millionth of its diagonal: the largest
+  /// distance of a point from that plane, in normalized coordinates, if the plane is one of those
+  /// between the points. 0 for all other meshes.
+  double GetThickness() const { return this->Thickness; }
   /// Length of the diagonal of the box around the points, in normalized coordinates.
   double GetDiagonal() const { return this->Diagonal; }
   /// Relative rounding error of the coordinates as they were stored: half an ulp of float or
@@ -188,6 +192,10 @@ public:
     }
     return this->SpacePoints[point];
   }
+  /// The vector from one point of the mesh to another, in the input's coordinates. It is the
+  /// difference of nearby numbers, so that points close to each other have an accurate one however
+  /// far from the origin they are.
+  Vector3 GetVector(std::int32_t from, std::int32_t to) const;
   /// The same for a planar mesh.
   const Vector2& GetPlanePoint(std::int32_t point) const { return this->PlanePoints[point]; }
 
@@ -273,6 +281,8 @@ private:
   class MeshPoints;
   void FindPlane(
     const MeshPoints& points, const std::vector<std::uint8_t>& used, const MeshGeometry* companion);
+  void FindThickness(
+    const MeshPoints& points, const std::vector<std::uint8_t>& used, const Vector3& normal);
   void FindOrientations(const Triangulation& triangulation);
   void ComputePlaneFrames(
     const Triangulation& triangulation, TriangleIndex begin, TriangleIndex end);
@@ -287,6 +297,7 @@ private:
   double InverseScale = 1.0;
   double LargestCoordinate = 0.0;
   double Diagonal = 0.0;
+  double Thickness = 0.0;
   double CoordinatePrecision = 0.0;
 
   // The plane: axes U, V within it and the normal N, right-handed, and its distance from the

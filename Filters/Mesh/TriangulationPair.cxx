@@ -9,6 +9,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -56,12 +57,10 @@ public:
     {
       return nullptr;
     }
-    for (const auto& geometry : this->Pair->Geometries)
+    for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
-      if (geometry)
-      {
-        geometry->ComputeFrames(this->Pair->Topology);
-      }
+      this->Pair->Geometries[domain]->ComputeFrames(this->Pair->Topology);
+      this->ReportNearlyPlanar(domain);
     }
     return std::shared_ptr<const TriangulationPair>(std::move(this->Pair));
   }
@@ -101,6 +100,25 @@ private:
     }
     this->Diagnostics.push_back(std::move(diagnostic));
     return true;
+  }
+
+  /// A surface that was meant to be planar is accepted, but its tolerance should be known.
+  void ReportNearlyPlanar(int domain)
+  {
+    const MeshGeometry& geometry = *this->Pair->Geometries[domain];
+    if (geometry.GetThickness() == 0.0)
+    {
+      return;
+    }
+    MeshDiagnostic diagnostic;
+    diagnostic.What = MeshDiagnostic::Kind::NearlyPlanar;
+    diagnostic.Where = this->Names[domain];
+    diagnostic.Result = MeshDiagnostic::Outcome::Accepted;
+    diagnostic.Size = geometry.GetThickness() / geometry.GetScale();
+    // A power of ten, with room for the rounding of points.
+    diagnostic.Tolerance =
+      std::pow(10.0, std::ceil(std::log10(2.0 * geometry.GetThickness() / geometry.GetDiagonal())));
+    this->Diagnostics.push_back(diagnostic);
   }
 
   void ReadTopology()

@@ -7,6 +7,8 @@
 
 #include "MappedPoints.h"
 
+#include "Mesh/Homeomorphism.h"
+
 #include "vtkHomeomorphismTransform.h"
 #include "vtkTriangularCoordinates.h"
 
@@ -1379,6 +1381,45 @@ TEST(MeshRefusals, ABlankedTriangleDoesNotBendThePlane)
   const Point probe{ 2.3, 2.7, 11.0 };
   EXPECT_TRUE(transform->IsInside(probe.data()));
   EXPECT_EQ("", messages.Error());
+}
+
+TEST(MeshRefusals, NearlyPlanarMeshesAreNamed)
+{
+  using homeomorphism::MeshDiagnostic;
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 0, 2, 3 } };
+  const auto flat = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1.5, 0 } }, triangles);
+  const std::vector<Point> probes{ { 0.3, 0.2, 0 }, { 0.6, 0.9, 0 }, { 0.5, 0.5, 0 } };
+  for (const double noise : { 1e-9, 1e-12, 1e-7 })
+  {
+    const auto noisy = MakeMesh(
+      { { 0, 0, noise }, { 1, 0, -noise }, { 1, 1, noise }, { 0, 1, 0 } }, triangles);
+    homeomorphism::MeshDiagnostics diagnostics;
+    ASSERT_TRUE(homeomorphism::Homeomorphism::Make(noisy, flat, {}, diagnostics));
+    ASSERT_EQ(1u, diagnostics.size());
+    EXPECT_EQ(MeshDiagnostic::Kind::NearlyPlanar, diagnostics[0].What);
+    EXPECT_EQ(MeshDiagnostic::Mesh::Source, diagnostics[0].Where);
+    EXPECT_EQ(MeshDiagnostic::Outcome::Accepted, diagnostics[0].Result);
+    EXPECT_NEAR(2.0 * noise, diagnostics[0].Size, 1e-15);
+    EXPECT_LT(diagnostics[0].Tolerance, 100.0 * noise);
+
+    MapOptions options;
+    const MappedPoints without = MapPoints({ noisy, flat }, probes, options);
+    options.Tolerance = diagnostics[0].Tolerance;
+    const MappedPoints with = MapPoints({ noisy, flat }, probes, options);
+    for (std::size_t i = 0; i + 1 < probes.size(); ++i)
+    {
+      EXPECT_FALSE(without.IsInside(i));
+      EXPECT_TRUE(with.IsInside(i));
+    }
+  }
+  // Planar meshes and surfaces are not.
+  for (const auto& mesh : { flat, MakeMesh({ { 0, 0, 0 }, { 1, 0, 1e-3 }, { 1, 1, 0 }, { 0, 1, 0 } },
+                                    triangles) })
+  {
+    homeomorphism::MeshDiagnostics diagnostics;
+    EXPECT_TRUE(homeomorphism::Homeomorphism::Make(mesh, mesh, {}, diagnostics));
+    EXPECT_TRUE(diagnostics.empty());
+  }
 }
 
 TEST(MeshRefusals, EmptyMeshesLeaveAllPointsOutside)
