@@ -117,8 +117,8 @@ public:
   std::string Tell(const std::string& what) const
   {
     const bool one = this->Ids.size() == 1;
-    return std::to_string(this->Ids.size()) + " " + what + (one ? "" : "s") + " of the data (" + what +
-      (one ? " " : "s ") + ListIds(this->Ids) + (one ? ") has" : ") have");
+    return std::to_string(this->Ids.size()) + " " + what + (one ? "" : "s") + " of the data (" +
+      what + (one ? " " : "s ") + ListIds(this->Ids) + (one ? ") has" : ") have");
   }
 
 private:

@@ -130,7 +130,8 @@ InnerLines::PointOnLine InnerLines::GetPoint(
   return { (1.0 - t) * start + t * end, Unit(end - start), std::min(t, 1.0 - t) * length };
 }
 
-Vector3 InnerLines::GetPosition(TriangleIndex triangle, FeatureKind kind, int number, double t) const
+Vector3 InnerLines::GetPosition(
+  TriangleIndex triangle, FeatureKind kind, int number, double t) const
 {
   const MeshGeometry& source = this->GetSource();
   Vector3 position;
@@ -153,8 +154,8 @@ LineCrossing InnerLines::GetCrossing(
   const Vector2 right{ point.Tangent.y, -point.Tangent.x };
   LineCrossing crossing;
   crossing.Near = { GetFrameOrigin(this->Map.GetPair(), Domain::Source, triangle), { triangle } };
-  crossing.Point = FromFrame(
-    this->Map.GetPair(), Domain::Source, triangle, crossing.Near.Origin, point.Position);
+  crossing.Point =
+    FromFrame(this->Map.GetPair(), Domain::Source, triangle, crossing.Near.Origin, point.Position);
   crossing.Tangent = ToSpace(source, triangle, point.Tangent);
   crossing.TangentLength = std::min({ rayLength(point.Tangent), rayLength(-1.0 * point.Tangent),
     0.5 * point.StraightLength / source.GetScale() });
@@ -164,8 +165,8 @@ LineCrossing InnerLines::GetCrossing(
   return crossing;
 }
 
-JacobianJump InnerLines::GetExactJump(
-  TriangleIndex triangle, FeatureKind kind, int number, double t, const LineCrossing& crossing) const
+JacobianJump InnerLines::GetExactJump(TriangleIndex triangle, FeatureKind kind, int number,
+  double t, const LineCrossing& crossing) const
 {
   if (kind != FeatureKind::Spoke ||
     this->Map.GetCharts(Domain::Source).GetSystemOf(triangle) != CoordinateSystem::Contour)

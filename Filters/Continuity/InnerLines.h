@@ -28,15 +28,15 @@ public:
   /// The number of lines of a kind in each triangle.
   static int GetNumberOfLines(FeatureKind kind) { return kind == FeatureKind::WingSegment ? 6 : 3; }
 
-  /// Center and wing segments do not exist for an edge without the foot of the center, nor strips for
-  /// boundary edges.
+  /// Center and wing segments do not exist for an edge without the foot of the center, nor strips
+  /// for boundary edges.
   bool Exists(TriangleIndex triangle, FeatureKind kind, int number) const;
 
   /// The point at a proportion t, from 0 to 1, of the line.
   Vector3 GetPosition(TriangleIndex triangle, FeatureKind kind, int number, double t) const;
 
-  LineCrossing GetCrossing(TriangleIndex triangle, FeatureKind kind, int number, double t,
-    const MapUnderTest& map) const;
+  LineCrossing GetCrossing(
+    TriangleIndex triangle, FeatureKind kind, int number, double t, const MapUnderTest& map) const;
 
   /// The jump across the line by the map's closed form: that of the Contour system at spokes.
   /// Nowhere else within a triangle is there one, in any system.

@@ -65,14 +65,14 @@ enum class JumpVerdict
 };
 
 /// The jump of the Jacobian, or of the second derivative, at a crossing or in a ray fan. Lengths
-/// are relative to the norm of the Jacobian (for second derivatives: to that norm over the length of
-/// the rays).
+/// are relative to the norm of the Jacobian (for second derivatives: to that norm over the length
+/// of the rays).
 struct JacobianJump
 {
   static constexpr double None = std::numeric_limits<double>::quiet_NaN();
 
-  /// Norm of the difference of the derivatives on the two sides; in a ray fan, the largest deviation
-  /// of the derivatives along its rays from those of the linear map that fits them best.
+  /// Norm of the difference of the derivatives on the two sides; in a ray fan, the largest
+  /// deviation of the derivatives along its rays from those of the linear map that fits them best.
   double Jump = None;
   /// Bound on the error of Jump.
   double Error = None;

@@ -33,8 +33,8 @@ Vector3 FromFrame(const TriangulationPair& pair, Domain domain, TriangleIndex tr
 {
   const MeshGeometry& geometry = pair.GetGeometry(domain);
   const std::array<Vector3, 3> axes = geometry.GetAxes(triangle);
-  const Vector3 d = Sum(
-    Scaled(axes[0], point.x / geometry.GetScale()), point.y / geometry.GetScale(), axes[1]);
+  const Vector3 d =
+    Sum(Scaled(axes[0], point.x / geometry.GetScale()), point.y / geometry.GetScale(), axes[1]);
   return Sum(geometry.GetVector(origin, GetFrameOrigin(pair, domain, triangle)), 1.0, d);
 }
 

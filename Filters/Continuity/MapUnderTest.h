@@ -4,8 +4,8 @@
 /// @file MapUnderTest.h
 /// Maps that are known by their values, evaluated about a local origin.
 ///
-/// Difference quotients of coordinates far from the origin lose all digits that the coordinates have
-/// in common. So features are measured in coordinates relative to a point of the mesh at the
+/// Difference quotients of coordinates far from the origin lose all digits that the coordinates
+/// have in common. So features are measured in coordinates relative to a point of the mesh at the
 /// feature, in the domain and in the image.
 
 #ifndef homeomorphism_MapUnderTest_h

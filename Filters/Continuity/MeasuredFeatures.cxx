@@ -135,7 +135,7 @@ MeasuredFeatures::Sample MeasuredFeatures::Measure(const MeasuredFeature& featur
   {
     const bool vertex = feature.Kind == FeatureKind::Vertex;
     const RayFan fan = vertex ? this->Points->GetAroundVertex(feature.Item)
-                               : this->Points->GetAroundCenter(feature.Item);
+                              : this->Points->GetAroundCenter(feature.Item);
     sample.First = EstimateJump(map(fan.Near), fan, resolution);
     if (exact && !vertex)
     {
@@ -158,7 +158,8 @@ MeasuredFeatures::Sample MeasuredFeatures::Measure(const MeasuredFeature& featur
     crossing = this->Lines.GetCrossing(feature.Item, feature.Kind, feature.Line, t, map);
     if (exact)
     {
-      sample.Exact = this->Lines.GetExactJump(feature.Item, feature.Kind, feature.Line, t, crossing).Jump;
+      sample.Exact =
+        this->Lines.GetExactJump(feature.Item, feature.Kind, feature.Line, t, crossing).Jump;
     }
   }
   const LocalMap local = map(crossing.Near);

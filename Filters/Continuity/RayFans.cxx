@@ -82,8 +82,8 @@ Vector2 RayFans::GetCenterInFrame(TriangleIndex triangle) const
 {
   const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
   const Triangulation& topology = this->Map.GetPair().GetTriangulation();
-  return ContourChart(source.GetShape(triangle), source.GetViews(topology.GetCorners(triangle)),
-    this->Center)
+  return ContourChart(
+    source.GetShape(triangle), source.GetViews(topology.GetCorners(triangle)), this->Center)
     .Center();
 }
 
@@ -103,8 +103,7 @@ RayFan RayFans::GetAroundCenter(TriangleIndex triangle) const
   const Vector2 center = this->GetCenterInFrame(triangle);
   RayFan fan;
   fan.Near = { GetFrameOrigin(this->Map.GetPair(), Domain::Source, triangle), { triangle } };
-  fan.Point =
-    FromFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, center);
+  fan.Point = FromFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, center);
   for (int k = 0; k < 3; ++k)
   {
     this->AddRays(fan, triangle, shape.Corner(NextCorner(k)) - center,
@@ -154,8 +153,8 @@ JacobianJump RayFans::GetExactJumpAtCenter(TriangleIndex triangle, const RayFan&
   {
     // The contour that starts along the ray: contours are straight near the center.
     const Vector3 beside = Sum(fan.Point, 0.25 * ray.Length, ray.Direction);
-    TriangularCoordinates contour = charts.ToCoordinates(triangle,
-      ToFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, beside));
+    TriangularCoordinates contour = charts.ToCoordinates(
+      triangle, ToFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, beside));
     contour.ContourParameter = 0.0;
     derivatives.push_back(this->Map.GetJacobian(Domain::Source, triangle, contour) * ray.Direction);
   }

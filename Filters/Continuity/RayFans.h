@@ -16,8 +16,8 @@
 namespace homeomorphism
 {
 
-/// The ray fans of a map's source: rays towards the corners around a centroid, along the edges around
-/// a vertex, and a number of rays between each two of those.
+/// The ray fans of a map's source: rays towards the corners around a centroid, along the edges
+/// around a vertex, and a number of rays between each two of those.
 class RayFans
 {
 public:

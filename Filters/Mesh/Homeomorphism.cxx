@@ -100,9 +100,6 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
   }
 }
 
-/// Half an ulp of 1.
-constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
-
 /// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a
 /// triangle or its neighbor is so thin that the columns are almost parallel; the charts know
 /// better.
@@ -164,7 +161,7 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
       vtkPolyData* mesh = domain == Domain::Source ? source : target;
       MeshDiagnostic diagnostic;
       diagnostic.What = MeshDiagnostic::Kind::Discordant;
-      diagnostic.Where = !target ? MeshDiagnostic::Mesh::Triangulation
+      diagnostic.Where = !target   ? MeshDiagnostic::Mesh::Triangulation
         : domain == Domain::Source ? MeshDiagnostic::Mesh::Source
                                    : MeshDiagnostic::Mesh::Target;
       diagnostic.Result = options.DiscordantByLinear ? MeshDiagnostic::Outcome::MappedByLinear
@@ -194,13 +191,21 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
 double Homeomorphism::GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const
 {
   const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
-  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself
-  // is measured in a triangle's frame, as doubles, with edges up to three times as long as the
-  // coordinates.
-  const double rounding =
-    (8.0 * std::max(precision, geometry.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
-    geometry.GetLargestCoordinate();
+  const double rounding = geometry.GetRounding(precision);
   return std::max(rounding, tolerance * geometry.GetDiagonal());
+}
+
+double Homeomorphism::GetDistance(Domain domain, const double point[3]) const
+{
+  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
+  return this->Pair->GetLocation(domain).GetDistance(geometry.ToNormalized(point)) *
+    geometry.GetInverseScale();
+}
+
+double Homeomorphism::GetRelativeTolerance(Domain domain, double distance) const
+{
+  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
+  return distance * geometry.GetScale() / geometry.GetDiagonal();
 }
 
 SurfacePoint Homeomorphism::Locate(
@@ -246,7 +251,7 @@ int Homeomorphism::LocateBlock(
     }
     if (scattered)
     {
-      // Memory is slow to answer but takes many questions at a time.
+      // Prefetch to hide memory latency.
       seeds[i] = location.GetSeed({ point[0], point[1] });
       if (seeds[i] >= 0)
       {
@@ -379,7 +384,7 @@ void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const auto ignore = [](int) {};
-  // Memory is slow to answer but takes many questions at a time.
+  // Prefetch to hide memory latency.
   ForEachRun(
     block,
     [&](int begin, int, TriangleIndex t) {

@@ -44,10 +44,9 @@ MeshDiagnostic::Remedy MeshDiagnostic::GetRemedy() const
 
 bool IsRefused(const MeshDiagnostics& diagnostics)
 {
-  return std::any_of(
-    diagnostics.begin(), diagnostics.end(), [](const MeshDiagnostic& diagnostic) {
-      return diagnostic.Result == MeshDiagnostic::Outcome::Refused;
-    });
+  return std::any_of(diagnostics.begin(), diagnostics.end(), [](const MeshDiagnostic& diagnostic) {
+    return diagnostic.Result == MeshDiagnostic::Outcome::Refused;
+  });
 }
 
 } // namespace homeomorphism

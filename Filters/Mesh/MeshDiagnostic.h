@@ -114,7 +114,8 @@ struct MeshDiagnostic
   Outcome Result = Outcome::Refused;
   /// Cell ids of all defective triangles, ascending. Empty if a mesh is defective as a whole.
   std::vector<vtkIdType> Ids;
-  /// First corner of the first defective triangle, in the input's coordinates. NaN if there is none.
+  /// First corner of the first defective triangle, in the input's coordinates. NaN if there is
+  /// none.
   Vector3 Position{ NotANumber, NotANumber, NotANumber };
   /// Numbers that differ or are too large; see Kind.
   std::array<vtkIdType, 2> Counts{ 0, 0 };

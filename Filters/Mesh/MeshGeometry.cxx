@@ -399,8 +399,7 @@ Vector3 MeshGeometry::GetVector(std::int32_t from, std::int32_t to) const
     return Scaled(Difference(this->SpacePoints[to], this->SpacePoints[from]), this->InverseScale);
   }
   const Vector2 d = this->PlanePoints[to] - this->PlanePoints[from];
-  return Scaled(
-    Sum(Scaled(this->PlaneAxes[0], d.x), d.y, this->PlaneAxes[1]), this->InverseScale);
+  return Scaled(Sum(Scaled(this->PlaneAxes[0], d.x), d.y, this->PlaneAxes[1]), this->InverseScale);
 }
 
 int MeshGeometry::GetOrientation(const Triangulation::Corners& corners) const

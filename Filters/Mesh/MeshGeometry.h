@@ -14,6 +14,7 @@
 
 #include "Kernel/Geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -98,9 +99,9 @@ public:
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
   /// The box around the points of a planar mesh that triangles use, in its plane.
   const Box<2>& GetPlaneBounds() const { return this->PlaneBounds; }
-  /// Of a surface whose points lie almost in a plane, within a millionth of its diagonal: the largest
-  /// distance of a point from that plane, in normalized coordinates, if the plane is one of those
-  /// between the points. 0 for all other meshes.
+  /// Of a surface whose points lie almost in a plane, within a millionth of its diagonal: the
+  /// largest distance of a point from that plane, in normalized coordinates, if the plane is one of
+  /// those between the points. 0 for all other meshes.
   double GetThickness() const { return this->Thickness; }
   /// Length of the diagonal of the box around the points, in normalized coordinates.
   double GetDiagonal() const { return this->Diagonal; }
@@ -112,15 +113,19 @@ public:
   /// coordinates are rounded: 8 u L + 16 v L, with L the largest coordinate, u the precision of the
   /// stored coordinates, and v that of double.
   ///
-  /// A point a + t (b - a) of an edge from a to b, computed in the precision of the coordinates, has
-  /// rounding errors of at most 2 u L (difference), 2 u L (product) and u L (sum) in each coordinate,
-  /// together less than 8 u L in any direction of the plane. If a, b and the point have each been
-  /// rounded instead, their distances add up to less than 4 u L. In a plane that is not parallel to
-  /// two axes, the two coordinates in the plane are sums of three products, with errors of less than
-  /// 6 v L each, in the point and in the edge. Distances are computed as doubles.
-  double GetRounding() const
+  /// A point a + t (b - a) of an edge from a to b, computed in the precision of the coordinates,
+  /// has rounding errors of at most 2 u L (difference), 2 u L (product) and u L (sum) in each
+  /// coordinate, together less than 8 u L in any direction of the plane. If a, b and the point have
+  /// each been rounded instead, their distances add up to less than 4 u L. In a plane that is not
+  /// parallel to two axes, the two coordinates in the plane are sums of three products, with errors
+  /// of less than 6 v L each, in the point and in the edge. Distances are computed as doubles.
+  ///
+  /// It is also the distance at which a point with coordinates of this precision may be found from
+  /// the mesh. @a precision counts if it is coarser than that of the mesh.
+  double GetRounding(double precision = 0.0) const
   {
-    return (8.0 * this->CoordinatePrecision + 8.0 * std::numeric_limits<double>::epsilon()) *
+    return (8.0 * std::max(precision, this->CoordinatePrecision) +
+             8.0 * std::numeric_limits<double>::epsilon()) *
       this->LargestCoordinate;
   }
 
@@ -175,14 +180,14 @@ public:
     }
   }
 
-  /// Whether a place is a point of the mesh, bit for bit.
+  /// Whether a point equals a point of the mesh, bit for bit.
   bool IsMeshPoint(std::int32_t meshPoint, const double point[3]) const;
 
-  /// The place at a distance from a point of the mesh, along the plane's normal; the mesh's own
+  /// The point at a distance from a point of the mesh, along the plane's normal; the mesh's own
   /// point, unrounded, if the distance is 0.
   void FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const;
 
-  /// Working coordinates of a point of the mesh; in the plane the third is the distance from it.
+  /// Normalized coordinates of a point of the mesh; in the plane the third is the distance from it.
   Vector3 GetPoint(std::int32_t point) const
   {
     if (this->Planar)
@@ -237,7 +242,7 @@ public:
     return this->PlaneFrames[triangle];
   }
 
-  /// Asks for a triangle's frame, without waiting for it.
+  /// Prefetches a triangle's frame.
   void PrefetchFrame(TriangleIndex triangle) const
   {
     if (this->Planar)

@@ -298,8 +298,7 @@ LargeArray<Triangulation::Corners> ReadTriangles(
   if (count >= Triangulation::MaximumTriangles ||
     numberOfPoints >= std::numeric_limits<std::int32_t>::max())
   {
-    ReportCounts(
-      MeshDiagnostic::Kind::TooManyTriangles, where, count, numberOfPoints, diagnostics);
+    ReportCounts(MeshDiagnostic::Kind::TooManyTriangles, where, count, numberOfPoints, diagnostics);
     return triangles;
   }
   if (count > 0)
@@ -446,7 +445,8 @@ Overlaps FindOverlapping(
   const double rounding = geometry.GetRounding();
   const auto areTwins = [&triangulation](TriangleIndex t, TriangleIndex other) {
     return triangulation.GetTwin(t, 0).Triangle == other ||
-      triangulation.GetTwin(t, 1).Triangle == other || triangulation.GetTwin(t, 2).Triangle == other;
+      triangulation.GetTwin(t, 1).Triangle == other ||
+      triangulation.GetTwin(t, 2).Triangle == other;
   };
   for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
   {

@@ -79,8 +79,8 @@ struct Overlaps
 ///
 /// The depth of an overlap is how far one triangle has to be moved until it ends. Coordinates are
 /// rounded, so triangles that should touch may overlap by MeshGeometry::GetRounding(). Such an
-/// overlap is none, if its depth is also at most a quarter of the heights of both triangles, and the
-/// two are not adjacent: the overlap of adjacent triangles is a fold.
+/// overlap is none, if its depth is also at most a quarter of the heights of both triangles, and
+/// the two are not adjacent: the overlap of adjacent triangles is a fold.
 Overlaps FindOverlapping(
   const Triangulation& triangulation, const MeshGeometry& geometry, const PointLocation& location);
 

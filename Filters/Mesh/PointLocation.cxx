@@ -191,6 +191,18 @@ SurfacePoint PointLocation::Find(
   return location;
 }
 
+double PointLocation::GetDistance(const Vector3& normalized) const
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const SurfacePoint nearest = this->Geometry.IsPlanar()
+    ? this->FindInPlane(normalized, infinity, -1)
+    : this->FindNearest(normalized, infinity, -1);
+  return nearest.Triangle < 0
+    ? infinity
+    : Length(Difference(
+        normalized, this->Geometry.FromFrame(nearest.Triangle, { nearest.Point.InPlane, 0.0 })));
+}
+
 int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized) const
 {
   const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
@@ -207,7 +219,6 @@ int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized)
   return found;
 }
 
-/// The place of a point that is in a triangle of the plane.
 SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3& normalized) const
 {
   return { triangle, this->Geometry.ToFrame(triangle, normalized),
@@ -215,7 +226,7 @@ SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3
 }
 
 /// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for
-/// certain in the triangle's interior, @a location has its place.
+/// certain in the triangle's interior, @a location is set.
 TriangleIndex PointLocation::Walk(
   const Vector2& point, TriangleIndex start, SurfacePoint& location) const
 {

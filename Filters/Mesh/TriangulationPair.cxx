@@ -21,8 +21,8 @@ namespace homeomorphism
 class TriangulationPair::Builder
 {
 public:
-  Builder(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& diagnostics)
+  Builder(vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles,
+    MeshDiagnostics& diagnostics)
     : Meshes{ source, target }
     , Names{ target ? MeshDiagnostic::Mesh::Source : MeshDiagnostic::Mesh::Triangulation,
       MeshDiagnostic::Mesh::Target }

@@ -40,9 +40,8 @@ public:
   ///
   /// Defects are added to @a diagnostics. Returns null if they made the meshes be refused; with
   /// @a maskInvalidTriangles, triangles that are defective by themselves are left out instead.
-  static std::shared_ptr<const TriangulationPair> Read(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles,
-    MeshDiagnostics& diagnostics);
+  static std::shared_ptr<const TriangulationPair> Read(vtkPolyData* source, vtkPolyData* target,
+    bool maskInvalidTriangles, MeshDiagnostics& diagnostics);
 
   const Triangulation& GetTriangulation() const { return this->Topology; }
   bool HasTarget() const { return this->Geometries[1] != nullptr; }

@@ -45,15 +45,15 @@ std::string GetFault(const MeshDiagnostic& diagnostic, bool one)
     case Kind::RepeatedCorner:
       return choose("uses the same point twice", "use the same point twice");
     case Kind::NotFinite:
-      return choose(
-        "has a coordinate that is not finite", "have coordinates that are not finite");
+      return choose("has a coordinate that is not finite", "have coordinates that are not finite");
     case Kind::DegenerateTriangle:
       return choose("is degenerate (has no area)", "are degenerate (have no area)");
     case Kind::NonManifoldEdge:
       return choose("is at a non-manifold edge (an edge of more than two triangles)",
         "are at non-manifold edges (edges of more than two triangles)");
     case Kind::NonOrientable:
-      return choose("cannot be wound consistently with its neighbors: the surface is non-orientable",
+      return choose(
+        "cannot be wound consistently with its neighbors: the surface is non-orientable",
         "cannot be wound consistently with their neighbors: the surface is non-orientable");
     case Kind::Flipped:
       return choose("is flipped between source and target relative to the rest",
@@ -241,8 +241,9 @@ void ReportProblems(vtkObject* self, const MeshDiagnostics& diagnostics)
   {
     vtkWarningWithObjectMacro(self, << warnings);
   }
-  vtkDebugWithObjectMacro(self, << DescribeProblems(diagnostics, MeshDiagnostic::Outcome::MappedByLinear)
-                                << DescribeProblems(diagnostics, MeshDiagnostic::Outcome::Accepted));
+  vtkDebugWithObjectMacro(
+    self, << DescribeProblems(diagnostics, MeshDiagnostic::Outcome::MappedByLinear)
+          << DescribeProblems(diagnostics, MeshDiagnostic::Outcome::Accepted));
 }
 
 void MakeTable(const MeshDiagnostics& diagnostics, vtkTable* table)

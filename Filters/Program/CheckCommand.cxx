@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "Pipeline/DiagnosticMessages.h"
 #include "Canvas.h"
 #include "Command.h"
 #include "Console.h"
@@ -10,6 +9,7 @@
 #include "OutputFile.h"
 #include "PairPicture.h"
 #include "PairReport.h"
+#include "Pipeline/DiagnosticMessages.h"
 
 #include <CLI/CLI.hpp>
 
@@ -99,9 +99,9 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   json["problems"] = Json::array();
   for (const MeshDiagnostic& problem : report.Problems)
   {
-    json["problems"].push_back(
-      { { "kind", NameOf(problem.What) }, { "where", homeomorphism::GetName(problem.Where) },
-        { "count", problem.Ids.size() }, { "first_cells", problem.Ids }, { "message", Describe(problem, leaveOut) } });
+    json["problems"].push_back({ { "kind", NameOf(problem.What) },
+      { "where", homeomorphism::GetName(problem.Where) }, { "count", problem.Ids.size() },
+      { "first_cells", problem.Ids }, { "message", Describe(problem, leaveOut) } });
   }
   const char* const domains[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
@@ -190,9 +190,7 @@ void PrintMeshes(const PairReport& report)
     [](const MeshReport& mesh) { return std::to_string(mesh.UnusedPoints); });
   both("duplicate points", [](const MeshReport& mesh) {
     return std::to_string(mesh.DuplicatePoints) +
-      (mesh.DuplicatePoints > 0
-          ? " (" + ListIds(mesh.FirstDuplicates) + ")"
-          : std::string());
+      (mesh.DuplicatePoints > 0 ? " (" + ListIds(mesh.FirstDuplicates) + ")" : std::string());
   });
   if (!report.Measured)
   {

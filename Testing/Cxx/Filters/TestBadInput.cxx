@@ -571,13 +571,12 @@ std::vector<BadInput> Table()
       }
       AddTriangle(mesh, { 25, 26, 27 });
     }));
-  add(surfaces, "The same triangle twice",
-    { "of the source (cells ", "are at non-manifold edges" }, "Refused.",
-    Spoilt(Which::Both, [](vtkPolyData* mesh) {
+  add(surfaces, "The same triangle twice", { "of the source (cells ", "are at non-manifold edges" },
+    "Refused.", Spoilt(Which::Both, [](vtkPolyData* mesh) {
       AddTriangle(mesh, { 6, 7, 12 });
     }));
-  add(surfaces, "An edge with three triangles",
-    { "are at non-manifold edges", repair }, "Refused.", []() {
+  add(surfaces, "An edge with three triangles", { "are at non-manifold edges", repair }, "Refused.",
+    []() {
       const auto fins = [](double height) {
         return MakeMesh(
           { { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1, 0 }, { 0.5, -1, 0 }, { 0.5, 0, height } },

@@ -475,8 +475,8 @@ TEST(JacobianContinuity, VerdictsDoNotDependOnTheOrigin)
   };
   const MeshPair pair = MakePlanarPair(5, 21);
   const Point far{ 14650000.0, 3840000.0, 0.0 };
-  for (const int system :
-    { vtkJacobianContinuity::LINEAR, vtkJacobianContinuity::CONTOUR, vtkJacobianContinuity::SMOOTH })
+  for (const int system : { vtkJacobianContinuity::LINEAR, vtkJacobianContinuity::CONTOUR,
+         vtkJacobianContinuity::SMOOTH })
   {
     SCOPED_TRACE(system);
     const auto run = [&](const Point& source, const Point& target) {

@@ -94,10 +94,8 @@ void ExpectMasked(
       ASSERT_EQ("", mapped.Error);
       for (const std::string& warning : expectation.Warnings)
       {
-        EXPECT_NE(std::string::npos,
-          mapped.Warning.find(warning))
-          << warning << "\nis not in\n"
-          << mapped.Warning;
+        EXPECT_NE(std::string::npos, mapped.Warning.find(warning)) << warning << "\nis not in\n"
+                                                                   << mapped.Warning;
       }
       ASSERT_EQ(points.size(), mapped.Images.size());
       for (std::size_t i = 0; i < points.size(); ++i)
@@ -207,8 +205,8 @@ TEST(Masking, NoAreaOnASurface)
   MapOptions options;
   options.Mask = true;
   const MappedPoints mapped = MapPoints(pair, samples, options);
-  EXPECT_NE(std::string::npos,
-    mapped.Warning.find("1 triangle of the target (cell 31) is degenerate"));
+  EXPECT_NE(
+    std::string::npos, mapped.Warning.find("1 triangle of the target (cell 31) is degenerate"));
   for (std::size_t i = 0; i < samples.size(); ++i)
   {
     EXPECT_EQ(i / 4 == 31 ? -1 : static_cast<vtkIdType>(i / 4), mapped.Triangles[i]);

@@ -332,8 +332,7 @@ TEST(MeshRefusals, PolygonsThatAreNotTriangles)
   const auto mesh = MakePolygons(points, polygons);
   const Texts advice{ "Triangulate the source (vtkTriangleFilter) and give the target the source's "
                       "cells, so that both are cut along the same diagonals." };
-  const std::string fault =
-    "(cells 0, 3, 4, 5, 6) are not triangles";
+  const std::string fault = "(cells 0, 3, 4, 5, 6) are not triangles";
   ExpectPairRefused({ mesh, mesh },
     { advice[0], "5 cells of the source " + fault, "5 cells of the target " + fault });
   ExpectAloneRefused(mesh, { advice[0], "5 cells of the triangulation " + fault });
@@ -807,8 +806,10 @@ vtkSmartPointer<vtkPolyData> MakeTwistedRing(int n, int halfTurns, double width)
 TEST(MeshRefusals, NonOrientableSurface)
 {
   const MeshPair pair{ MakeTwistedRing(12, 1, 0.3), MakeTwistedRing(12, 1, 0.2) };
-  const Texts texts{ "cannot be wound consistently with their neighbors: the surface is non-orientable",
-    "Cut the surface open along a line of edges in both meshes." };
+  const Texts texts{
+    "cannot be wound consistently with their neighbors: the surface is non-orientable",
+    "Cut the surface open along a line of edges in both meshes."
+  };
   ExpectPairRefused(pair, { texts[0], texts[1], "2 triangles of the source (cells " });
   ExpectAloneRefused(pair.Source, { texts[0], texts[1], "2 triangles of the triangulation" });
   const MeshPair threeTurns{ MakeTwistedRing(12, 3, 0.3), MakeTwistedRing(12, 3, 0.2) };
@@ -1391,8 +1392,8 @@ TEST(MeshRefusals, NearlyPlanarMeshesAreNamed)
   const std::vector<Point> probes{ { 0.3, 0.2, 0 }, { 0.6, 0.9, 0 }, { 0.5, 0.5, 0 } };
   for (const double noise : { 1e-9, 1e-12, 1e-7 })
   {
-    const auto noisy = MakeMesh(
-      { { 0, 0, noise }, { 1, 0, -noise }, { 1, 1, noise }, { 0, 1, 0 } }, triangles);
+    const auto noisy =
+      MakeMesh({ { 0, 0, noise }, { 1, 0, -noise }, { 1, 1, noise }, { 0, 1, 0 } }, triangles);
     homeomorphism::MeshDiagnostics diagnostics;
     ASSERT_TRUE(homeomorphism::Homeomorphism::Make(noisy, flat, {}, diagnostics));
     ASSERT_EQ(1u, diagnostics.size());
@@ -1413,8 +1414,8 @@ TEST(MeshRefusals, NearlyPlanarMeshesAreNamed)
     }
   }
   // Planar meshes and surfaces are not.
-  for (const auto& mesh : { flat, MakeMesh({ { 0, 0, 0 }, { 1, 0, 1e-3 }, { 1, 1, 0 }, { 0, 1, 0 } },
-                                    triangles) })
+  for (const auto& mesh :
+    { flat, MakeMesh({ { 0, 0, 0 }, { 1, 0, 1e-3 }, { 1, 1, 0 }, { 0, 1, 0 } }, triangles) })
   {
     homeomorphism::MeshDiagnostics diagnostics;
     EXPECT_TRUE(homeomorphism::Homeomorphism::Make(mesh, mesh, {}, diagnostics));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// FindOverlapping looks only at boundary edges unless the mesh is folded. Here every triangle of many
-// small meshes is compared with every other, in integers. What overlaps by the rounding of its
+// FindOverlapping looks only at boundary edges unless the mesh is folded. Here every triangle of
+// many small meshes is compared with every other, in integers. What overlaps by the rounding of its
 // coordinates does not count.
 
 #include "TestMeshes.h"
@@ -17,8 +17,8 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
-#include <map>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -660,8 +660,8 @@ TEST(Overlap, TheSizeIsRelative)
 TEST(Overlap, TrianglesThinnerThanTheRoundingOverlap)
 {
   // A sliver that lies within a triangle, all of it within rounding of the triangle's edge.
-  const auto mesh = test_meshes::MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.25, 0, 0 },
-                                            { 0.5, 0, 0 }, { 0.375, 1e-16, 0 } },
+  const auto mesh = test_meshes::MakeMesh(
+    { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.25, 0, 0 }, { 0.5, 0, 0 }, { 0.375, 1e-16, 0 } },
     {});
   Triangulation triangulation;
   triangulation.SetTriangles({ { 0, 1, 2 }, { 3, 4, 5 } }, 0);
