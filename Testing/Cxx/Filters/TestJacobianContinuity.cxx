@@ -462,9 +462,11 @@ TEST(JacobianContinuity, VerdictsDoNotDependOnTheOrigin)
   // points are multiples of 2^-20, so that moving them rounds nothing.
   const auto moved = [](vtkPolyData* mesh, const Point& offset) {
     std::vector<Point> points;
-    for (const Point& p : PointsOf(mesh))
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
     {
+      Point p;
       Point q;
+      mesh->GetPoint(i, p.data());
       for (int axis = 0; axis < 3; ++axis)
       {
         q[axis] = std::ldexp(std::rint(std::ldexp(10.0 * p[axis], 20)), -20) + offset[axis];
