@@ -41,6 +41,7 @@ set(cubic_headers
 
 # Meshes, read and validated once, and the map between two of them.
 set(mesh_sources
+  Mesh/BoundarySweep.cxx
   Mesh/ChartedTriangulation.cxx
   Mesh/CubicHomeomorphism.cxx
   Mesh/Homeomorphism.cxx
@@ -52,6 +53,7 @@ set(mesh_sources
   Mesh/Triangulation.cxx
   Mesh/TriangulationPair.cxx)
 set(mesh_headers
+  Mesh/BoundarySweep.h
   Mesh/Box.h
   Mesh/BoxTree.h
   Mesh/ChartedTriangulation.h
@@ -71,12 +73,15 @@ set(continuity_sources
   Continuity/EdgeCrossings.cxx
   Continuity/InnerLines.cxx
   Continuity/JacobianJump.cxx
+  Continuity/MapUnderTest.cxx
   Continuity/MeasuredFeatures.cxx
   Continuity/RayFans.cxx)
 set(continuity_headers
   Continuity/EdgeCrossings.h
+  Continuity/FeatureKind.h
   Continuity/InnerLines.h
   Continuity/JacobianJump.h
+  Continuity/MapUnderTest.h
   Continuity/MeasuredFeatures.h
   Continuity/OneSidedDerivative.h
   Continuity/RayFans.h)
@@ -119,6 +124,7 @@ set(figure_headers
 set(pipeline_sources
   Pipeline/AttributeTransformation.cxx
   Pipeline/CoordinateLines.cxx
+  Pipeline/DiagnosticMessages.cxx
   Pipeline/HomeomorphismCache.cxx
   Pipeline/ImageSampling.cxx
   Pipeline/ProcessStatistics.cxx)
@@ -126,6 +132,7 @@ set(pipeline_headers
   Pipeline/AttributeTransformation.h
   Pipeline/CellPoints.h
   Pipeline/CoordinateLines.h
+  Pipeline/DiagnosticMessages.h
   Pipeline/FilterSupport.h
   Pipeline/HomeomorphismCache.h
   Pipeline/ImageSampling.h

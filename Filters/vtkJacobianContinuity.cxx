@@ -197,33 +197,6 @@ vtkSmartPointer<vtkDoubleArray> NewJumpArray(const char* name, vtkIdType tuples)
   return array;
 }
 
-/// The homeomorphism as a map that is known by its values only. Remembers the triangle found last,
-/// so each place needs one of its own: results must not depend on what was measured before.
-MapUnderTest MakeMapUnderTest(const std::shared_ptr<const Homeomorphism>& map)
-{
-  const double tolerance =
-    map->GetAbsoluteTolerance(Domain::Source, 0.0, PrecisionOfType(VTK_DOUBLE));
-  TriangleIndex hint = -1;
-  return [map, tolerance, hint](const Vector3& point, Vector3& image) mutable {
-    const SurfacePoint surfacePoint = map->Locate(Domain::Source, point.data(), tolerance, hint);
-    hint = surfacePoint.Triangle;
-    if (surfacePoint.Triangle < 0)
-    {
-      return false;
-    }
-    map->MapPoint(Domain::Source, surfacePoint, image.data());
-    return true;
-  };
-}
-
-MapUnderTest MakeMapUnderTest(vtkAbstractTransform* transform)
-{
-  return [transform](const Vector3& point, Vector3& image) {
-    transform->InternalTransformPoint(point.data(), image.data());
-    return true;
-  };
-}
-
 } // namespace
 
 vtkJacobianContinuity::vtkJacobianContinuity()
@@ -365,6 +338,8 @@ int vtkJacobianContinuity::Measure(
     return 1;
   }
 
+  // A transform that is this map needs no coordinates far from the origin.
+  const bool unknown = this->Transform && !map->GetPair().HasTarget();
   const bool planar = map->GetPair().HasTarget()
     ? map->GetPair().GetGeometry(Domain::Source).IsColumnar()
     : map->GetPair().GetGeometry(Domain::Source).IsPlanar();
@@ -401,7 +376,7 @@ int vtkJacobianContinuity::Measure(
       for (vtkIdType index = begin; index < end; ++index)
       {
         const MapUnderTest evaluate =
-          this->Transform ? MakeMapUnderTest(this->Transform) : MakeMapUnderTest(map);
+          unknown ? MakeMapUnderTest(this->Transform, *map) : MakeMapUnderTest(*map);
         const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
         const int samples = places.GetNumberOfSamples(surfacePoint.Kind);
         // A line's first point is its end, not a sample.

@@ -111,25 +111,18 @@ void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
 class Offenders
 {
 public:
-  void Add(vtkIdType id)
-  {
-    if (this->Count++ < static_cast<vtkIdType>(MeshDiagnostic::MaximumIds))
-    {
-      this->FirstIds.push_back(id);
-    }
-  }
-  bool IsEmpty() const { return this->Count == 0; }
+  void Add(vtkIdType id) { this->Ids.push_back(id); }
+  bool IsEmpty() const { return this->Ids.empty(); }
   /// "2 points of the data (points 3, 5) have".
   std::string Tell(const std::string& what) const
   {
-    const bool one = this->Count == 1;
-    return std::to_string(this->Count) + " " + what + (one ? "" : "s") + " of the data (" + what +
-      (one ? " " : "s ") + ListIds(this->FirstIds, this->Count) + (one ? ") has" : ") have");
+    const bool one = this->Ids.size() == 1;
+    return std::to_string(this->Ids.size()) + " " + what + (one ? "" : "s") + " of the data (" +
+      what + (one ? " " : "s ") + ListIds(this->Ids) + (one ? ") has" : ") have");
   }
 
 private:
-  vtkIdType Count = 0;
-  std::vector<vtkIdType> FirstIds;
+  std::vector<vtkIdType> Ids;
 };
 
 /// The first array of some attributes that does not have a value for each point or cell; empty if

@@ -5,6 +5,7 @@
 
 #include "Construction/MapStatistics.h"
 #include "Construction/PairStatistics.h"
+#include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/FilterSupport.h"
 
 #include "vtkCallbackCommand.h"
@@ -22,6 +23,7 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -71,64 +73,24 @@ private:
   vtkTable* Table;
 };
 
-const char* NameOf(MeshDiagnostic::Kind kind)
-{
-  switch (kind)
-  {
-    case MeshDiagnostic::Kind::PointCountsDiffer:
-      return "PointCountsDiffer";
-    case MeshDiagnostic::Kind::CellCountsDiffer:
-      return "CellCountsDiffer";
-    case MeshDiagnostic::Kind::TooManyTriangles:
-      return "TooManyTriangles";
-    case MeshDiagnostic::Kind::NotTriangles:
-      return "NotTriangles";
-    case MeshDiagnostic::Kind::BadConnectivity:
-      return "BadConnectivity";
-    case MeshDiagnostic::Kind::ConnectivityDiffers:
-      return "ConnectivityDiffers";
-    case MeshDiagnostic::Kind::RepeatedCorner:
-      return "RepeatedCorner";
-    case MeshDiagnostic::Kind::NotFinite:
-      return "NotFinite";
-    case MeshDiagnostic::Kind::DegenerateTriangle:
-      return "DegenerateTriangle";
-    case MeshDiagnostic::Kind::NonManifoldEdge:
-      return "NonManifoldEdge";
-    case MeshDiagnostic::Kind::NonOrientable:
-      return "NonOrientable";
-    case MeshDiagnostic::Kind::Flipped:
-      return "Flipped";
-    case MeshDiagnostic::Kind::Overlapping:
-      return "Overlapping";
-    case MeshDiagnostic::Kind::Discordant:
-      return "Discordant";
-  }
-  return "";
-}
-
+/// The table of diagnostics, with columns for the first cell and for whether triangles were masked.
 void FillDefects(const MeshDiagnostics& defects, vtkTable* table)
 {
-  vtkNew<vtkStringArray> kinds;
-  kinds->SetName("Kind");
+  MakeTable(defects, table);
   vtkNew<vtkStringArray> meshes;
   meshes->SetName("Mesh");
-  vtkNew<vtkIdTypeArray> counts;
-  counts->SetName("Count");
   vtkNew<vtkIntArray> leftOut;
   leftOut->SetName("LeftOut");
   vtkNew<vtkIdTypeArray> firstCells;
   firstCells->SetName("FirstCell");
   for (const MeshDiagnostic& defect : defects)
   {
-    kinds->InsertNextValue(NameOf(defect.What));
-    meshes->InsertNextValue(defect.Where);
-    counts->InsertNextValue(defect.Count);
+    meshes->InsertNextValue(GetName(defect.Where));
     leftOut->InsertNextValue(defect.Result == MeshDiagnostic::Outcome::Masked);
-    firstCells->InsertNextValue(defect.FirstCells.empty() ? -1 : defect.FirstCells.front());
+    firstCells->InsertNextValue(defect.Ids.empty() ? -1 : defect.Ids.front());
   }
   for (vtkAbstractArray* column :
-    std::initializer_list<vtkAbstractArray*>{ kinds, meshes, counts, leftOut, firstCells })
+    std::initializer_list<vtkAbstractArray*>{ meshes, leftOut, firstCells })
   {
     table->AddColumn(column);
   }
@@ -245,7 +207,10 @@ int vtkTriangulationPairReport::RequestData(
   options.DiscordantByLinear = true;
   const std::shared_ptr<const Homeomorphism> linear =
     Homeomorphism::Make(meshes[0], meshes[1], options, defects);
-  this->Valid = linear && defects.empty();
+  // Diagnostics of accepted meshes are remarks.
+  this->Valid = linear && std::all_of(defects.begin(), defects.end(), [](const auto& defect) {
+    return defect.Result == MeshDiagnostic::Outcome::Accepted;
+  });
   if (!IsFirstPiece(request, outputs))
   {
     return 1;

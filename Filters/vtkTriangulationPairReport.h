@@ -59,10 +59,10 @@
  * - `SmoothDifferentiableEdges`, `SmoothCreases`, `SmoothUndecidedEdges`, `SmoothLargestJump`: what
  *   vtkJacobianContinuity finds at the interior edges. NaN and -1 without MeasureContinuity.
  *
- * Output port 3 is a vtkTable with a row for each kind of defect: `Kind` (the name of the kind, as
- * in Documentation/diagnostics.md), `Mesh` ("source", "target" or "pair"), `Count`, `LeftOut` (1 if
- * the triangles were left out, 0 if the meshes are no pair because of the defect), and `FirstCell`
- * (the least cell id concerned, or -1).
+ * Output port 3 is a vtkTable with a row for each kind of defect: the columns described in
+ * Documentation/diagnostics.md, and `Mesh` ("source", "target" or "pair"), `LeftOut` (1 if the
+ * triangles were left out, 0 otherwise), and `FirstCell` (the least cell id concerned, or -1). The
+ * field data array `Ids` has all cell ids.
  *
  * Contour is measured with USE_LINEAR for discordant triangles. Samples are always the same points.
  * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The

@@ -41,52 +41,53 @@ Vector3 EdgeCrossings::GetPosition(Domain domain, std::int32_t point) const
 }
 
 LineCrossing EdgeCrossings::GetCrossing(
-  std::size_t edgeIndex, double proportion, const MapUnderTest& evaluate) const
+  std::size_t edgeIndex, double proportion, const MapUnderTest& map) const
 {
   const MeshEdge& edge = this->InteriorEdges[edgeIndex];
-  const Vector3 start = this->GetPosition(Domain::Source, edge.Points[0]);
-  const Vector3 vector = Difference(this->GetPosition(Domain::Source, edge.Points[1]), start);
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  // The edge's start is the local origin.
+  const Vector3 start{};
+  const Vector3 vector = source.GetVector(edge.Points[0], edge.Points[1]);
   const double length = Length(vector);
   LineCrossing crossing;
-  crossing.Point = Sum(start, proportion, vector);
+  crossing.Near = { edge.Points[0], { edge.Triangles[0], edge.Triangles[1] } };
+  crossing.Point = Scaled(vector, proportion);
   crossing.Tangent = Unit(vector);
-  crossing.TangentReach = 0.5 * std::min(proportion, 1.0 - proportion) * length;
-  for (int domain = 0; domain < 2; ++domain)
+  crossing.TangentLength = 0.5 * std::min(proportion, 1.0 - proportion) * length;
+  for (int side = 0; side < 2; ++side)
   {
-    const Vector3 apex = this->GetPosition(Domain::Source, edge.Apexes[domain]);
-    crossing.Inward[domain] = UnitAcross(start, crossing.Tangent, apex);
-    // Where the perpendicular leaves the triangle again: through the edge to the apex from the
-    // start, or that from the end.
-    const Vector3 toApex = Difference(apex, start);
+    const Vector3 toApex = source.GetVector(edge.Points[0], edge.Apexes[side]);
+    crossing.Inward[side] = UnitAcross(start, crossing.Tangent, toApex);
+    // The perpendicular leaves the triangle through the edge to the apex from the start, or that
+    // from the end.
     const double foot = Dot3(toApex, crossing.Tangent);
-    const double height = Dot3(toApex, crossing.Inward[domain]);
+    const double height = Dot3(toApex, crossing.Inward[side]);
     const double along = proportion * length;
-    double tolerance = height;
+    double toExit = height;
     if (foot > along)
     {
-      tolerance = std::min(tolerance, height * (along / foot));
+      toExit = std::min(toExit, height * (along / foot));
     }
     if (foot < along)
     {
-      tolerance = std::min(tolerance, height * ((length - along) / (length - foot)));
+      toExit = std::min(toExit, height * ((length - along) / (length - foot)));
     }
-    crossing.Reach[domain] = 0.5 * tolerance;
+    crossing.RayLengths[side] = 0.5 * toExit;
   }
 
   if (!this->Map.GetPair().HasTarget())
   {
-    FindImageAxes(evaluate, crossing);
+    FindImageAxes(map(crossing.Near), crossing);
     return crossing;
   }
-  const Vector3 targetStart = this->GetPosition(Domain::Target, edge.Points[0]);
-  const Vector3 tangent =
-    Unit(Difference(this->GetPosition(Domain::Target, edge.Points[1]), targetStart));
-  for (int domain = 0; domain < 2; ++domain)
+  const MeshGeometry& target = this->Map.GetPair().GetGeometry(Domain::Target);
+  const Vector3 tangent = Unit(target.GetVector(edge.Points[0], edge.Points[1]));
+  for (int side = 0; side < 2; ++side)
   {
     const Vector3 inward =
-      UnitAcross(targetStart, tangent, this->GetPosition(Domain::Target, edge.Apexes[domain]));
+      UnitAcross(start, tangent, target.GetVector(edge.Points[0], edge.Apexes[side]));
     const Vector3 normal = Cross3(tangent, inward);
-    crossing.ImageAxes[domain] = { tangent, inward, domain == 0 ? normal : Scaled(normal, -1.0) };
+    crossing.ImageAxes[side] = { tangent, inward, side == 0 ? normal : Scaled(normal, -1.0) };
   }
   return crossing;
 }
@@ -94,17 +95,16 @@ LineCrossing EdgeCrossings::GetCrossing(
 JacobianJump EdgeCrossings::GetExactJump(std::size_t edgeIndex, const LineCrossing& crossing) const
 {
   const MeshEdge& edge = this->InteriorEdges[edgeIndex];
-  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
   std::array<Vector3, 2> across;
   Vector3 along;
-  for (int domain = 0; domain < 2; ++domain)
+  for (int side = 0; side < 2; ++side)
   {
     SurfacePoint surfacePoint;
-    surfacePoint.Triangle = edge.Triangles[domain];
-    surfacePoint.Point =
-      source.ToFrame(surfacePoint.Triangle, source.ToNormalized(crossing.Point.data()));
+    surfacePoint.Triangle = edge.Triangles[side];
+    surfacePoint.Point.InPlane = ToFrame(this->Map.GetPair(), Domain::Source, edge.Triangles[side],
+      crossing.Near.Origin, crossing.Point);
     const Jacobian jacobian = this->Map.GetJacobian(Domain::Source, surfacePoint);
-    across[domain] = jacobian * crossing.Inward[domain];
+    across[side] = jacobian * crossing.Inward[side];
     along = jacobian * crossing.Tangent;
   }
   return CompareDerivatives(crossing, across, along);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file EdgeCrossings.h
-/// The edges of a triangulation, as places where a map may not be differentiable.
+/// The edges of a triangulation, across which a map may not be differentiable.
 
 #ifndef homeomorphism_EdgeCrossings_h
 #define homeomorphism_EdgeCrossings_h
@@ -17,7 +17,7 @@
 namespace homeomorphism
 {
 
-/// An edge and what is on its two sides.
+/// An edge and its two sides.
 struct MeshEdge
 {
   /// The second is -1 on the boundary, as is the second apex.
@@ -40,7 +40,7 @@ public:
 
   /// The crossing at a proportion of an interior edge's length. The image's axes follow from the
   /// target, if there is one, or from the map's values.
-  LineCrossing GetCrossing(std::size_t edge, double proportion, const MapUnderTest& evaluate) const;
+  LineCrossing GetCrossing(std::size_t edge, double proportion, const MapUnderTest& map) const;
 
   /// The jump at a crossing of the edge by the map's closed form.
   JacobianJump GetExactJump(std::size_t edge, const LineCrossing& crossing) const;

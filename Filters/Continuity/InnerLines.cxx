@@ -70,28 +70,28 @@ double InnerLines::GetStripWidth(TriangleIndex triangle, int edge) const
     .StripWidth(edge);
 }
 
-bool InnerLines::Exists(TriangleIndex triangle, InnerLine kind, int number) const
+bool InnerLines::Exists(TriangleIndex triangle, FeatureKind kind, int number) const
 {
   const Triangulation& topology = this->Map.GetPair().GetTriangulation();
-  if (kind == InnerLine::Spoke)
+  if (kind == FeatureKind::Spoke)
   {
     return true;
   }
-  if (kind == InnerLine::StripBorder)
+  if (kind == FeatureKind::StripBorder)
   {
     return topology.GetTwin(triangle, number).Triangle >= 0;
   }
-  const int edge = kind == InnerLine::WingSegment ? number / 2 : number;
+  const int edge = kind == FeatureKind::WingSegment ? number / 2 : number;
   const Barycentric foot = ToBarycentricAnywhere(
     this->GetSource().GetShape(triangle), this->MakeContourChart(triangle).Foot(edge + 1));
   return foot[NextCorner(edge)] > 0.0 && foot[PreviousCorner(edge)] > 0.0;
 }
 
 InnerLines::PointOnLine InnerLines::GetPoint(
-  TriangleIndex triangle, InnerLine kind, int number, double t) const
+  TriangleIndex triangle, FeatureKind kind, int number, double t) const
 {
   const TriangleShape& shape = this->GetSource().GetShape(triangle);
-  if (kind == InnerLine::StripBorder)
+  if (kind == FeatureKind::StripBorder)
   {
     // l_k = tau l_i l_j / (l_i + l_j), with the proportion t = l_j / (l_i + l_j).
     const double tau = this->GetStripWidth(triangle, number);
@@ -112,11 +112,11 @@ InnerLines::PointOnLine InnerLines::GetPoint(
   const ContourChart construction = this->MakeContourChart(triangle);
   Vector2 start = construction.Center();
   Vector2 end;
-  if (kind == InnerLine::Spoke)
+  if (kind == FeatureKind::Spoke)
   {
     end = shape.Corner(number);
   }
-  else if (kind == InnerLine::CenterSegment)
+  else if (kind == FeatureKind::CenterSegment)
   {
     end = construction.Foot(number + 1);
   }
@@ -130,7 +130,8 @@ InnerLines::PointOnLine InnerLines::GetPoint(
   return { (1.0 - t) * start + t * end, Unit(end - start), std::min(t, 1.0 - t) * length };
 }
 
-Vector3 InnerLines::GetPosition(TriangleIndex triangle, InnerLine kind, int number, double t) const
+Vector3 InnerLines::GetPosition(
+  TriangleIndex triangle, FeatureKind kind, int number, double t) const
 {
   const MeshGeometry& source = this->GetSource();
   Vector3 position;
@@ -141,31 +142,33 @@ Vector3 InnerLines::GetPosition(TriangleIndex triangle, InnerLine kind, int numb
 }
 
 LineCrossing InnerLines::GetCrossing(
-  TriangleIndex triangle, InnerLine kind, int number, double t, const MapUnderTest& evaluate) const
+  TriangleIndex triangle, FeatureKind kind, int number, double t, const MapUnderTest& map) const
 {
   const MeshGeometry& source = this->GetSource();
   const TriangleShape& shape = source.GetShape(triangle);
   const PointOnLine point = this->GetPoint(triangle, kind, number, t);
-  const auto reachTowards = [&](const Vector2& direction) {
+  const auto rayLength = [&](const Vector2& direction) {
     return 0.5 * DistanceToExit(shape, point.Position, direction) / source.GetScale();
   };
   const Vector2 left{ -point.Tangent.y, point.Tangent.x };
   const Vector2 right{ point.Tangent.y, -point.Tangent.x };
   LineCrossing crossing;
-  source.FromNormalized(source.FromFrame(triangle, { point.Position, 0.0 }), crossing.Point.data());
+  crossing.Near = { GetFrameOrigin(this->Map.GetPair(), Domain::Source, triangle), { triangle } };
+  crossing.Point =
+    FromFrame(this->Map.GetPair(), Domain::Source, triangle, crossing.Near.Origin, point.Position);
   crossing.Tangent = ToSpace(source, triangle, point.Tangent);
-  crossing.TangentReach = std::min({ reachTowards(point.Tangent),
-    reachTowards(-1.0 * point.Tangent), 0.5 * point.Reach / source.GetScale() });
+  crossing.TangentLength = std::min({ rayLength(point.Tangent), rayLength(-1.0 * point.Tangent),
+    0.5 * point.StraightLength / source.GetScale() });
   crossing.Inward = { ToSpace(source, triangle, left), ToSpace(source, triangle, right) };
-  crossing.Reach = { reachTowards(left), reachTowards(right) };
-  FindImageAxes(evaluate, crossing);
+  crossing.RayLengths = { rayLength(left), rayLength(right) };
+  FindImageAxes(map(crossing.Near), crossing);
   return crossing;
 }
 
-JacobianJump InnerLines::GetExactJump(
-  TriangleIndex triangle, InnerLine kind, int number, double t, const LineCrossing& crossing) const
+JacobianJump InnerLines::GetExactJump(TriangleIndex triangle, FeatureKind kind, int number,
+  double t, const LineCrossing& crossing) const
 {
-  if (kind != InnerLine::Spoke ||
+  if (kind != FeatureKind::Spoke ||
     this->Map.GetCharts(Domain::Source).GetSystemOf(triangle) != CoordinateSystem::Contour)
   {
     JacobianJump none;

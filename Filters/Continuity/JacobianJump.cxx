@@ -25,13 +25,13 @@ Vector3 InAxes(const Vector3& v, const std::array<Vector3, 3>& axes)
   return result;
 }
 
-/// The noise of a function's values: what is left of them in fourth differences over a step so
-/// small that nothing else can be.
+/// The noise of a function's values: their fourth differences over steps so small that the function
+/// itself has none.
 template <typename Function>
-double Noise(Function&& function, double tolerance)
+double Noise(Function&& function, double length)
 {
   constexpr int count = 8;
-  const double step = tolerance * 0x1p-22;
+  const double step = length * 0x1p-22;
   std::array<Vector3, count> values;
   for (int i = 0; i < count; ++i)
   {
@@ -139,7 +139,7 @@ JumpVerdict Conclude(const JacobianJump& jump, double magnification, double reso
 class FunctionOnRay
 {
 public:
-  FunctionOnRay(const MapUnderTest& map, const Vector3& start, const Vector3& direction)
+  FunctionOnRay(const LocalMap& map, const Vector3& start, const Vector3& direction)
     : Map(map)
     , Start(start)
     , Direction(direction)
@@ -149,43 +149,44 @@ public:
   Vector3 operator()(double step) const
   {
     Vector3 image;
-    if (!this->Map(Sum(this->Start, step, this->Direction), image))
+    if (!this->Map.Evaluate(Sum(this->Start, step, this->Direction), image))
     {
       image.fill(JacobianJump::None);
     }
     return image;
   }
 
-  /// What rounding can do to the values within reach.
-  double Rounding(double tolerance) const
+  /// A bound on the errors of the values on a ray of this length.
+  double Rounding(double length) const
   {
-    // A point is known to its rounding, which the map carries over, and so is its image.
+    // The map transforms the rounding error of a point, and its image is rounded as well.
     constexpr double ulp = std::numeric_limits<double>::epsilon();
     const Vector3 start = (*this)(0.0);
-    const Vector3 far = (*this)(tolerance);
-    const double slope = Length(Difference(far, start)) / tolerance;
+    const Vector3 far = (*this)(length);
+    const double slope = Length(Difference(far, start)) / length;
     const double least = 0.5 * ulp *
-      (std::max(Length(far), Length(start)) + slope * (Length(this->Start) + tolerance));
-    return std::max(least, Noise(*this, tolerance));
+      (this->Map.ImageMagnitude + std::max(Length(far), Length(start)) +
+        slope * (this->Map.PointMagnitude + Length(this->Start) + length));
+    return std::max(least, Noise(*this, length));
   }
 
 private:
-  const MapUnderTest& Map;
+  const LocalMap& Map;
   const Vector3& Start;
   Vector3 Direction;
 };
 
-/// Takes the derivatives along a star's rays to their deviations from those of the linear map that
-/// fits them best.
+/// The deviations of the derivatives along a fan's rays from those of the linear map that fits them
+/// best.
 class DeviationFromLinear
 {
 public:
-  explicit DeviationFromLinear(const RayFan& star)
-    : Rays(star.Rays.size())
+  explicit DeviationFromLinear(const RayFan& fan)
+    : Rays(fan.Rays.size())
   {
     // The linear maps' derivatives span a plane in the space of all derivatives; these are
     // orthonormal axes of it.
-    for (const RayFan::Ray& ray : star.Rays)
+    for (const RayFan::Ray& ray : fan.Rays)
     {
       this->Axes[0].push_back(ray.InPlane.x);
       this->Axes[1].push_back(ray.InPlane.y);
@@ -280,21 +281,21 @@ double NormOfJacobian(std::size_t rays, DerivativeOf&& derivativeOf)
 
 } // namespace
 
-void FindImageAxes(const MapUnderTest& map, LineCrossing& crossing)
+void FindImageAxes(const LocalMap& map, LineCrossing& crossing)
 {
   constexpr double small = 1.0 / 1024.0;
   const FunctionOnRay along(map, crossing.Point, crossing.Tangent);
   const FunctionOnRay across(map, crossing.Point, crossing.Inward[0]);
   const Vector3 start = along(0.0);
-  const Vector3 tangent = Unit(Difference(along(small * crossing.TangentReach), start));
-  const Vector3 inward = UnitAcross(start, tangent, across(small * crossing.Reach[0]));
+  const Vector3 tangent = Unit(Difference(along(small * crossing.TangentLength), start));
+  const Vector3 inward = UnitAcross(start, tangent, across(small * crossing.RayLengths[0]));
   const Vector3 normal = Cross3(tangent, inward);
   crossing.ImageAxes[0] = { tangent, inward, normal };
   crossing.ImageAxes[1] = { tangent, Scaled(inward, -1.0), normal };
 }
 
 JacobianJump EstimateJump(
-  const MapUnderTest& map, const LineCrossing& crossing, int order, double resolution)
+  const LocalMap& map, const LineCrossing& crossing, int order, double resolution)
 {
   struct Estimated
   {
@@ -302,19 +303,19 @@ JacobianJump EstimateJump(
     DerivativeEstimate Limit;
     double Rounding;
   };
-  const auto estimate = [](const FunctionOnRay& onRay, double tolerance, double rounding,
+  const auto estimate = [](const FunctionOnRay& onRay, double length, double rounding,
                           int steps = OneSidedDerivative::MaximumSteps) {
-    const OneSidedDerivative quotients(onRay, 1, tolerance, rounding, steps);
+    const OneSidedDerivative quotients(onRay, 1, length, rounding, steps);
     return Estimated{ quotients, quotients.Extrapolate(), rounding };
   };
   const auto estimateSide = [&](int side) {
     const FunctionOnRay onRay(map, crossing.Point, crossing.Inward[side]);
-    return estimate(onRay, crossing.Reach[side], onRay.Rounding(crossing.Reach[side]));
+    return estimate(onRay, crossing.RayLengths[side], onRay.Rounding(crossing.RayLengths[side]));
   };
   const std::array<Estimated, 2> first{ estimateSide(0), estimateSide(1) };
   const auto estimateTangent = [&](double sign) {
     const FunctionOnRay onRay(map, crossing.Point, Scaled(crossing.Tangent, sign));
-    return estimate(onRay, crossing.TangentReach, std::max(first[0].Rounding, first[1].Rounding),
+    return estimate(onRay, crossing.TangentLength, std::max(first[0].Rounding, first[1].Rounding),
       OneSidedDerivative::HalvedSteps);
   };
   const std::array<Estimated, 2> tangents{ estimateTangent(1.0), estimateTangent(-1.0) };
@@ -328,12 +329,12 @@ JacobianJump EstimateJump(
   std::array<Estimated, 2> domains = first;
   if (order == 2)
   {
-    norm /= std::min(crossing.Reach[0], crossing.Reach[1]);
+    norm /= std::min(crossing.RayLengths[0], crossing.RayLengths[1]);
     for (int side = 0; side < 2; ++side)
     {
       const FunctionOnRay onRay(map, crossing.Point, crossing.Inward[side]);
       domains[side].Quotients =
-        OneSidedDerivative(onRay, 2, crossing.Reach[side], first[side].Rounding);
+        OneSidedDerivative(onRay, 2, crossing.RayLengths[side], first[side].Rounding);
       domains[side].Limit = domains[side].Quotients.Extrapolate();
     }
   }
@@ -364,17 +365,17 @@ JacobianJump CompareDerivatives(
     norm);
 }
 
-JacobianJump EstimateJump(const MapUnderTest& map, const RayFan& star, double resolution)
+JacobianJump EstimateJump(const LocalMap& map, const RayFan& fan, double resolution)
 {
   std::vector<OneSidedDerivative> quotients;
   std::vector<DerivativeEstimate> limits;
-  for (const RayFan::Ray& ray : star.Rays)
+  for (const RayFan::Ray& ray : fan.Rays)
   {
-    const FunctionOnRay onRay(map, star.Point, ray.Direction);
-    quotients.emplace_back(onRay, 1, ray.Reach, onRay.Rounding(ray.Reach));
+    const FunctionOnRay onRay(map, fan.Point, ray.Direction);
+    quotients.emplace_back(onRay, 1, ray.Length, onRay.Rounding(ray.Length));
     limits.push_back(quotients.back().Extrapolate());
   }
-  const DeviationFromLinear deviation(star);
+  const DeviationFromLinear deviation(fan);
   const auto limitOf = [&limits](std::size_t ray) { return limits[ray].Value; };
   const double norm = NormOfJacobian(limits.size(), limitOf);
   JacobianJump jump;
@@ -393,11 +394,11 @@ JacobianJump EstimateJump(const MapUnderTest& map, const RayFan& star, double re
   return jump;
 }
 
-JacobianJump CompareDerivatives(const RayFan& star, const std::vector<Vector3>& derivatives)
+JacobianJump CompareDerivatives(const RayFan& fan, const std::vector<Vector3>& derivatives)
 {
   const auto derivativeOf = [&derivatives](std::size_t ray) { return derivatives[ray]; };
   JacobianJump jump;
-  jump.Jump = DeviationFromLinear(star).Largest(derivativeOf) /
+  jump.Jump = DeviationFromLinear(fan).Largest(derivativeOf) /
     NormOfJacobian(derivatives.size(), derivativeOf);
   return jump;
 }

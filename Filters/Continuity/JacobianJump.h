@@ -2,38 +2,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file JacobianJump.h
-/// Does a map's Jacobian jump across a line, or at a point? Estimated from the map's values alone.
+/// Jumps of a map's Jacobian across a line or at a point, estimated from the map's values alone.
 
 #ifndef homeomorphism_JacobianJump_h
 #define homeomorphism_JacobianJump_h
 
-#include "Mesh/MeshGeometry.h"
+#include "Continuity/MapUnderTest.h"
 
 #include <array>
-#include <functional>
 #include <limits>
 #include <vector>
 
 namespace homeomorphism
 {
 
-/// A map that can be evaluated: takes a point to its image, both in the input's coordinates, and
-/// returns false where it has none. May remember where it was evaluated last: each thread has its
-/// own.
-using MapUnderTest = std::function<bool(const Vector3& point, Vector3& image)>;
-
-/// A point of a line in the domain, and what is on the two sides of the line there.
+/// A point of a line in the domain, and the two sides of the line there. Points are relative to the
+/// local origin of the vicinity.
 struct LineCrossing
 {
+  Vicinity Near;
   Vector3 Point;
   /// Unit vector along the line.
   Vector3 Tangent;
-  /// How far the map may be followed along the line, both ways.
-  double TangentReach;
+  /// Length of the rays along the line, both ways.
+  double TangentLength;
   /// Unit vectors away from the line into the two sides, in the planes that the sides lie in.
   std::array<Vector3, 2> Inward;
-  /// How far the map may be followed that way.
-  std::array<double, 2> Reach;
+  /// Lengths of the rays into the two sides, on which the map is evaluated.
+  std::array<double, 2> RayLengths;
   /// For each side, three orthonormal vectors of the image's space in which derivatives are
   /// compared: along the image of the line, into the image of the side, and the normal. The first
   /// and the last axes of the sides agree with each other once the sides are unfolded.
@@ -42,9 +38,9 @@ struct LineCrossing
 
 /// Fills in the image's axes from the map's values: near the line's image and across it. They are
 /// the same on both sides, as within a plane.
-void FindImageAxes(const MapUnderTest& map, LineCrossing& crossing);
+void FindImageAxes(const LocalMap& map, LineCrossing& crossing);
 
-/// A point of the domain, and the directions in which the map is followed away from it.
+/// A point of the domain, relative to the local origin, and rays on which the map is evaluated.
 struct RayFan
 {
   struct Ray
@@ -53,14 +49,14 @@ struct RayFan
     Vector3 Direction;
     /// Its components along orthonormal axes of the plane in which all rays lie.
     Vector2 InPlane;
-    /// How far the map may be followed that way.
-    double Reach;
+    double Length;
   };
+  Vicinity Near;
   Vector3 Point;
   std::vector<Ray> Rays;
 };
 
-/// What is concluded.
+/// The conclusion from a jump and the bound on its error.
 enum class JumpVerdict
 {
   Differentiable = 0,
@@ -68,19 +64,19 @@ enum class JumpVerdict
   Undecided = 2
 };
 
-/// The jump of the Jacobian, or of the second derivative, at a crossing or in a star. Lengths are
-/// relative to the norm of the Jacobian (for second derivatives: times the norm of the Jacobian
-/// over the reach).
+/// The jump of the Jacobian, or of the second derivative, at a crossing or in a ray fan. Lengths
+/// are relative to the norm of the Jacobian (for second derivatives: to that norm over the length
+/// of the rays).
 struct JacobianJump
 {
   static constexpr double None = std::numeric_limits<double>::quiet_NaN();
 
-  /// Norm of the difference of the derivatives on the two sides; in a star, the largest deviation
-  /// of the derivatives along its rays from those of the linear map that fits them best.
+  /// Norm of the difference of the derivatives on the two sides; in a ray fan, the largest
+  /// deviation of the derivatives along its rays from those of the linear map that fits them best.
   double Jump = None;
   /// Bound on the error of Jump.
   double Error = None;
-  /// Its part at a right angle to the line's image, and that along it. NaN in a star, as are the
+  /// Its part at a right angle to the line's image, and that along it. NaN in a ray fan, as are the
   /// angle and the stretch.
   double Normal = None;
   double Tangential = None;
@@ -99,19 +95,19 @@ struct JacobianJump
 /// @a resolution count as none: the map is differentiable if the jump cannot be larger, given its
 /// error bound, and has a crease if the jump is larger and stands out from its error bound.
 JacobianJump EstimateJump(
-  const MapUnderTest& map, const LineCrossing& crossing, int order, double resolution);
+  const LocalMap& map, const LineCrossing& crossing, int order, double resolution);
 
 /// The same from known derivatives in the directions Inward, and along the line: no error, no
 /// order, no verdict.
 JacobianJump CompareDerivatives(
   const LineCrossing& crossing, const std::array<Vector3, 2>& inward, const Vector3& along);
 
-/// Estimates how far the map is from having a derivative at the star's point: whether the one-sided
+/// Estimates how far the map is from having a derivative at the fan's point: whether the one-sided
 /// derivatives along its rays are those of one linear map. Verdicts as above.
-JacobianJump EstimateJump(const MapUnderTest& map, const RayFan& star, double resolution);
+JacobianJump EstimateJump(const LocalMap& map, const RayFan& fan, double resolution);
 
 /// The same from known derivatives along the rays: no error, no order, no verdict.
-JacobianJump CompareDerivatives(const RayFan& star, const std::vector<Vector3>& derivatives);
+JacobianJump CompareDerivatives(const RayFan& fan, const std::vector<Vector3>& derivatives);
 
 } // namespace homeomorphism
 

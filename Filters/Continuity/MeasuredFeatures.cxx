@@ -5,26 +5,6 @@
 
 namespace homeomorphism
 {
-namespace
-{
-
-InnerLine ToInnerLine(FeatureKind kind)
-{
-  switch (kind)
-  {
-    case FeatureKind::WingSegment:
-      return InnerLine::WingSegment;
-    case FeatureKind::CenterSegment:
-      return InnerLine::CenterSegment;
-    case FeatureKind::StripBorder:
-      return InnerLine::StripBorder;
-    default:
-      return InnerLine::Spoke;
-  }
-}
-
-} // namespace
-
 MeasuredFeatures::MeasuredFeatures(const Homeomorphism& map, CenterPoint center,
   const FeatureSelection& selection, bool planar, int samples)
   : Map(map)
@@ -43,7 +23,7 @@ MeasuredFeatures::MeasuredFeatures(const Homeomorphism& map, CenterPoint center,
   {
     if (isSelected(FeatureKind::Centroid) && !topology.IsMasked(t))
     {
-      this->Places.push_back({ FeatureKind::Centroid, t });
+      this->Features.push_back({ FeatureKind::Centroid, t });
     }
   }
   for (std::int32_t point = 0;
@@ -51,13 +31,13 @@ MeasuredFeatures::MeasuredFeatures(const Homeomorphism& map, CenterPoint center,
   {
     if (this->Points->GetTriangleAt(point) >= 0)
     {
-      this->Places.push_back({ FeatureKind::Vertex, point });
+      this->Features.push_back({ FeatureKind::Vertex, point });
     }
   }
   const auto addEdges = [this, &isSelected](FeatureKind kind, const std::vector<MeshEdge>& edges) {
     for (std::size_t i = 0; i < edges.size() && isSelected(kind); ++i)
     {
-      this->Places.push_back({ kind, static_cast<std::int32_t>(i) });
+      this->Features.push_back({ kind, static_cast<std::int32_t>(i) });
     }
   };
   addEdges(FeatureKind::Edge, this->Edges.GetInteriorEdges());
@@ -75,33 +55,32 @@ MeasuredFeatures::MeasuredFeatures(const Homeomorphism& map, CenterPoint center,
 void MeasuredFeatures::AddInnerLines(FeatureKind kind)
 {
   const Triangulation& topology = this->Map.GetPair().GetTriangulation();
-  const InnerLine line = ToInnerLine(kind);
   for (TriangleIndex t = 0; t < topology.GetNumberOfTriangles(); ++t)
   {
-    for (int i = 0; i < InnerLines::GetNumberOfLines(line) && !topology.IsMasked(t); ++i)
+    for (int i = 0; i < InnerLines::GetNumberOfLines(kind) && !topology.IsMasked(t); ++i)
     {
-      if (this->Lines.Exists(t, line, i))
+      if (this->Lines.Exists(t, kind, i))
       {
-        this->Places.push_back({ kind, t, i });
+        this->Features.push_back({ kind, t, i });
       }
     }
   }
 }
 
-std::array<vtkIdType, 2> MeasuredFeatures::GetCells(const MeasuredFeature& place) const
+std::array<vtkIdType, 2> MeasuredFeatures::GetCells(const MeasuredFeature& feature) const
 {
   const Triangulation& topology = this->Map.GetPair().GetTriangulation();
-  std::array<TriangleIndex, 2> triangles{ place.Item, place.Item };
-  switch (place.Kind)
+  std::array<TriangleIndex, 2> triangles{ feature.Item, feature.Item };
+  switch (feature.Kind)
   {
     case FeatureKind::Edge:
-      triangles = this->Edges.GetInteriorEdges()[place.Item].Triangles;
+      triangles = this->Edges.GetInteriorEdges()[feature.Item].Triangles;
       break;
     case FeatureKind::BoundaryEdge:
-      triangles = this->Edges.GetBoundaryEdges()[place.Item].Triangles;
+      triangles = this->Edges.GetBoundaryEdges()[feature.Item].Triangles;
       break;
     case FeatureKind::Vertex:
-      triangles = { this->Points->GetTriangleAt(place.Item), -1 };
+      triangles = { this->Points->GetTriangleAt(feature.Item), -1 };
       break;
     default:
       break;
@@ -117,16 +96,16 @@ std::array<vtkIdType, 2> MeasuredFeatures::GetCells(const MeasuredFeature& place
   return cells;
 }
 
-Vector3 MeasuredFeatures::GetPosition(const MeasuredFeature& place, int point) const
+Vector3 MeasuredFeatures::GetPosition(const MeasuredFeature& feature, int point) const
 {
-  switch (place.Kind)
+  switch (feature.Kind)
   {
     case FeatureKind::Edge:
     case FeatureKind::BoundaryEdge:
     {
-      const bool interior = place.Kind == FeatureKind::Edge;
+      const bool interior = feature.Kind == FeatureKind::Edge;
       const MeshEdge& edge =
-        (interior ? this->Edges.GetInteriorEdges() : this->Edges.GetBoundaryEdges())[place.Item];
+        (interior ? this->Edges.GetInteriorEdges() : this->Edges.GetBoundaryEdges())[feature.Item];
       const Vector3 start = this->Edges.GetPosition(Domain::Source, edge.Points[0]);
       const Vector3 end = this->Edges.GetPosition(Domain::Source, edge.Points[1]);
       if (point == 0)
@@ -138,56 +117,57 @@ Vector3 MeasuredFeatures::GetPosition(const MeasuredFeature& place, int point) c
         : Sum(start, this->GetProportion(point), Difference(end, start));
     }
     case FeatureKind::Centroid:
-      return this->Points->GetAroundCenter(place.Item).Point;
+      return this->Points->GetCenter(feature.Item);
     case FeatureKind::Vertex:
-      return this->Edges.GetPosition(Domain::Source, place.Item);
+      return this->Edges.GetPosition(Domain::Source, feature.Item);
     default:
       return this->Lines.GetPosition(
-        place.Item, ToInnerLine(place.Kind), place.Line, this->GetProportion(point));
+        feature.Item, feature.Kind, feature.Line, this->GetProportion(point));
   }
 }
 
-MeasuredFeatures::Sample MeasuredFeatures::Measure(const MeasuredFeature& place, int sampleNumber,
+MeasuredFeatures::Sample MeasuredFeatures::Measure(const MeasuredFeature& feature, int sampleNumber,
   const MapUnderTest& map, double resolution, bool secondDerivatives) const
 {
   const bool exact = this->Map.GetPair().HasTarget();
   Sample sample;
-  if (IsPoint(place.Kind))
+  if (IsPoint(feature.Kind))
   {
-    const bool vertex = place.Kind == FeatureKind::Vertex;
-    const RayFan star = vertex ? this->Points->GetAroundVertex(place.Item)
-                               : this->Points->GetAroundCenter(place.Item);
-    sample.First = EstimateJump(map, star, resolution);
+    const bool vertex = feature.Kind == FeatureKind::Vertex;
+    const RayFan fan = vertex ? this->Points->GetAroundVertex(feature.Item)
+                              : this->Points->GetAroundCenter(feature.Item);
+    sample.First = EstimateJump(map(fan.Near), fan, resolution);
     if (exact && !vertex)
     {
-      sample.Exact = this->Points->GetExactJumpAtCenter(place.Item, star).Jump;
+      sample.Exact = this->Points->GetExactJumpAtCenter(feature.Item, fan).Jump;
     }
     return sample;
   }
   const double t = this->GetProportion(sampleNumber + 1);
   LineCrossing crossing;
-  if (place.Kind == FeatureKind::Edge)
+  if (feature.Kind == FeatureKind::Edge)
   {
-    crossing = this->Edges.GetCrossing(place.Item, t, map);
+    crossing = this->Edges.GetCrossing(feature.Item, t, map);
     if (exact)
     {
-      sample.Exact = this->Edges.GetExactJump(place.Item, crossing).Jump;
+      sample.Exact = this->Edges.GetExactJump(feature.Item, crossing).Jump;
     }
   }
   else
   {
-    const InnerLine line = ToInnerLine(place.Kind);
-    crossing = this->Lines.GetCrossing(place.Item, line, place.Line, t, map);
+    crossing = this->Lines.GetCrossing(feature.Item, feature.Kind, feature.Line, t, map);
     if (exact)
     {
-      sample.Exact = this->Lines.GetExactJump(place.Item, line, place.Line, t, crossing).Jump;
+      sample.Exact =
+        this->Lines.GetExactJump(feature.Item, feature.Kind, feature.Line, t, crossing).Jump;
     }
   }
-  sample.First = EstimateJump(map, crossing, 1, resolution);
+  const LocalMap local = map(crossing.Near);
+  sample.First = EstimateJump(local, crossing, 1, resolution);
   if (secondDerivatives)
   {
     // Dividing by the step twice leaves a thousandth of the accuracy.
-    sample.Second = EstimateJump(map, crossing, 2, 1e3 * resolution);
+    sample.Second = EstimateJump(local, crossing, 2, 1e3 * resolution);
   }
   return sample;
 }

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MeasuredFeatures.h
-/// All places of a triangulation at which vtkJacobianContinuity is asked to measure a map.
+/// The features of a triangulation at which vtkJacobianContinuity measures a map.
 
 #ifndef homeomorphism_MeasuredFeatures_h
 #define homeomorphism_MeasuredFeatures_h
 
 #include "EdgeCrossings.h"
+#include "FeatureKind.h"
 #include "InnerLines.h"
 #include "RayFans.h"
 
@@ -20,22 +21,7 @@
 namespace homeomorphism
 {
 
-/// The kinds of places, as vtkJacobianContinuity numbers them.
-enum class FeatureKind
-{
-  Edge = 0,
-  BoundaryEdge = 1,
-  Spoke = 2,
-  WingSegment = 3,
-  CenterSegment = 4,
-  StripBorder = 5,
-  Centroid = 6,
-  Vertex = 7
-};
-
-constexpr int NumberOfFeatureKinds = 8;
-
-/// Which kinds are asked for.
+/// The kinds to be measured.
 using FeatureSelection = std::array<bool, NumberOfFeatureKinds>;
 
 struct MeasuredFeature
@@ -47,7 +33,7 @@ struct MeasuredFeature
   int Line = 0;
 };
 
-/// The places of a map's source: first points (centroids, vertices), then lines (edges, boundary
+/// The features of a map's source: first points (centroids, vertices), then lines (edges, boundary
 /// edges, spokes, wing segments, center segments, strip borders), which is the order of a
 /// vtkPolyData's cells.
 class MeasuredFeatures
@@ -57,8 +43,11 @@ public:
   MeasuredFeatures(const Homeomorphism& map, CenterPoint center, const FeatureSelection& selection,
     bool planar, int samples);
 
-  vtkIdType GetNumberOfFeatures() const { return static_cast<vtkIdType>(this->Places.size()); }
-  const MeasuredFeature& GetSurfacePoint(vtkIdType place) const { return this->Places[place]; }
+  vtkIdType GetNumberOfFeatures() const { return static_cast<vtkIdType>(this->Features.size()); }
+  const MeasuredFeature& GetSurfacePoint(vtkIdType feature) const
+  {
+    return this->Features[feature];
+  }
   const EdgeCrossings& GetEdges() const { return this->Edges; }
 
   static bool IsPoint(FeatureKind kind)
@@ -66,39 +55,39 @@ public:
     return kind == FeatureKind::Centroid || kind == FeatureKind::Vertex;
   }
 
-  /// Whether there is something on either side that could differ.
+  /// Whether the derivatives at it can be compared.
   bool IsMeasurable(FeatureKind kind) const
   {
     return kind != FeatureKind::BoundaryEdge && (kind != FeatureKind::Vertex || this->Planar);
   }
 
-  /// The number of points at which a place is measured.
+  /// The number of points at which a feature is measured.
   int GetNumberOfSamples(FeatureKind kind) const
   {
     return !this->IsMeasurable(kind) ? 0 : IsPoint(kind) ? 1 : this->Samples;
   }
 
-  /// The number of points that show a place: its samples and a line's two ends.
+  /// The number of points that show a feature: its samples and a line's two ends.
   int GetNumberOfPoints(FeatureKind kind) const
   {
     return IsPoint(kind) ? 1 : this->GetNumberOfSamples(kind) + 2;
   }
 
   /// Cell ids of the triangles on its two sides, in it, or at it; -1 where there is none.
-  std::array<vtkIdType, 2> GetCells(const MeasuredFeature& place) const;
+  std::array<vtkIdType, 2> GetCells(const MeasuredFeature& feature) const;
 
-  /// The position of a point that shows the place.
-  Vector3 GetPosition(const MeasuredFeature& place, int point) const;
+  /// The position of a point that shows the feature.
+  Vector3 GetPosition(const MeasuredFeature& feature, int point) const;
 
   /// At a sample, counted from 0: the measured jump, that of the second derivative if it is asked
-  /// for and the place is a line, and the closed form, if there is one (else NaN).
+  /// for and the feature is a line, and the closed form, if there is one (else NaN).
   struct Sample
   {
     JacobianJump First;
     JacobianJump Second;
     double Exact = JacobianJump::None;
   };
-  Sample Measure(const MeasuredFeature& place, int sample, const MapUnderTest& map,
+  Sample Measure(const MeasuredFeature& feature, int sample, const MapUnderTest& map,
     double resolution, bool secondDerivatives) const;
 
 private:
@@ -112,7 +101,7 @@ private:
   InnerLines Lines;
   /// Not needed for lines.
   std::optional<RayFans> Points;
-  std::vector<MeasuredFeature> Places;
+  std::vector<MeasuredFeature> Features;
 };
 
 } // namespace homeomorphism

@@ -14,9 +14,9 @@ namespace
 {
 
 /// Fills in the rays' components along two axes of the plane of a triangle.
-void FindComponents(RayFan& star, const std::array<Vector3, 3>& axes)
+void FindComponents(RayFan& fan, const std::array<Vector3, 3>& axes)
 {
-  for (RayFan::Ray& ray : star.Rays)
+  for (RayFan::Ray& ray : fan.Rays)
   {
     ray.InPlane = { Dot3(ray.Direction, axes[0]), Dot3(ray.Direction, axes[1]) };
   }
@@ -60,9 +60,9 @@ TriangleIndex RayFans::GetTriangleAt(std::int32_t point) const
                                                          : -1;
 }
 
-template <typename ReachOf>
-void RayFans::AddRays(RayFan& star, TriangleIndex triangle, const Vector2& from, const Vector2& to,
-  ReachOf&& reachOf) const
+template <typename LengthOf>
+void RayFans::AddRays(RayFan& fan, TriangleIndex triangle, const Vector2& from, const Vector2& to,
+  LengthOf&& lengthOf) const
 {
   const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
   const double start = std::atan2(from.y, from.x);
@@ -73,54 +73,73 @@ void RayFans::AddRays(RayFan& star, TriangleIndex triangle, const Vector2& from,
     const Vector2 direction{ std::cos(turned), std::sin(turned) };
     RayFan::Ray ray;
     ray.Direction = ToSpace(source, triangle, direction);
-    ray.Reach = 0.5 * reachOf(direction) / source.GetScale();
-    star.Rays.push_back(ray);
+    ray.Length = 0.5 * lengthOf(direction) / source.GetScale();
+    fan.Rays.push_back(ray);
   }
+}
+
+Vector2 RayFans::GetCenterInFrame(TriangleIndex triangle) const
+{
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  const Triangulation& topology = this->Map.GetPair().GetTriangulation();
+  return ContourChart(
+    source.GetShape(triangle), source.GetViews(topology.GetCorners(triangle)), this->Center)
+    .Center();
+}
+
+Vector3 RayFans::GetCenter(TriangleIndex triangle) const
+{
+  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
+  Vector3 center;
+  source.FromNormalized(
+    source.FromFrame(triangle, { this->GetCenterInFrame(triangle), 0.0 }), center.data());
+  return center;
 }
 
 RayFan RayFans::GetAroundCenter(TriangleIndex triangle) const
 {
   const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
   const TriangleShape& shape = source.GetShape(triangle);
-  const Triangulation& topology = this->Map.GetPair().GetTriangulation();
-  const Vector2 center =
-    ContourChart(shape, source.GetViews(topology.GetCorners(triangle)), this->Center).Center();
-  RayFan star;
-  source.FromNormalized(source.FromFrame(triangle, { center, 0.0 }), star.Point.data());
+  const Vector2 center = this->GetCenterInFrame(triangle);
+  RayFan fan;
+  fan.Near = { GetFrameOrigin(this->Map.GetPair(), Domain::Source, triangle), { triangle } };
+  fan.Point = FromFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, center);
   for (int k = 0; k < 3; ++k)
   {
-    this->AddRays(star, triangle, shape.Corner(NextCorner(k)) - center,
+    this->AddRays(fan, triangle, shape.Corner(NextCorner(k)) - center,
       shape.Corner(PreviousCorner(k)) - center,
       [&](const Vector2& direction) { return DistanceToExit(shape, center, direction); });
   }
-  FindComponents(star, source.GetAxes(triangle));
-  return star;
+  FindComponents(fan, source.GetAxes(triangle));
+  return fan;
 }
 
 RayFan RayFans::GetAroundVertex(std::int32_t point) const
 {
   const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
   const Triangulation& topology = this->Map.GetPair().GetTriangulation();
-  RayFan star;
-  source.FromMeshPoint(point, 0.0, star.Point.data());
+  RayFan fan;
+  fan.Near.Origin = point;
+  fan.Point = Vector3{};
   for (std::int32_t i = this->Offsets[point]; i < this->Offsets[point + 1]; ++i)
   {
     const TriangleIndex triangle = this->Triangles[i];
+    fan.Near.Triangles.push_back(triangle);
     const TriangleShape& shape = source.GetShape(triangle);
     const Triangulation::Corners& corners = topology.GetCorners(triangle);
     const int corner =
       static_cast<int>(std::find(corners.begin(), corners.end(), point) - corners.begin());
-    this->AddRays(star, triangle, shape.Corner(NextCorner(corner)) - shape.Corner(corner),
+    this->AddRays(fan, triangle, shape.Corner(NextCorner(corner)) - shape.Corner(corner),
       shape.Corner(PreviousCorner(corner)) - shape.Corner(corner), [&](const Vector2& direction) {
         // Through the opposite edge: rounding must not let a ray along an edge leave through it.
         return -1.0 / shape.VectorToBarycentric(direction)[corner];
       });
   }
-  FindComponents(star, source.GetAxes(this->GetTriangleAt(point)));
-  return star;
+  FindComponents(fan, source.GetAxes(this->GetTriangleAt(point)));
+  return fan;
 }
 
-JacobianJump RayFans::GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& star) const
+JacobianJump RayFans::GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& fan) const
 {
   const ChartedTriangulation& charts = this->Map.GetCharts(Domain::Source);
   if (charts.GetSystemOf(triangle) != CoordinateSystem::Contour)
@@ -129,18 +148,17 @@ JacobianJump RayFans::GetExactJumpAtCenter(TriangleIndex triangle, const RayFan&
     none.Jump = 0.0;
     return none;
   }
-  const MeshGeometry& source = this->Map.GetPair().GetGeometry(Domain::Source);
   std::vector<Vector3> derivatives;
-  for (const RayFan::Ray& ray : star.Rays)
+  for (const RayFan::Ray& ray : fan.Rays)
   {
     // The contour that starts along the ray: contours are straight near the center.
-    const Vector3 beside = Sum(star.Point, 0.25 * ray.Reach, ray.Direction);
+    const Vector3 beside = Sum(fan.Point, 0.25 * ray.Length, ray.Direction);
     TriangularCoordinates contour = charts.ToCoordinates(
-      triangle, source.ToFrame(triangle, source.ToNormalized(beside.data())).InPlane);
+      triangle, ToFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, beside));
     contour.ContourParameter = 0.0;
     derivatives.push_back(this->Map.GetJacobian(Domain::Source, triangle, contour) * ray.Direction);
   }
-  return CompareDerivatives(star, derivatives);
+  return CompareDerivatives(fan, derivatives);
 }
 
 } // namespace homeomorphism

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RayFans.h
-/// Centroids and vertices of a triangulation, as points at which a map may not be differentiable.
+/// Rays around centroids and vertices of a triangulation, at which a map may not be differentiable.
 
 #ifndef homeomorphism_RayFans_h
 #define homeomorphism_RayFans_h
@@ -16,8 +16,8 @@
 namespace homeomorphism
 {
 
-/// The stars of a map's source: rays towards the corners around a centroid, along the edges around
-/// a vertex, and a number of rays between each two of those.
+/// The ray fans of a map's source: rays towards the corners around a centroid, along the edges
+/// around a vertex, and a number of rays between each two of those.
 class RayFans
 {
 public:
@@ -25,6 +25,9 @@ public:
   RayFans(const Homeomorphism& map, CenterPoint center, int raysBetween);
 
   RayFan GetAroundCenter(TriangleIndex triangle) const;
+
+  /// The center of a triangle, in the input's coordinates.
+  Vector3 GetCenter(TriangleIndex triangle) const;
 
   /// In a plane.
   RayFan GetAroundVertex(std::int32_t point) const;
@@ -39,13 +42,16 @@ public:
   TriangleIndex GetTriangleAt(std::int32_t point) const;
 
   /// By the map's closed form.
-  JacobianJump GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& star) const;
+  JacobianJump GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& fan) const;
 
 private:
+  /// The center of a triangle in its frame.
+  Vector2 GetCenterInFrame(TriangleIndex triangle) const;
+
   /// Adds rays in a triangle, from one direction of its frame to another, both included.
-  template <typename ReachOf>
-  void AddRays(RayFan& star, TriangleIndex triangle, const Vector2& from, const Vector2& to,
-    ReachOf&& reachOf) const;
+  template <typename LengthOf>
+  void AddRays(RayFan& fan, TriangleIndex triangle, const Vector2& from, const Vector2& to,
+    LengthOf&& lengthOf) const;
 
   const Homeomorphism& Map;
   CenterPoint Center;

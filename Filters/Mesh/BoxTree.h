@@ -81,33 +81,33 @@ public:
     {
       return;
     }
-    struct ToSurfacePoint
+    struct NodeIndex
     {
       std::size_t Level;
       std::size_t Index;
     };
-    std::array<ToSurfacePoint, 2 * MaximumLevels> stack;
+    std::array<NodeIndex, 2 * MaximumLevels> stack;
     std::size_t depth = 0;
     stack[depth++] = { this->Levels.size() - 1, 0 };
     while (depth > 0)
     {
-      const ToSurfacePoint place = stack[--depth];
-      if (!this->Nodes[this->Levels[place.Level] + place.Index].Meets(box))
+      const NodeIndex node = stack[--depth];
+      if (!this->Nodes[this->Levels[node.Level] + node.Index].Meets(box))
       {
         continue;
       }
-      if (place.Level > 0)
+      if (node.Level > 0)
       {
-        const std::size_t child = 2 * place.Index;
-        if (child + 1 < this->Levels[place.Level] - this->Levels[place.Level - 1])
+        const std::size_t child = 2 * node.Index;
+        if (child + 1 < this->Levels[node.Level] - this->Levels[node.Level - 1])
         {
-          stack[depth++] = { place.Level - 1, child + 1 };
+          stack[depth++] = { node.Level - 1, child + 1 };
         }
-        stack[depth++] = { place.Level - 1, child };
+        stack[depth++] = { node.Level - 1, child };
         continue;
       }
-      const std::size_t last = std::min(this->Triangles.size(), (place.Index + 1) * LeafSize);
-      for (std::size_t i = place.Index * LeafSize; i < last; ++i)
+      const std::size_t last = std::min(this->Triangles.size(), (node.Index + 1) * LeafSize);
+      for (std::size_t i = node.Index * LeafSize; i < last; ++i)
       {
         if (!visit(this->Triangles[i]))
         {
@@ -213,8 +213,8 @@ private:
       std::uint64_t code = 0;
       for (int axis = 0; axis < Dimension; ++axis)
       {
-        const double place = (centerOf(box, axis) - bounds.Least[axis]) * scale[axis];
-        code |= SpreadBits(static_cast<std::uint64_t>(place)) << axis;
+        const double scaled = (centerOf(box, axis) - bounds.Least[axis]) * scale[axis];
+        code |= SpreadBits(static_cast<std::uint64_t>(scaled)) << axis;
       }
       entries[i] = { code, this->Triangles[i] };
     }

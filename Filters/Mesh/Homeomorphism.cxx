@@ -7,6 +7,8 @@
 
 #include "Kernel/Simd/Vectorize.h"
 
+#include "vtkPolyData.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -98,9 +100,6 @@ void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const
   }
 }
 
-/// Half an ulp of 1.
-constexpr double PrecisionOfDouble = 0.5 * std::numeric_limits<double>::epsilon();
-
 /// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a
 /// triangle or its neighbor is so thin that the columns are almost parallel; the charts know
 /// better.
@@ -131,10 +130,10 @@ double Determinant(const ContourChart&, const ContourChart&, const TriangleShape
 } // namespace
 
 std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vtkPolyData* target,
-  const HomeomorphismOptions& options, MeshDiagnostics& problems)
+  const HomeomorphismOptions& options, MeshDiagnostics& diagnostics)
 {
   std::unique_ptr<Homeomorphism> result(new Homeomorphism);
-  result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, problems);
+  result->Pair = TriangulationPair::Read(source, target, options.MaskInvalidTriangles, diagnostics);
   if (!result->Pair)
   {
     return nullptr;
@@ -159,24 +158,24 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
         continue;
       }
       mappedByLinear.resize(topology.GetNumberOfTriangles(), 0);
-      MeshDiagnostic problem;
-      problem.What = MeshDiagnostic::Kind::Discordant;
-      problem.Where = !target ? "triangulation" : (domain == Domain::Source ? "source" : "target");
-      problem.Count = static_cast<vtkIdType>(discordant.size());
-      problem.Result = options.DiscordantByLinear ? MeshDiagnostic::Outcome::MappedByLinear
-                                                  : MeshDiagnostic::Outcome::Refused;
+      vtkPolyData* mesh = domain == Domain::Source ? source : target;
+      MeshDiagnostic diagnostic;
+      diagnostic.What = MeshDiagnostic::Kind::Discordant;
+      diagnostic.Where = !target   ? MeshDiagnostic::Mesh::Triangulation
+        : domain == Domain::Source ? MeshDiagnostic::Mesh::Source
+                                   : MeshDiagnostic::Mesh::Target;
+      diagnostic.Result = options.DiscordantByLinear ? MeshDiagnostic::Outcome::MappedByLinear
+                                                     : MeshDiagnostic::Outcome::Refused;
+      diagnostic.Ids.reserve(discordant.size());
       for (const TriangleIndex t : discordant)
       {
         mappedByLinear[t] = 1;
-        if (problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
-        {
-          problem.FirstCells.push_back(
-            FirstPolygon(domain == Domain::Source ? source : target) + t);
-        }
+        diagnostic.Ids.push_back(FirstPolygon(mesh) + t);
       }
-      problems.push_back(problem);
+      mesh->GetPoint(topology.GetCorners(discordant.front())[0], diagnostic.Position.data());
+      diagnostics.push_back(std::move(diagnostic));
     }
-    if (IsRefused(problems))
+    if (IsRefused(diagnostics))
     {
       return nullptr;
     }
@@ -215,13 +214,21 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
 double Homeomorphism::GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const
 {
   const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
-  // Three coordinates, each rounded when stored. Whatever they were stored as, the distance itself
-  // is measured in a triangle's frame, as doubles, with edges up to three times as long as the
-  // coordinates.
-  const double rounding =
-    (8.0 * std::max(precision, geometry.GetCoordinatePrecision()) + 16.0 * PrecisionOfDouble) *
-    geometry.GetLargestCoordinate();
+  const double rounding = geometry.GetRounding(precision);
   return std::max(rounding, tolerance * geometry.GetDiagonal());
+}
+
+double Homeomorphism::GetDistance(Domain domain, const double point[3]) const
+{
+  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
+  return this->Pair->GetLocation(domain).GetDistance(geometry.ToNormalized(point)) *
+    geometry.GetInverseScale();
+}
+
+double Homeomorphism::GetRelativeTolerance(Domain domain, double distance) const
+{
+  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
+  return distance * geometry.GetScale() / geometry.GetDiagonal();
 }
 
 SurfacePoint Homeomorphism::Locate(
@@ -267,7 +274,7 @@ int Homeomorphism::LocateBlock(
     }
     if (scattered)
     {
-      // Memory is slow to answer but takes many questions at a time.
+      // Prefetch to hide memory latency.
       seeds[i] = location.GetSeed({ point[0], point[1] });
       if (seeds[i] >= 0)
       {
@@ -289,7 +296,7 @@ int Homeomorphism::LocateBlock(
   for (int i = 0; i < block.Count;)
   {
     start = scattered && steps == 0 ? seeds[i] : start;
-    if (planar && start >= 0 && steps < MaximumSteps)
+    if (planar && start >= 0 && steps < MaximumSteps && !location.IsOverlapping(start))
     {
       // Points in a row are often in one triangle: as many are tried as there were last time, and
       // more.
@@ -405,7 +412,7 @@ void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const auto ignore = [](int) {};
-  // Memory is slow to answer but takes many questions at a time.
+  // Prefetch to hide memory latency.
   ForEachRun(
     block,
     [&](int begin, int, TriangleIndex t) {
@@ -560,11 +567,15 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   }
   FramePoint point;
   point.Offset = offset;
-  point.InPlane = this->VisitCharts(
-    from, surfacePoint.Triangle, [&surfacePoint](const auto& chart, const auto& other) {
-      return homeomorphism::MapPoint(chart, other, surfacePoint.Point.InPlane);
-    });
+  point.InPlane = this->MapInFrame(from, surfacePoint.Triangle, surfacePoint.Point.InPlane);
   target.FromNormalized(target.FromFrame(surfacePoint.Triangle, point), image);
+}
+
+Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const
+{
+  return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {
+    return homeomorphism::MapPoint(chart, other, point);
+  });
 }
 
 template <typename Chart>

@@ -26,7 +26,7 @@ struct HomeomorphismOptions
   CenterPoint Center = CenterPoint::Centroid;
   /// Leave defective triangles out instead of refusing the meshes.
   bool MaskInvalidTriangles = false;
-  /// Let the Linear system carry discordant triangles instead of refusing the meshes.
+  /// Let the Linear system map discordant triangles instead of refusing the meshes.
   bool DiscordantByLinear = false;
   /// Of the Cubic system. The deviation is in the target's units.
   CubicMapOptions Cubic;
@@ -69,7 +69,7 @@ struct PointBlock
   /// The points; after MapBlock, the images of those that are inside.
   double Points[Capacity][3];
 
-  /// The places (see Location), each number in an array of its own.
+  /// The located points (see SurfacePoint), as structure of arrays.
   TriangleIndex Triangles[Capacity];
   int Corners[Capacity];
   double InPlane[2][Size];
@@ -93,9 +93,9 @@ class Homeomorphism
 {
 public:
   /// Reads, validates and prepares. @a target may be null: then only coordinates can be asked for.
-  /// Defects are added to @a problems; returns null if they made the meshes be refused.
+  /// Defects are added to @a diagnostics; returns null if they made the meshes be refused.
   static std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target,
-    const HomeomorphismOptions& options, MeshDiagnostics& problems);
+    const HomeomorphismOptions& options, MeshDiagnostics& diagnostics);
 
   const TriangulationPair& GetPair() const { return *this->Pair; }
   /// The map of the Cubic system, null in the others.
@@ -108,12 +108,21 @@ public:
   /// that is more.
   double GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const;
 
-  /// The place of a point in a mesh's domain.
+  /// The distance of a point from a mesh's domain, in the input's units: infinite if the domain is
+  /// empty. Takes longer than Locate.
+  double GetDistance(Domain domain, const double point[3]) const;
+  /// The relative tolerance with which points at a distance from a mesh's domain are found.
+  double GetRelativeTolerance(Domain domain, double distance) const;
+
+  /// Locates a point in a mesh's domain.
   SurfacePoint Locate(
     Domain domain, const double point[3], double tolerance, TriangleIndex hint) const;
 
-  /// The image of a place of @a from's domain. Corners go to corners exactly.
+  /// The image of a point of @a from's domain. Corners are mapped to corners exactly.
   void MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
+
+  /// The image, in the frame of the target's triangle, of a point in the frame of @a from's.
+  Vector2 MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const;
 
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
   int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const;
@@ -122,7 +131,7 @@ public:
   /// place has no triangle stay.
   void MapBlock(Domain from, PointBlock& block) const;
 
-  /// The derivative at a place; on an edge, the limit from the place's triangle.
+  /// The derivative at a point; on an edge, the limit from the point's triangle.
   Jacobian GetJacobian(Domain from, const SurfacePoint& surfacePoint) const;
 
   /// The derivative at the point of a triangle that has these coordinates; where the coordinate
@@ -130,7 +139,7 @@ public:
   Jacobian GetJacobian(
     Domain from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
-  /// Triangular coordinates of a place of the domain.
+  /// Triangular coordinates of a point of the domain.
   TriangularCoordinates GetCoordinates(Domain domain, const SurfacePoint& surfacePoint) const
   {
     return this->GetCharts(domain).ToCoordinates(surfacePoint.Triangle, surfacePoint.Point.InPlane);
@@ -139,11 +148,11 @@ public:
 private:
   Homeomorphism() = default;
 
-  /// A point's place, given in both coordinates.
+  /// Locates a point that is given in both coordinates.
   SurfacePoint Locate(Domain domain, const double point[3], const Vector3& normalized,
     double tolerance, TriangleIndex hint) const;
 
-  /// The distance of a place's image from the plane of its triangle. Distances from a plane are
+  /// The distance of an image from the plane of its triangle. Distances from a plane are
   /// lengths of the input's space, not of either normalized space.
   double OffsetOfImage(Domain from, double offset) const
   {

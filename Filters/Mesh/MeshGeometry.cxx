@@ -284,12 +284,22 @@ void MeshGeometry::FindPlane(
   {
     return;
   }
+  // A mesh that is not planar to rounding, but to a millionth of its size, was meant to be planar.
+  constexpr double nearly = 1e-6;
+  double largestDistance = 0.0;
   for (std::size_t i = 0; i < used.size(); ++i)
   {
-    if (used[i] && std::abs(Dot3(normal, Difference(points[i], origin))) > spread)
+    const double distance = std::abs(Dot3(normal, Difference(points[i], origin)));
+    largestDistance = used[i] ? std::max(largestDistance, distance) : largestDistance;
+    if (largestDistance > std::max(spread, nearly * this->Diagonal))
     {
       return;
     }
+  }
+  if (largestDistance > spread)
+  {
+    this->FindThickness(points, used, normal);
+    return;
   }
   this->Planar = true;
   int main = 0;
@@ -310,6 +320,35 @@ void MeshGeometry::FindPlane(
   v = Scaled(v, 1.0 / Length(v));
   this->PlaneAxes = { Cross3(v, normal), v, normal };
   this->PlaneDistance = Dot3(normal, origin);
+}
+
+void MeshGeometry::FindThickness(
+  const MeshPoints& points, const std::vector<std::uint8_t>& used, const Vector3& normal)
+{
+  const auto thicknessAlong = [&points, &used](const Vector3& direction) {
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -least;
+    for (std::size_t i = 0; i < used.size(); ++i)
+    {
+      const double height = Dot3(direction, points[i]);
+      least = used[i] ? std::min(least, height) : least;
+      greatest = used[i] ? std::max(greatest, height) : greatest;
+    }
+    return greatest - least;
+  };
+  this->Thickness = thicknessAlong(normal);
+  // A plane parallel to two axes, if there is one almost as near, is the one that was meant.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    Vector3 direction{};
+    direction[axis] = 1.0;
+    const double thickness = thicknessAlong(direction);
+    if (thickness <= 16.0 * this->Thickness)
+    {
+      this->Thickness = thickness;
+      return;
+    }
+  }
 }
 
 Vector3 MeshGeometry::ToTiltedPlane(const Vector3& scaled) const
@@ -351,6 +390,16 @@ void MeshGeometry::FromMeshPoint(std::int32_t meshPoint, double offset, double p
     point[axis] =
       (this->SpacePoints[meshPoint][axis] + offset * this->PlaneAxes[2][axis]) * this->InverseScale;
   }
+}
+
+Vector3 MeshGeometry::GetVector(std::int32_t from, std::int32_t to) const
+{
+  if (!this->Planar)
+  {
+    return Scaled(Difference(this->SpacePoints[to], this->SpacePoints[from]), this->InverseScale);
+  }
+  const Vector2 d = this->PlanePoints[to] - this->PlanePoints[from];
+  return Scaled(Sum(Scaled(this->PlaneAxes[0], d.x), d.y, this->PlaneAxes[1]), this->InverseScale);
 }
 
 int MeshGeometry::GetOrientation(const Triangulation::Corners& corners) const

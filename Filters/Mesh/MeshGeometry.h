@@ -14,8 +14,10 @@
 
 #include "Kernel/Geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 class vtkPoints;
@@ -97,11 +99,35 @@ public:
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
   /// The box around the points of a planar mesh that triangles use, in its plane.
   const Box<2>& GetPlaneBounds() const { return this->PlaneBounds; }
+  /// Of a surface whose points lie almost in a plane, within a millionth of its diagonal: the
+  /// largest distance of a point from that plane, in normalized coordinates, if the plane is one of
+  /// those between the points. 0 for all other meshes.
+  double GetThickness() const { return this->Thickness; }
   /// Length of the diagonal of the box around the points, in normalized coordinates.
   double GetDiagonal() const { return this->Diagonal; }
   /// Relative rounding error of the coordinates as they were stored: half an ulp of float or
   /// double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
+
+  /// How far, in normalized coordinates, a point that should lie on an edge may be from it because
+  /// coordinates are rounded: 8 u L + 16 v L, with L the largest coordinate, u the precision of the
+  /// stored coordinates, and v that of double.
+  ///
+  /// A point a + t (b - a) of an edge from a to b, computed in the precision of the coordinates,
+  /// has rounding errors of at most 2 u L (difference), 2 u L (product) and u L (sum) in each
+  /// coordinate, together less than 8 u L in any direction of the plane. If a, b and the point have
+  /// each been rounded instead, their distances add up to less than 4 u L. In a plane that is not
+  /// parallel to two axes, the two coordinates in the plane are sums of three products, with errors
+  /// of less than 6 v L each, in the point and in the edge. Distances are computed as doubles.
+  ///
+  /// It is also the distance at which a point with coordinates of this precision may be found from
+  /// the mesh. @a precision counts if it is coarser than that of the mesh.
+  double GetRounding(double precision = 0.0) const
+  {
+    return (8.0 * std::max(precision, this->CoordinatePrecision) +
+             8.0 * std::numeric_limits<double>::epsilon()) *
+      this->LargestCoordinate;
+  }
 
   Vector3 ToNormalized(const double point[3]) const
   {
@@ -154,14 +180,14 @@ public:
     }
   }
 
-  /// Whether a place is a point of the mesh, bit for bit.
+  /// Whether a point equals a point of the mesh, bit for bit.
   bool IsMeshPoint(std::int32_t meshPoint, const double point[3]) const;
 
-  /// The place at a distance from a point of the mesh, along the plane's normal; the mesh's own
+  /// The point at a distance from a point of the mesh, along the plane's normal; the mesh's own
   /// point, unrounded, if the distance is 0.
   void FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const;
 
-  /// Working coordinates of a point of the mesh; in the plane the third is the distance from it.
+  /// Normalized coordinates of a point of the mesh; in the plane the third is the distance from it.
   Vector3 GetPoint(std::int32_t point) const
   {
     if (this->Planar)
@@ -171,6 +197,10 @@ public:
     }
     return this->SpacePoints[point];
   }
+  /// The vector from one point of the mesh to another, in the input's coordinates. It is the
+  /// difference of nearby numbers, so that points close to each other have an accurate one however
+  /// far from the origin they are.
+  Vector3 GetVector(std::int32_t from, std::int32_t to) const;
   /// The same for a planar mesh.
   const Vector2& GetPlanePoint(std::int32_t point) const { return this->PlanePoints[point]; }
 
@@ -212,7 +242,7 @@ public:
     return this->PlaneFrames[triangle];
   }
 
-  /// Asks for a triangle's frame, without waiting for it.
+  /// Prefetches a triangle's frame.
   void PrefetchFrame(TriangleIndex triangle) const
   {
     if (this->Planar)
@@ -256,6 +286,8 @@ private:
   class MeshPoints;
   void FindPlane(
     const MeshPoints& points, const std::vector<std::uint8_t>& used, const MeshGeometry* companion);
+  void FindThickness(
+    const MeshPoints& points, const std::vector<std::uint8_t>& used, const Vector3& normal);
   void FindOrientations(const Triangulation& triangulation);
   void ComputePlaneFrames(
     const Triangulation& triangulation, TriangleIndex begin, TriangleIndex end);
@@ -270,6 +302,7 @@ private:
   double InverseScale = 1.0;
   double LargestCoordinate = 0.0;
   double Diagonal = 0.0;
+  double Thickness = 0.0;
   double CoordinatePrecision = 0.0;
 
   // The plane: axes U, V within it and the normal N, right-handed, and its distance from the

@@ -3,7 +3,8 @@
 
 #include "MeshValidation.h"
 
-#include "BoxTree.h"
+#include "BoundarySweep.h"
+#include "Box.h"
 
 #include "Kernel/ExactSign.h"
 
@@ -21,52 +22,39 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace homeomorphism
 {
 namespace
 {
 
-/// Collects the offenders of one kind.
-class Offenders
+/// Adds the cells with one kind of defect to the diagnostics, if there are any.
+void Report(MeshDiagnostic::Kind kind, MeshDiagnostic::Mesh where, std::vector<vtkIdType> ids,
+  MeshDiagnostics& diagnostics)
 {
-public:
-  Offenders(MeshDiagnostic::Kind kind, const std::string& where)
+  if (ids.empty())
   {
-    this->Problem.What = kind;
-    this->Problem.Where = where;
+    return;
   }
+  MeshDiagnostic diagnostic;
+  diagnostic.What = kind;
+  diagnostic.Where = where;
+  diagnostic.Ids = std::move(ids);
+  diagnostics.push_back(std::move(diagnostic));
+}
 
-  void Add(vtkIdType cell)
-  {
-    ++this->Problem.Count;
-    if (this->Problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
-    {
-      this->Problem.FirstCells.push_back(cell);
-    }
-  }
-
-  void Report(MeshDiagnostics& problems, const std::string& details = std::string()) const
-  {
-    if (this->Problem.Count > 0)
-    {
-      problems.push_back(this->Problem);
-      problems.back().Details = details;
-    }
-  }
-
-private:
-  MeshDiagnostic Problem;
-};
-
-/// The whole mesh is at fault, not some of its triangles.
-void ReportWhole(MeshDiagnostic::Kind kind, const std::string& details, MeshDiagnostics& problems)
+/// Adds a defect of a mesh as a whole, of which two numbers are known.
+void ReportCounts(MeshDiagnostic::Kind kind, MeshDiagnostic::Mesh where, vtkIdType first,
+  vtkIdType second, MeshDiagnostics& diagnostics)
 {
-  MeshDiagnostic problem;
-  problem.What = kind;
-  problem.Count = 1;
-  problem.Details = details;
-  problems.push_back(problem);
+  MeshDiagnostic diagnostic;
+  diagnostic.What = kind;
+  diagnostic.Where = where;
+  diagnostic.Counts = { first, second };
+  diagnostics.push_back(diagnostic);
 }
 
 vtkIdType CountCells(vtkCellArray* cells)
@@ -111,8 +99,8 @@ vtkSmartPointer<Int64Array> AsInt64Array(vtkDataArray* ids)
 template <typename Id>
 void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
   vtkAOSDataArrayTemplate<Id>* connectivityArray, vtkIdType numberOfPoints, vtkIdType firstCell,
-  LargeArray<Triangulation::Corners>& triangles, Offenders& notTriangles,
-  Offenders& badConnectivity)
+  LargeArray<Triangulation::Corners>& triangles, std::vector<vtkIdType>& notTriangles,
+  std::vector<vtkIdType>& badConnectivity)
 {
   const vtkIdType cells = std::max<vtkIdType>(0, offsetArray->GetNumberOfValues() - 1);
   const vtkIdType entries = connectivityArray->GetNumberOfValues();
@@ -126,12 +114,12 @@ void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
     const vtkIdType end = offsets[cell + 1];
     if (begin < 0 || end < begin || end > entries)
     {
-      badConnectivity.Add(firstCell + cell);
+      badConnectivity.push_back(firstCell + cell);
       continue;
     }
     if (end - begin != 3)
     {
-      notTriangles.Add(firstCell + cell);
+      notTriangles.push_back(firstCell + cell);
       continue;
     }
     bool exist = true;
@@ -143,7 +131,7 @@ void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
     }
     if (!exist)
     {
-      badConnectivity.Add(firstCell + cell);
+      badConnectivity.push_back(firstCell + cell);
     }
   }
 }
@@ -218,179 +206,76 @@ bool HasFolds(const Triangulation& triangulation, const MeshGeometry& geometry)
   }).empty();
 }
 
-/// The box around some corners of a triangle of the plane.
-Box<2> BoxAround(const MeshGeometry& geometry, std::initializer_list<std::int32_t> points)
+/// The box around a triangle of the plane.
+Box<2> BoxAround(const MeshGeometry& geometry, const Triangulation::Corners& corners)
 {
   Box<2> box;
-  for (const std::int32_t point : points)
+  for (const std::int32_t corner : corners)
   {
-    box.Add({ geometry.GetPlanePoint(point).x, geometry.GetPlanePoint(point).y });
+    box.Add({ geometry.GetPlanePoint(corner).x, geometry.GetPlanePoint(corner).y });
   }
   return box;
 }
 
-/// Whether a triangle's interior meets that of one that is near a box. visitNear(box, visit) is
-/// like PointLocation::VisitNear.
-template <typename VisitNear>
-bool OverlapsNear(const Triangulation& triangulation, const MeshGeometry& geometry,
-  VisitNear&& visitNear, TriangleIndex t, const Box<2>& box)
+/// The boundary edges of a triangulation of the plane.
+std::vector<BoundarySegment> FindBoundary(
+  const Triangulation& triangulation, const MeshGeometry& geometry)
 {
-  bool overlaps = false;
-  visitNear(box, [&](TriangleIndex other) {
-    overlaps = other != t &&
-      InteriorsMeet(geometry, triangulation.GetCorners(t), triangulation.GetCorners(other));
-    return !overlaps;
-  });
-  return overlaps;
+  std::vector<BoundarySegment> boundary;
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    for (int k = 0; k < 3 && !triangulation.IsMasked(t); ++k)
+    {
+      if (triangulation.GetTwin(t, k).Triangle >= 0)
+      {
+        continue;
+      }
+      const Triangulation::Corners& corners = triangulation.GetCorners(t);
+      BoundarySegment segment{ geometry.GetPlanePoint(corners[NextCorner(k)]),
+        geometry.GetPlanePoint(corners[PreviousCorner(k)]), geometry.GetOrientation(t) };
+      if (std::tie(segment.End.x, segment.End.y) < std::tie(segment.Start.x, segment.Start.y))
+      {
+        std::swap(segment.Start, segment.End);
+        segment.Change = -segment.Change;
+      }
+      boundary.push_back(segment);
+    }
+  }
+  return boundary;
 }
 
-/// A coarse grid over a part of the plane, which says where boxes were put. All is done in time
-/// that does not depend on how large the boxes are.
-class Cover
+/// How far one of two triangles whose interiors meet has to be moved until they do not: the least
+/// over all edges of how far the other triangle reaches across the edge.
+double DepthOfOverlap(const MeshGeometry& geometry, const Triangulation::Corners& first,
+  const Triangulation::Corners& second)
 {
-public:
-  Cover(const Box<2>& bounds, int cellsPerSide)
-    : Bounds(bounds)
-    , Side(cellsPerSide)
-    , Counts(static_cast<std::size_t>(Side + 1) * static_cast<std::size_t>(Side + 1), 0)
-  {
-  }
-
-  void Put(const Box<2>& box)
-  {
-    // Where the count changes; the sums are made by Finish.
-    const Cells cells = this->CellsOf(box);
-    this->At(cells.Least[0], cells.Least[1]) += 1;
-    this->At(cells.Greatest[0] + 1, cells.Least[1]) -= 1;
-    this->At(cells.Least[0], cells.Greatest[1] + 1) -= 1;
-    this->At(cells.Greatest[0] + 1, cells.Greatest[1] + 1) += 1;
-  }
-
-  /// After all boxes were put.
-  void Finish()
-  {
-    this->SumUp();
-    for (std::int32_t& count : this->Counts)
+  double depth = std::numeric_limits<double>::infinity();
+  const auto compare = [&](const Triangulation::Corners& a, const Triangulation::Corners& b) {
+    const int side = geometry.GetOrientation(a);
+    for (int k = 0; k < 3; ++k)
     {
-      count = count > 0 ? 1 : 0;
-    }
-    // At(x, y) becomes the number of covered cells before it in both directions.
-    for (int y = this->Side; y >= 0; --y)
-    {
-      for (int x = this->Side; x >= 0; --x)
+      const Vector2& start = geometry.GetPlanePoint(a[NextCorner(k)]);
+      const Vector2 edge = geometry.GetPlanePoint(a[PreviousCorner(k)]) - start;
+      const double length = std::hypot(edge.x, edge.y);
+      double farthest = 0.0;
+      for (const std::int32_t corner : b)
       {
-        this->At(x, y) = x > 0 && y > 0 ? this->At(x - 1, y - 1) : 0;
+        const Vector2 d = geometry.GetPlanePoint(corner) - start;
+        farthest = std::max(farthest, side * (Cross(edge, d) / length));
       }
+      depth = std::min(depth, farthest);
     }
-    this->SumUp();
-  }
-
-  /// False only if @a box meets none of the boxes.
-  bool MayMeet(const Box<2>& box) const
-  {
-    const Cells cells = this->CellsOf(box);
-    return this->At(cells.Greatest[0] + 1, cells.Greatest[1] + 1) -
-      this->At(cells.Least[0], cells.Greatest[1] + 1) -
-      this->At(cells.Greatest[0] + 1, cells.Least[1]) + this->At(cells.Least[0], cells.Least[1]) >
-      0;
-  }
-
-private:
-  struct Cells
-  {
-    std::array<int, 2> Least;
-    std::array<int, 2> Greatest;
   };
+  compare(first, second);
+  compare(second, first);
+  return depth;
+}
 
-  std::int32_t& At(int x, int y)
-  {
-    return this->Counts[static_cast<std::size_t>(y) * static_cast<std::size_t>(this->Side + 1) +
-      static_cast<std::size_t>(x)];
-  }
-  std::int32_t At(int x, int y) const { return const_cast<Cover*>(this)->At(x, y); }
-
-  void SumUp()
-  {
-    for (int y = 0; y <= this->Side; ++y)
-    {
-      for (int x = 1; x <= this->Side; ++x)
-      {
-        this->At(x, y) += this->At(x - 1, y);
-      }
-    }
-    for (int y = 1; y <= this->Side; ++y)
-    {
-      for (int x = 0; x <= this->Side; ++x)
-      {
-        this->At(x, y) += this->At(x, y - 1);
-      }
-    }
-  }
-
-  /// Never decreases with the coordinate, so that boxes that meet have a cell in common.
-  Cells CellsOf(const Box<2>& box) const
-  {
-    Cells cells;
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      const double least = this->Bounds.Least[axis];
-      const double scale = this->Side / (this->Bounds.Greatest[axis] - least);
-      const auto cellOf = [&](double x) {
-        const double place = (x - least) * scale;
-        // Also where it is not a number, because the scale is not finite.
-        return place > 0.0 ? static_cast<int>(std::min(place, this->Side - 1.0)) : 0;
-      };
-      cells.Least[axis] = cellOf(box.Least[axis]);
-      cells.Greatest[axis] = cellOf(box.Greatest[axis]);
-    }
-    return cells;
-  }
-
-  Box<2> Bounds;
-  int Side;
-  std::vector<std::int32_t> Counts;
-};
-
-/// Whether a triangle at the boundary overlaps one that is near its boundary edge.
-bool OverlapsAtBoundary(const Triangulation& triangulation, const MeshGeometry& geometry)
+/// The least height of a triangle.
+double HeightOf(const MeshGeometry& geometry, const Triangulation::Corners& corners)
 {
-  const auto boxOf = [&](TriangleIndex t) {
-    const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return BoxAround(geometry, { corners[0], corners[1], corners[2] });
-  };
-  const auto boxOfEdge = [&](TriangleIndex t, int k) {
-    const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return BoxAround(geometry, { corners[NextCorner(k)], corners[PreviousCorner(k)] });
-  };
-  const TriangleList atBoundary = FindTriangles(triangulation, [&](TriangleIndex t) {
-    return triangulation.GetTwin(t, 0).Triangle < 0 || triangulation.GetTwin(t, 1).Triangle < 0 ||
-      triangulation.GetTwin(t, 2).Triangle < 0;
-  });
-  const auto visitEdges = [&](const auto& visit) {
-    return std::any_of(atBoundary.begin(), atBoundary.end(), [&](TriangleIndex t) {
-      bool found = false;
-      for (int k = 0; k < 3 && !found; ++k)
-      {
-        found = triangulation.GetTwin(t, k).Triangle < 0 && visit(t, boxOfEdge(t, k));
-      }
-      return found;
-    });
-  };
-  // Most triangles are far from all boundary edges.
-  const double few = 0.5 * std::sqrt(static_cast<double>(triangulation.GetNumberOfTriangles()));
-  Cover cover(geometry.GetPlaneBounds(), 1 + static_cast<int>(std::min(few, 255.0)));
-  visitEdges([&cover](TriangleIndex, const Box<2>& box) {
-    cover.Put(box);
-    return false;
-  });
-  cover.Finish();
-  BoxTree<2> tree;
-  tree.Build(
-    FindTriangles(triangulation, [&](TriangleIndex t) { return cover.MayMeet(boxOf(t)); }), boxOf);
-  const auto visitNear = [&tree](const Box<2>& box, const auto& visit) { tree.Search(box, visit); };
-  return visitEdges([&](TriangleIndex t, const Box<2>& box) {
-    return OverlapsNear(triangulation, geometry, visitNear, t, box);
-  });
+  const EdgeViews views = geometry.GetViews(corners);
+  return std::min({ views[0].Height, views[1].Height, views[2].Height });
 }
 
 } // namespace
@@ -401,24 +286,19 @@ vtkIdType FirstPolygon(vtkPolyData* mesh)
 }
 
 LargeArray<Triangulation::Corners> ReadTriangles(
-  vtkPolyData* mesh, const std::string& where, MeshDiagnostics& problems)
+  vtkPolyData* mesh, MeshDiagnostic::Mesh where, MeshDiagnostics& diagnostics)
 {
   LargeArray<Triangulation::Corners> triangles;
   const vtkIdType firstCell = FirstPolygon(mesh);
-  Offenders notTriangles(MeshDiagnostic::Kind::NotTriangles, where);
-  Offenders badConnectivity(MeshDiagnostic::Kind::BadConnectivity, where);
+  std::vector<vtkIdType> notTriangles;
+  std::vector<vtkIdType> badConnectivity;
   vtkCellArray* polygons = mesh->GetPolys();
   const vtkIdType count = CountCells(polygons);
   const vtkIdType numberOfPoints = mesh->GetNumberOfPoints();
   if (count >= Triangulation::MaximumTriangles ||
     numberOfPoints >= std::numeric_limits<std::int32_t>::max())
   {
-    ReportWhole(MeshDiagnostic::Kind::TooManyTriangles,
-      "The " + where + " has " + std::to_string(count) + " polygons and " +
-        std::to_string(numberOfPoints) + " points; fewer than " +
-        std::to_string(Triangulation::MaximumTriangles) + " and " +
-        std::to_string(std::numeric_limits<std::int32_t>::max()) + " can be numbered",
-      problems);
+    ReportCounts(MeshDiagnostic::Kind::TooManyTriangles, where, count, numberOfPoints, diagnostics);
     return triangles;
   }
   if (count > 0)
@@ -438,41 +318,35 @@ LargeArray<Triangulation::Corners> ReadTriangles(
         firstCell, triangles, notTriangles, badConnectivity);
     }
   }
-  notTriangles.Report(problems, "polygon with another number of corners than three");
-  badConnectivity.Report(problems);
+  Report(MeshDiagnostic::Kind::NotTriangles, where, std::move(notTriangles), diagnostics);
+  Report(MeshDiagnostic::Kind::BadConnectivity, where, std::move(badConnectivity), diagnostics);
 
-  Offenders strips(MeshDiagnostic::Kind::NotTriangles, where);
-  for (vtkIdType strip = 0; strip < CountCells(mesh->GetStrips()); ++strip)
-  {
-    strips.Add(firstCell + count + strip);
-  }
-  strips.Report(problems, "triangle strip");
+  std::vector<vtkIdType> strips(static_cast<std::size_t>(CountCells(mesh->GetStrips())));
+  std::iota(strips.begin(), strips.end(), firstCell + count);
+  Report(MeshDiagnostic::Kind::TriangleStrips, where, std::move(strips), diagnostics);
   return triangles;
 }
 
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
-  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& problems)
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& diagnostics)
 {
   if (source->GetNumberOfPoints() != target->GetNumberOfPoints())
   {
-    ReportWhole(MeshDiagnostic::Kind::PointCountsDiffer,
-      "The source has " + std::to_string(source->GetNumberOfPoints()) + " points, the target " +
-        std::to_string(target->GetNumberOfPoints()),
-      problems);
+    ReportCounts(MeshDiagnostic::Kind::PointCountsDiffer, MeshDiagnostic::Mesh::Pair,
+      source->GetNumberOfPoints(), target->GetNumberOfPoints(), diagnostics);
   }
   if (sourceTriangles.size() != targetTriangles.size())
   {
-    ReportWhole(MeshDiagnostic::Kind::CellCountsDiffer,
-      "The source has " + std::to_string(sourceTriangles.size()) + " triangles, the target " +
-        std::to_string(targetTriangles.size()),
-      problems);
+    ReportCounts(MeshDiagnostic::Kind::CellCountsDiffer, MeshDiagnostic::Mesh::Pair,
+      static_cast<vtkIdType>(sourceTriangles.size()),
+      static_cast<vtkIdType>(targetTriangles.size()), diagnostics);
   }
-  if (IsRefused(problems))
+  if (IsRefused(diagnostics))
   {
     return;
   }
-  Offenders different(MeshDiagnostic::Kind::ConnectivityDiffers, "pair");
+  std::vector<vtkIdType> different;
   const vtkIdType firstCell = FirstPolygon(source);
   for (std::size_t t = 0; t < sourceTriangles.size(); ++t)
   {
@@ -480,10 +354,11 @@ void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
       !std::is_permutation(
         sourceTriangles[t].begin(), sourceTriangles[t].end(), targetTriangles[t].begin()))
     {
-      different.Add(firstCell + static_cast<vtkIdType>(t));
+      different.push_back(firstCell + static_cast<vtkIdType>(t));
     }
   }
-  different.Report(problems);
+  Report(MeshDiagnostic::Kind::ConnectivityDiffers, MeshDiagnostic::Mesh::Pair,
+    std::move(different), diagnostics);
 }
 
 vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* attributes, vtkIdType tuples)
@@ -557,26 +432,57 @@ TriangleList FindFlipped(
   return FindTriangles(triangulation, [&](TriangleIndex t) { return !isMirrored(t); });
 }
 
-TriangleList FindOverlapping(
+Overlaps FindOverlapping(
   const Triangulation& triangulation, const MeshGeometry& geometry, const PointLocation& location)
 {
-  // Without folds, how often a point of the plane is covered changes only across boundary edges.
-  // Beside a region that is covered twice there then is a boundary edge whose triangle is on the
-  // side that is covered twice: there it overlaps a triangle that touches the edge. So only what is
-  // near boundary edges has to be compared.
-  if (!HasFolds(triangulation, geometry) && !OverlapsAtBoundary(triangulation, geometry))
+  Overlaps overlaps;
+  if (!HasFolds(triangulation, geometry) && CoversAtMostOnce(FindBoundary(triangulation, geometry)))
   {
-    return {};
+    return overlaps;
   }
-  const auto visitNear = [&location](const Box<2>& box, const auto& visit) {
-    location.VisitNear(box, visit);
+  // Interiors meet: name all triangles concerned. So many overlaps of a triangle are measured.
+  constexpr int measured = 16;
+  const double rounding = geometry.GetRounding();
+  const auto areTwins = [&triangulation](TriangleIndex t, TriangleIndex other) {
+    return triangulation.GetTwin(t, 0).Triangle == other ||
+      triangulation.GetTwin(t, 1).Triangle == other ||
+      triangulation.GetTwin(t, 2).Triangle == other;
   };
-  // Something overlaps: name all that do.
-  return FindTriangles(triangulation, [&](TriangleIndex t) {
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    if (triangulation.IsMasked(t))
+    {
+      continue;
+    }
     const Triangulation::Corners& corners = triangulation.GetCorners(t);
-    return OverlapsNear(triangulation, geometry, visitNear, t,
-      BoxAround(geometry, { corners[0], corners[1], corners[2] }));
-  });
+    bool meetsByRounding = false;
+    int found = 0;
+    location.VisitNear(BoxAround(geometry, corners), [&](TriangleIndex other) {
+      const Triangulation::Corners& others = triangulation.GetCorners(other);
+      if (other == t || !InteriorsMeet(geometry, corners, others))
+      {
+        return true;
+      }
+      const double depth = DepthOfOverlap(geometry, corners, others);
+      if (!areTwins(t, other) && depth <= rounding &&
+        4.0 * depth <= std::min(HeightOf(geometry, corners), HeightOf(geometry, others)))
+      {
+        meetsByRounding = true;
+        return true;
+      }
+      overlaps.Depth = std::max(overlaps.Depth, depth);
+      return ++found < measured;
+    });
+    if (found > 0)
+    {
+      overlaps.Triangles.push_back(t);
+    }
+    else if (meetsByRounding)
+    {
+      overlaps.WithinRounding.push_back(t);
+    }
+  }
+  return overlaps;
 }
 
 } // namespace homeomorphism

@@ -14,7 +14,6 @@
 #include "PointLocation.h"
 #include "Triangulation.h"
 
-#include <string>
 #include <vector>
 
 class vtkDataSetAttributes;
@@ -32,15 +31,15 @@ vtkIdType FirstPolygon(vtkPolyData* mesh);
 
 /// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
 /// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
-/// exist, and counts beyond what can be numbered. @a where names the mesh in messages.
+/// exist, and counts beyond what can be numbered.
 LargeArray<Triangulation::Corners> ReadTriangles(
-  vtkPolyData* mesh, const std::string& where, MeshDiagnostics& problems);
+  vtkPolyData* mesh, MeshDiagnostic::Mesh where, MeshDiagnostics& diagnostics);
 
 /// Reports what keeps source and target from being the same mesh: counts, and triangles that do not
 /// have the same three points. The order of the three points is free.
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
-  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& problems);
+  const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& diagnostics);
 
 /// The array of some attributes that marks what is hidden or belongs to another piece
 /// (vtkGhostType); null if there is none that has one value for each of @a tuples points or cells.
@@ -63,10 +62,26 @@ TriangleList FindDegenerate(const Triangulation& triangulation, const MeshGeomet
 TriangleList FindFlipped(
   const Triangulation& triangulation, const MeshGeometry& source, const MeshGeometry& target);
 
-/// Triangles of a planar mesh whose interior meets another's, by exact predicates. @a
-/// triangulation's adjacency and @a location must know which triangles are masked. Nearly linear in
-/// the number of triangles as long as there are none; @a location is asked only if there are some.
-TriangleList FindOverlapping(
+/// Triangles of a planar mesh whose interiors meet those of others.
+struct Overlaps
+{
+  /// Beyond the rounding of the coordinates.
+  TriangleList Triangles;
+  /// Only by the rounding of the coordinates.
+  TriangleList WithinRounding;
+  /// The depth of the deepest overlap found beyond the rounding, in normalized coordinates.
+  double Depth = 0.0;
+};
+
+/// Finds overlaps by exact predicates. @a triangulation's adjacency and @a location must know which
+/// triangles are masked. Takes n log n time if there are no overlaps; @a location is used only if
+/// there are some.
+///
+/// The depth of an overlap is how far one triangle has to be moved until it ends. Coordinates are
+/// rounded, so triangles that should touch may overlap by MeshGeometry::GetRounding(). Such an
+/// overlap is none, if its depth is also at most a quarter of the heights of both triangles, and
+/// the two are not adjacent: the overlap of adjacent triangles is a fold.
+Overlaps FindOverlapping(
   const Triangulation& triangulation, const MeshGeometry& geometry, const PointLocation& location);
 
 } // namespace homeomorphism

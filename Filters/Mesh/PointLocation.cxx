@@ -158,6 +158,16 @@ void PointLocation::PlantSeeds()
   }
 }
 
+void PointLocation::SetOverlapping(const std::vector<TriangleIndex>& triangles)
+{
+  this->Overlapping.clear();
+  for (const TriangleIndex t : triangles)
+  {
+    this->Overlapping.resize(static_cast<std::size_t>(this->Topology.GetNumberOfTriangles()), 0);
+    this->Overlapping[t] = 1;
+  }
+}
+
 SurfacePoint PointLocation::Find(
   const Vector3& normalized, double tolerance, TriangleIndex hint) const
 {
@@ -181,6 +191,18 @@ SurfacePoint PointLocation::Find(
   return location;
 }
 
+double PointLocation::GetDistance(const Vector3& normalized) const
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const SurfacePoint nearest = this->Geometry.IsPlanar()
+    ? this->FindInPlane(normalized, infinity, -1)
+    : this->FindNearest(normalized, infinity, -1);
+  return nearest.Triangle < 0
+    ? infinity
+    : Length(Difference(
+        normalized, this->Geometry.FromFrame(nearest.Triangle, { nearest.Point.InPlane, 0.0 })));
+}
+
 int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized) const
 {
   const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);
@@ -197,7 +219,6 @@ int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized)
   return found;
 }
 
-/// The place of a point that is in a triangle of the plane.
 SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3& normalized) const
 {
   return { triangle, this->Geometry.ToFrame(triangle, normalized),
@@ -205,7 +226,7 @@ SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3
 }
 
 /// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for
-/// certain in the triangle's interior, @a location has its place.
+/// certain in the triangle's interior, @a location is set.
 TriangleIndex PointLocation::Walk(
   const Vector2& point, TriangleIndex start, SurfacePoint& location) const
 {
@@ -218,6 +239,10 @@ TriangleIndex PointLocation::Walk(
     const PlaneRelation relation(frame, point);
     if (relation.IsInside())
     {
+      if (this->IsOverlapping(t))
+      {
+        return -1;
+      }
       location.Triangle = t;
       location.Point.InPlane = relation.InPlane;
       return t;
@@ -262,12 +287,14 @@ TriangleIndex PointLocation::Walk(
       {
         if (edges == 0)
         {
-          return t;
+          return this->IsOverlapping(t) ? -1 : t;
         }
         // Within an edge of two triangles there is no third. At a vertex or on the boundary there
         // may be more, also such that share no point of the mesh with this one.
         const TriangleIndex other = edges == 1 ? this->Topology.GetTwin(t, onEdge).Triangle : -1;
-        return other >= 0 ? std::min(t, other) : -1;
+        return other >= 0 && !this->IsOverlapping(t) && !this->IsOverlapping(other)
+          ? std::min(t, other)
+          : -1;
       }
     }
     t = this->Topology.GetTwin(t, edge).Triangle;

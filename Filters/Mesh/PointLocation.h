@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PointLocation.h
-/// Which triangle is a point in?
+/// Finds the triangle that contains a point.
 
 #ifndef homeomorphism_PointLocation_h
 #define homeomorphism_PointLocation_h
@@ -22,7 +22,7 @@
 namespace homeomorphism
 {
 
-/// Where a point was found.
+/// A point of a triangulation.
 struct SurfacePoint
 {
   /// -1 if the point is outside.
@@ -59,7 +59,7 @@ struct PlaneRelation
     // With u half an ulp of 1, the error of y is at most 5 u |d| (a rounded difference, a tangent
     // rounded twice, a product, a sum), hence that of the apex' coordinate, with the height's 8 u,
     // 13 u |d| / height; that of the second at most 30 u |d| / height (x, the apex' coordinate, and
-    // 8 u base of the apex' place), since base > height; that of the first the sum, |d| being at
+    // 8 u base of the apex' position), since base > height; that of the first the sum, |d| being at
     // least the distance of the opposite edge, which is more than the height, where it is zero.
     // Products near the least normal number are not rounded relatively.
     constexpr double u = 0.5 * std::numeric_limits<double>::epsilon();
@@ -87,10 +87,22 @@ public:
   /// Refers to the two, which must outlive it. Masked triangles are not found.
   PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry);
 
+  /// Sets the triangles of a planar mesh, ascending, that overlap others by the rounding of their
+  /// coordinates. Of several triangles that contain a point, the one with the lowest number counts.
+  void SetOverlapping(const std::vector<TriangleIndex>& triangles);
+  /// Whether a triangle overlaps others by the rounding of their coordinates.
+  bool IsOverlapping(TriangleIndex triangle) const
+  {
+    return !this->Overlapping.empty() && this->Overlapping[triangle] != 0;
+  }
+
   /// @a normalized is the point in the geometry's normalized coordinates, @a tolerance a distance
   /// in them, @a hint the triangle where the point probably is, or -1. The geometry must have its
   /// frames.
   SurfacePoint Find(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
+
+  /// The distance of a point from the domain, in normalized coordinates.
+  double GetDistance(const Vector3& normalized) const;
 
   /// A triangle of a planar mesh that is probably near a point, or -1.
   TriangleIndex GetSeed(const Vector2& point) const
@@ -127,6 +139,8 @@ private:
   const Triangulation& Topology;
   const MeshGeometry& Geometry;
   BoxTree<3> SpaceTree;
+  // For each triangle, or empty if there are none.
+  std::vector<std::uint8_t> Overlapping;
   // Made when it is first needed, by whichever thread does first: often no point is outside or on
   // an edge, and one of the two directions is not used at all.
   mutable std::once_flag HasPlaneTree;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Triangulation.h
-/// The combinatorial half of a mesh: which points a triangle has, and what lies across its edges.
+/// The connectivity of a mesh: the points of each triangle and its neighbors across the edges.
 
 #ifndef homeomorphism_Triangulation_h
 #define homeomorphism_Triangulation_h
@@ -21,17 +21,17 @@ namespace homeomorphism
 /// Number of a triangle, from 0; -1 is no triangle.
 using TriangleIndex = std::int32_t;
 
-/// Asks the processor to bring a place of memory nearer, where that can be said.
-inline void Prefetch(const void* place)
+/// Prefetches memory to hide its latency, where the compiler can.
+inline void Prefetch(const void* address)
 {
 #if defined(__GNUC__)
-  __builtin_prefetch(place);
+  __builtin_prefetch(address);
 #else
-  (void)place;
+  (void)address;
 #endif
 }
 
-/// What lies across an edge of a triangle.
+/// The same edge, seen from the neighboring triangle.
 struct Twin
 {
   /// -1 on the boundary.
@@ -77,18 +77,18 @@ public:
     return { code >> 3, (code >> 1) & 3, (code & 1) != 0 };
   }
 
-  /// Asks for what GetTwin will need, without waiting for it.
+  /// Prefetches what GetTwin reads.
   void PrefetchTwin(TriangleIndex triangle) const { Prefetch(&this->Adjacency[triangle]); }
 
-  /// What lies across the edges is not known until FindAdjacency. @a scratch is an array of the
+  /// The neighbors are not known until FindAdjacency. @a scratch is an array of the
   /// same size that is no longer needed, whose memory can be used again.
   void SetTriangles(
     LargeArray<Corners> triangles, vtkIdType firstCell, LargeArray<Corners> scratch = {});
   void Mask(TriangleIndex triangle) { this->Masked[triangle] = 1; }
 
-  /// Finds what lies across each edge. Linear in the number of triangles. Masked triangles take no
-  /// part. Returns, ascending, the triangles at edges that have more than two; such edges count as
-  /// boundary.
+  /// Finds the neighbor across each edge. Linear in the number of triangles. Masked triangles take
+  /// no part. Returns, ascending, the triangles at edges that have more than two; such edges count
+  /// as boundary.
   std::vector<TriangleIndex> FindAdjacency(vtkIdType numberOfPoints);
 
   /// Whether there are neighbors whose cyclic orders run through their edge in the same direction.

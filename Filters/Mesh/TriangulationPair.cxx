@@ -9,8 +9,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
-#include <algorithm>
-#include <string>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -21,12 +21,13 @@ namespace homeomorphism
 class TriangulationPair::Builder
 {
 public:
-  Builder(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems)
+  Builder(vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles,
+    MeshDiagnostics& diagnostics)
     : Meshes{ source, target }
-    , Names{ target ? "source" : "triangulation", "target" }
+    , Names{ target ? MeshDiagnostic::Mesh::Source : MeshDiagnostic::Mesh::Triangulation,
+      MeshDiagnostic::Mesh::Target }
     , MaskInvalidTriangles(maskInvalidTriangles)
-    , Problems(problems)
+    , Diagnostics(diagnostics)
     , Pair(new TriangulationPair)
   {
   }
@@ -39,80 +40,101 @@ public:
     do
     {
       this->HasMasked = false;
-      if (!IsRefused(this->Problems))
+      if (!IsRefused(this->Diagnostics))
       {
         this->ReadGeometry();
       }
-      if (!IsRefused(this->Problems))
+      if (!IsRefused(this->Diagnostics))
       {
         this->FindAdjacency();
       }
-      if (!IsRefused(this->Problems))
+      if (!IsRefused(this->Diagnostics))
       {
         this->ExcludeOverlaps();
       }
-    } while (this->HasMasked && !IsRefused(this->Problems));
-    if (IsRefused(this->Problems))
+    } while (this->HasMasked && !IsRefused(this->Diagnostics));
+    if (IsRefused(this->Diagnostics))
     {
       return nullptr;
     }
-    for (const auto& geometry : this->Pair->Geometries)
+    for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
-      if (geometry)
-      {
-        geometry->ComputeFrames(this->Pair->Topology);
-      }
+      this->Pair->Geometries[domain]->ComputeFrames(this->Pair->Topology);
+      this->ReportNearlyPlanar(domain);
     }
     return std::shared_ptr<const TriangulationPair>(std::move(this->Pair));
   }
 
 private:
-  /// Masks or refuses triangles. Returns whether there were any.
-  /// Of a pair's defects, the ids are those of the source's cells.
-  bool Exclude(
-    MeshDiagnostic::Kind kind, int domain, const std::string& where, const TriangleList& triangles)
+  /// Masks or refuses triangles, and returns whether there were any. Of a pair's defects, the ids
+  /// are those of the source's cells.
+  bool Exclude(MeshDiagnostic::Kind kind, int domain, MeshDiagnostic::Mesh where,
+    const TriangleList& triangles, double size = std::numeric_limits<double>::quiet_NaN())
   {
     if (triangles.empty())
     {
       return false;
     }
-    MeshDiagnostic problem;
-    problem.What = kind;
-    problem.Where = where;
-    problem.Count = static_cast<vtkIdType>(triangles.size());
-    // One side only surfaces are not the fault of single triangles.
+    MeshDiagnostic diagnostic;
+    diagnostic.What = kind;
+    diagnostic.Where = where;
+    diagnostic.Size = size;
+    // No single triangle makes a surface non-orientable.
     const bool mask = this->MaskInvalidTriangles && kind != MeshDiagnostic::Kind::NonOrientable;
-    problem.Result = mask ? MeshDiagnostic::Outcome::Masked : MeshDiagnostic::Outcome::Refused;
+    diagnostic.Result = mask ? MeshDiagnostic::Outcome::Masked : MeshDiagnostic::Outcome::Refused;
+    const vtkIdType firstCell = FirstPolygon(this->Meshes[domain]);
+    diagnostic.Ids.reserve(triangles.size());
     for (const TriangleIndex t : triangles)
     {
-      if (problem.FirstCells.size() < MeshDiagnostic::MaximumIds)
-      {
-        problem.FirstCells.push_back(FirstPolygon(this->Meshes[domain]) + t);
-      }
+      diagnostic.Ids.push_back(firstCell + t);
       if (mask)
       {
         this->Pair->Topology.Mask(t);
         this->HasMasked = true;
       }
     }
-    this->Problems.push_back(problem);
+    if (this->Meshes[domain]->GetPoints())
+    {
+      const Triangulation::Corners& corners = this->Pair->Topology.GetCorners(triangles.front());
+      this->Meshes[domain]->GetPoint(corners[0], diagnostic.Position.data());
+    }
+    this->Diagnostics.push_back(std::move(diagnostic));
     return true;
+  }
+
+  /// A surface that was meant to be planar is accepted, but its tolerance should be known.
+  void ReportNearlyPlanar(int domain)
+  {
+    const MeshGeometry& geometry = *this->Pair->Geometries[domain];
+    if (geometry.GetThickness() == 0.0)
+    {
+      return;
+    }
+    MeshDiagnostic diagnostic;
+    diagnostic.What = MeshDiagnostic::Kind::NearlyPlanar;
+    diagnostic.Where = this->Names[domain];
+    diagnostic.Result = MeshDiagnostic::Outcome::Accepted;
+    diagnostic.Size = geometry.GetThickness() / geometry.GetScale();
+    // A power of ten, with room for the rounding of points.
+    diagnostic.Tolerance =
+      std::pow(10.0, std::ceil(std::log10(2.0 * geometry.GetThickness() / geometry.GetDiagonal())));
+    this->Diagnostics.push_back(diagnostic);
   }
 
   void ReadTopology()
   {
     LargeArray<Triangulation::Corners> triangles =
-      ReadTriangles(this->Meshes[0], this->Names[0], this->Problems);
+      ReadTriangles(this->Meshes[0], this->Names[0], this->Diagnostics);
     LargeArray<Triangulation::Corners> others;
     if (this->Meshes[1])
     {
-      others = ReadTriangles(this->Meshes[1], this->Names[1], this->Problems);
-      if (!IsRefused(this->Problems))
+      others = ReadTriangles(this->Meshes[1], this->Names[1], this->Diagnostics);
+      if (!IsRefused(this->Diagnostics))
       {
-        CompareConnectivity(this->Meshes[0], this->Meshes[1], triangles, others, this->Problems);
+        CompareConnectivity(this->Meshes[0], this->Meshes[1], triangles, others, this->Diagnostics);
       }
     }
-    if (IsRefused(this->Problems))
+    if (IsRefused(this->Diagnostics))
     {
       return;
     }
@@ -161,9 +183,9 @@ private:
         geometry->SetColumnar(planar);
       }
     }
-    if (planar && this->Meshes[1] && !IsRefused(this->Problems))
+    if (planar && this->Meshes[1] && !IsRefused(this->Diagnostics))
     {
-      this->Exclude(MeshDiagnostic::Kind::Flipped, 0, "pair",
+      this->Exclude(MeshDiagnostic::Kind::Flipped, 0, MeshDiagnostic::Mesh::Pair,
         FindFlipped(topology, *this->Pair->Geometries[0], *this->Pair->Geometries[1]));
     }
   }
@@ -189,9 +211,14 @@ private:
     {
       const MeshGeometry& geometry = *this->Pair->Geometries[domain];
       this->Pair->Locations[domain] = std::make_unique<PointLocation>(topology, geometry);
-      if (geometry.IsPlanar() &&
-        this->Exclude(MeshDiagnostic::Kind::Overlapping, domain, this->Names[domain],
-          FindOverlapping(topology, geometry, *this->Pair->Locations[domain])) &&
+      if (!geometry.IsPlanar())
+      {
+        continue;
+      }
+      const Overlaps overlaps = FindOverlapping(topology, geometry, *this->Pair->Locations[domain]);
+      this->Pair->Locations[domain]->SetOverlapping(overlaps.WithinRounding);
+      if (this->Exclude(MeshDiagnostic::Kind::Overlapping, domain, this->Names[domain],
+            overlaps.Triangles, overlaps.Depth / geometry.GetScale()) &&
         this->MaskInvalidTriangles)
       {
         // What has been left out is gone for the other mesh, too, before it is looked at.
@@ -201,17 +228,17 @@ private:
   }
 
   std::array<vtkPolyData*, 2> Meshes;
-  std::array<std::string, 2> Names;
+  std::array<MeshDiagnostic::Mesh, 2> Names;
   bool MaskInvalidTriangles;
   bool HasMasked = false;
-  MeshDiagnostics& Problems;
+  MeshDiagnostics& Diagnostics;
   std::unique_ptr<TriangulationPair> Pair;
 };
 
 std::shared_ptr<const TriangulationPair> TriangulationPair::Read(
-  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems)
+  vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& diagnostics)
 {
-  return Builder(source, target, maskInvalidTriangles, problems).Build();
+  return Builder(source, target, maskInvalidTriangles, diagnostics).Build();
 }
 
 } // namespace homeomorphism

@@ -38,10 +38,10 @@ class TriangulationPair
 public:
   /// Reads and validates. @a target may be null: then there is only the source.
   ///
-  /// Defects are added to @a problems. Returns null if they made the meshes be refused; with
+  /// Defects are added to @a diagnostics. Returns null if they made the meshes be refused; with
   /// @a maskInvalidTriangles, triangles that are defective by themselves are left out instead.
-  static std::shared_ptr<const TriangulationPair> Read(
-    vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& problems);
+  static std::shared_ptr<const TriangulationPair> Read(vtkPolyData* source, vtkPolyData* target,
+    bool maskInvalidTriangles, MeshDiagnostics& diagnostics);
 
   const Triangulation& GetTriangulation() const { return this->Topology; }
   bool HasTarget() const { return this->Geometries[1] != nullptr; }

@@ -11,6 +11,7 @@
 #include "CellPoints.h"
 
 #include "Mesh/MeshValidation.h"
+#include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/HomeomorphismCache.h"
 
 #include "VTKVersions.h"
@@ -50,40 +51,6 @@
 
 namespace homeomorphism
 {
-
-/// The messages of the defects with an outcome, one to a line.
-inline std::string DescribeProblems(
-  const MeshDiagnostics& problems, MeshDiagnostic::Outcome outcome)
-{
-  std::string text;
-  for (const MeshDiagnostic& problem : problems)
-  {
-    if (problem.Result == outcome)
-    {
-      text += (text.empty() ? "" : "\n") + problem.Message();
-    }
-  }
-  return text;
-}
-
-/// Errors for what made the meshes be refused, warnings for what was left out of them. That the
-/// Linear system carries discordant triangles is no surprise to who asked for it, and shows in an
-/// array.
-inline void ReportProblems(vtkObject* self, const MeshDiagnostics& problems)
-{
-  const std::string errors = DescribeProblems(problems, MeshDiagnostic::Outcome::Refused);
-  const std::string warnings = DescribeProblems(problems, MeshDiagnostic::Outcome::Masked);
-  if (!errors.empty())
-  {
-    vtkErrorWithObjectMacro(self, << errors);
-  }
-  if (!warnings.empty())
-  {
-    vtkWarningWithObjectMacro(self, << warnings);
-  }
-  vtkDebugWithObjectMacro(
-    self, << DescribeProblems(problems, MeshDiagnostic::Outcome::MappedByLinear));
-}
 
 /// The relative rounding error of coordinates of a VTK type.
 inline double PrecisionOfType(int dataType)

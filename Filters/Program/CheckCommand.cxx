@@ -9,6 +9,7 @@
 #include "OutputFile.h"
 #include "PairPicture.h"
 #include "PairReport.h"
+#include "Pipeline/DiagnosticMessages.h"
 
 #include <CLI/CLI.hpp>
 
@@ -63,6 +64,8 @@ const char* NameOf(MeshDiagnostic::Kind kind)
       return "too many triangles";
     case Kind::NotTriangles:
       return "not triangles";
+    case Kind::TriangleStrips:
+      return "triangle strips";
     case Kind::BadConnectivity:
       return "bad connectivity";
     case Kind::ConnectivityDiffers:
@@ -83,6 +86,8 @@ const char* NameOf(MeshDiagnostic::Kind kind)
       return "overlapping";
     case Kind::Discordant:
       return "discordant";
+    case Kind::NearlyPlanar:
+      return "nearly planar";
   }
   return "";
 }
@@ -94,9 +99,9 @@ Json ToJson(const PairReport& report, const MeshPair& pair)
   json["problems"] = Json::array();
   for (const MeshDiagnostic& problem : report.Problems)
   {
-    json["problems"].push_back(
-      { { "kind", NameOf(problem.What) }, { "where", problem.Where }, { "count", problem.Count },
-        { "first_cells", problem.FirstCells }, { "message", Describe(problem, leaveOut) } });
+    json["problems"].push_back({ { "kind", NameOf(problem.What) },
+      { "where", homeomorphism::GetName(problem.Where) }, { "count", problem.Ids.size() },
+      { "first_cells", problem.Ids }, { "message", Describe(problem, leaveOut) } });
   }
   const char* const domains[2] = { "source", "target" };
   for (std::size_t side = 0; side < 2; ++side)
@@ -185,9 +190,7 @@ void PrintMeshes(const PairReport& report)
     [](const MeshReport& mesh) { return std::to_string(mesh.UnusedPoints); });
   both("duplicate points", [](const MeshReport& mesh) {
     return std::to_string(mesh.DuplicatePoints) +
-      (mesh.DuplicatePoints > 0
-          ? " (" + ListIds({ mesh.FirstDuplicates.front() }, mesh.DuplicatePoints) + ")"
-          : std::string());
+      (mesh.DuplicatePoints > 0 ? " (" + ListIds(mesh.FirstDuplicates) + ")" : std::string());
   });
   if (!report.Measured)
   {

@@ -3,6 +3,8 @@
 
 #include "PairReport.h"
 
+#include "Pipeline/DiagnosticMessages.h"
+
 #include "Command.h"
 #include "Failure.h"
 #include "MeshParts.h"
@@ -99,7 +101,7 @@ void CountPoints(vtkPolyData* mesh, MeshReport& report)
   }
   std::sort(duplicates.begin(), duplicates.end());
   report.DuplicatePoints = static_cast<vtkIdType>(duplicates.size());
-  duplicates.resize(std::min(duplicates.size(), MeshDiagnostic::MaximumIds));
+  duplicates.resize(std::min<std::size_t>(duplicates.size(), 10));
   report.FirstDuplicates = duplicates;
 }
 
@@ -543,7 +545,7 @@ PairReport CheckPair(const MeshPair& pair, const CheckExtent& extent,
     for (const MeshDiagnostic& problem : report.Problems)
     {
       report.InvalidTriangles.insert(
-        report.InvalidTriangles.end(), problem.FirstCells.begin(), problem.FirstCells.end());
+        report.InvalidTriangles.end(), problem.Ids.begin(), problem.Ids.end());
     }
     std::sort(report.InvalidTriangles.begin(), report.InvalidTriangles.end());
   }
@@ -580,7 +582,7 @@ std::string Describe(const MeshDiagnostic& problem, const std::string& advice)
 {
   MeshDiagnostic refused = problem;
   refused.Result = MeshDiagnostic::Outcome::Refused;
-  std::string message = refused.Message();
+  std::string message = homeomorphism::Describe(refused);
   const std::string setter = ", or turn MaskInvalidTriangles on to leave them out";
   const std::size_t at = message.find(setter);
   if (at != std::string::npos)

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A table of everything that can be wrong with an input, or look as if it were: what is said then,
-// and what comes out. Documentation/diagnostics.md is this table, written by
-//
-//   FilterTests --gtest_filter='BadInput.*' with the environment variable WRITE_ERRORS set to its
-//   path.
+// A table of defective inputs, and of inputs that only look defective: the message and the output
+// of each. Documentation/diagnostics.md describes them.
 
 #include "FilterRuns.h"
+
+#include "Pipeline/DiagnosticMessages.h"
 
 #include "../../../Filters/Program/XmorphMesh.h"
 
@@ -480,7 +479,7 @@ std::vector<BadInput> Table()
     { "is not a triangle", "Triangulate the source (vtkTriangleFilter)" }, "Refused.",
     Spoilt(Which::Both, quads));
   add(cells, "Triangle strips",
-    { "of the source (cell 32) is not a triangle", "vtkTriangleFilter" }, "Refused.",
+    { "of the source (cell 32) is a triangle strip", "vtkTriangleFilter" }, "Refused.",
     Spoilt(Which::Both, strips));
   add(cells, "A polygon with two corners", { "is not a triangle" }, "Refused.",
     Spoilt(Which::Both, [](vtkPolyData* mesh) {
@@ -490,7 +489,7 @@ std::vector<BadInput> Table()
     }));
   add(cells, "A point id beyond the last point",
     { "1 triangle of the source (cell 32) refers to points that do not exist",
-      "The mesh is corrupt: read or build it again." },
+      "The mesh is corrupt: read or make it again." },
     "Refused.", Spoilt(Which::Both, badId(25)));
   add(cells, "A negative point id", { "refers to points that do not exist" }, "Refused.",
     Spoilt(Which::Both, badId(-1)));
@@ -534,9 +533,9 @@ std::vector<BadInput> Table()
       }
     }));
   add(points, "Triangles without area: two points coincide",
-    { "2 triangles of the source (cells ", "have no area", repair }, "Refused.",
+    { "2 triangles of the source (cells ", "are degenerate", repair }, "Refused.",
     Spoilt(Which::Source, collapse));
-  add(points, "All points are on a line", { "32 triangles of the target", "have no area" },
+  add(points, "All points are on a line", { "32 triangles of the target", "are degenerate" },
     "Refused.", Spoilt(Which::Target, [](vtkPolyData* mesh) {
       for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
       {
@@ -547,7 +546,7 @@ std::vector<BadInput> Table()
     { "flipped between source and target relative to the rest",
       "Move their points so that all triangles keep their orientation (or all are mirrored)" },
     "Refused.", Spoilt(Which::Target, foldOver));
-  add(points, "The same, with MaskInvalidTriangles", { "left out, as MaskInvalidTriangles asks" },
+  add(points, "The same, with MaskInvalidTriangles", { "masked (MaskInvalidTriangles)" },
     "A warning; the rest is mapped.", Spoilt(Which::Target, foldOver, true, Smooth, true));
   add(points, "Discordant triangles in the Contour system",
     { "discordant", "Use the Smooth system, which takes any triangle", "DiscordantTriangles" },
@@ -572,13 +571,12 @@ std::vector<BadInput> Table()
       }
       AddTriangle(mesh, { 25, 26, 27 });
     }));
-  add(surfaces, "The same triangle twice",
-    { "of the source (cells ", "lie at edges that have more than two triangles" }, "Refused.",
-    Spoilt(Which::Both, [](vtkPolyData* mesh) {
+  add(surfaces, "The same triangle twice", { "of the source (cells ", "are at non-manifold edges" },
+    "Refused.", Spoilt(Which::Both, [](vtkPolyData* mesh) {
       AddTriangle(mesh, { 6, 7, 12 });
     }));
-  add(surfaces, "An edge with three triangles",
-    { "lie at edges that have more than two triangles", repair }, "Refused.", []() {
+  add(surfaces, "An edge with three triangles", { "are at non-manifold edges", repair }, "Refused.",
+    []() {
       const auto fins = [](double height) {
         return MakeMesh(
           { { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1, 0 }, { 0.5, -1, 0 }, { 0.5, 0, height } },
@@ -587,7 +585,7 @@ std::vector<BadInput> Table()
       return Run({ fins(1.0), fins(2.0) }, false);
     });
   add(surfaces, "A Moebius strip",
-    { "cannot be wound consistently", "the surface has one side only", "Cut the surface open" },
+    { "cannot be wound consistently", "the surface is non-orientable", "Cut the surface open" },
     "Refused.", []() {
       return Run({ Ring(12, true, 2.0), Ring(12, true, 3.0) }, false);
     });
@@ -736,7 +734,7 @@ std::vector<BadInput> Table()
       },
       2);
   });
-  add(dataToMap, "A vector that is NaN", {}, "It is carried as NaN, and no other is.", []() {
+  add(dataToMap, "A vector that is NaN", {}, "It becomes NaN; other vectors do not.", []() {
     const auto cloud = MakeCloud({ { 1.0, 1.0, 0.0 }, { 1.5, 1.2, 0.0 } });
     vtkNew<vtkDoubleArray> vectors;
     vectors->SetName("Velocity");
@@ -1053,30 +1051,10 @@ std::vector<BadInput> Table()
 }
 
 /// For a cell of a table in Markdown.
-std::string Escaped(const std::string& text)
-{
-  std::string result;
-  for (const char c : text)
-  {
-    result += c == '|' ? std::string("\\|") : std::string(1, c);
-  }
-  return result;
-}
-
 TEST(BadInput, SaysWhatIsWrongWhereAndWhatToDo)
 {
   const std::vector<BadInput> table = Table();
   EXPECT_GE(table.size(), 40u);
-  std::ostringstream document;
-  document
-    << "# What is said when something is wrong\n\n"
-    << "Written by the test of this table, `Testing/Cxx/Filters/TestBadInput.cxx`, which provokes "
-       "each of these and\nreads the message:\n\n```sh\nWRITE_ERRORS=Documentation/diagnostics.md "
-       "build/release/bin/FilterTests --gtest_filter='BadInput.*'\n```\n\n"
-    << "A message about triangles says how many there are, of which mesh, and the ids of the "
-       "first ten. Filters set an\nerror code (`GetErrorCode`) and leave their output empty; the "
-       "transform takes every point for one outside.\n";
-  std::string group;
   for (const BadInput& row : table)
   {
     SCOPED_TRACE(row.Kind);
@@ -1091,24 +1069,27 @@ TEST(BadInput, SaysWhatIsWrongWhereAndWhatToDo)
       EXPECT_NE(outcome.Message.find(text), std::string::npos)
         << "\"" << text << "\" is not in \"" << outcome.Message << "\"";
     }
-    if (group != row.Group)
-    {
-      group = row.Group;
-      document << "\n## " << group << "\n\n| what | said | consequence |\n|---|---|---|\n";
-    }
-    document << "| " << row.Kind << " | "
-             << (outcome.Message.empty() ? "nothing" : Escaped(outcome.Message)) << " | "
-             << Escaped(row.Consequence) << " |\n";
   }
-  if (const char* path = std::getenv("WRITE_ERRORS"))
-  {
-    std::ofstream(path) << document.str();
-  }
-  std::ifstream file(ERRORS_DOCUMENT);
-  const std::string written{ std::istreambuf_iterator<char>(file),
+}
+
+// Documentation/diagnostics.md has an entry for every kind of diagnostic and every remedy.
+TEST(BadInput, EveryKindIsDocumented)
+{
+  using homeomorphism::GetName;
+  using homeomorphism::MeshDiagnostic;
+  std::ifstream file(DIAGNOSTICS_DOCUMENT);
+  const std::string document{ std::istreambuf_iterator<char>(file),
     std::istreambuf_iterator<char>() };
-  EXPECT_TRUE(written == document.str())
-    << "Documentation/diagnostics.md is not what the test found; see there how to write it anew.";
+  ASSERT_FALSE(document.empty()) << DIAGNOSTICS_DOCUMENT;
+  for (int kind = 0; kind < MeshDiagnostic::NumberOfKinds; ++kind)
+  {
+    MeshDiagnostic diagnostic;
+    diagnostic.What = static_cast<MeshDiagnostic::Kind>(kind);
+    const std::string entry = std::string("| `") + GetName(diagnostic.What) + "` |";
+    EXPECT_NE(document.find(entry), std::string::npos) << entry;
+    const std::string remedy = std::string("`") + GetName(diagnostic.GetRemedy()) + "` |";
+    EXPECT_NE(document.find(remedy, document.find(entry)), std::string::npos) << remedy;
+  }
 }
 
 } // namespace

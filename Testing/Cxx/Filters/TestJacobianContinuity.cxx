@@ -21,6 +21,7 @@
 #include <functional>
 #include <iostream>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace
@@ -453,6 +454,69 @@ TEST(JacobianContinuity, StretchAlongTheEdgeHidesNoCrease)
     MakeMesh({ { 0, 0, 0 }, { 1e8, 0, 0 }, { 0.5e8, 1, 0 }, { 0.5e8, -3, 0 } }, triangles);
   const auto filter = Measure(source, target, vtkJacobianContinuity::LINEAR);
   EXPECT_EQ(filter->GetNumberOfDifferentiableEdges(), 0);
+}
+
+TEST(JacobianContinuity, VerdictsDoNotDependOnTheOrigin)
+{
+  // Coordinates as those of Mercator projections: triangles of 10 m, 15,000 km from the origin. The
+  // points are multiples of 2^-20, so that moving them rounds nothing.
+  const auto moved = [](vtkPolyData* mesh, const Point& offset) {
+    std::vector<Point> points;
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      Point p;
+      Point q;
+      mesh->GetPoint(i, p.data());
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        q[axis] = std::ldexp(std::rint(std::ldexp(10.0 * p[axis], 20)), -20) + offset[axis];
+      }
+      points.push_back(q);
+    }
+    return MakeMesh(points, GridTriangles(5));
+  };
+  const MeshPair pair = MakePlanarPair(5, 21);
+  const Point far{ 14650000.0, 3840000.0, 0.0 };
+  for (const int system : { vtkJacobianContinuity::LINEAR, vtkJacobianContinuity::CONTOUR,
+         vtkJacobianContinuity::SMOOTH })
+  {
+    SCOPED_TRACE(system);
+    const auto run = [&](const Point& source, const Point& target) {
+      vtkNew<vtkJacobianContinuity> filter;
+      filter->SetSourceData(moved(pair.Source, source));
+      filter->SetTargetData(moved(pair.Target, target));
+      filter->SetCoordinateSystem(system);
+      filter->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
+      filter->SpokesOn();
+      filter->WingSegmentsOn();
+      filter->StripBordersOn();
+      filter->CentroidsOn();
+      filter->VerticesOn();
+      filter->Update();
+      vtkSmartPointer<vtkPolyData> lines = vtkPolyData::SafeDownCast(filter->GetOutput());
+      return lines;
+    };
+    const vtkSmartPointer<vtkPolyData> centered = run({}, {});
+    vtkDataArray* expected = centered->GetCellData()->GetArray("Verdict");
+    vtkDataArray* jumps = centered->GetCellData()->GetArray("JacobianJump");
+    ASSERT_GT(expected->GetNumberOfTuples(), 200);
+    for (const auto& [source, target] :
+      { std::pair<Point, Point>{ far, {} }, { {}, far }, { far, far } })
+    {
+      const vtkSmartPointer<vtkPolyData> output = run(source, target);
+      vtkDataArray* verdicts = output->GetCellData()->GetArray("Verdict");
+      vtkDataArray* found = output->GetCellData()->GetArray("JacobianJump");
+      ASSERT_EQ(expected->GetNumberOfTuples(), verdicts->GetNumberOfTuples());
+      for (vtkIdType i = 0; i < expected->GetNumberOfTuples(); ++i)
+      {
+        EXPECT_EQ(expected->GetTuple1(i), verdicts->GetTuple1(i)) << "feature " << i;
+        if (std::isfinite(jumps->GetTuple1(i)))
+        {
+          EXPECT_NEAR(jumps->GetTuple1(i), found->GetTuple1(i), 1e-8) << "feature " << i;
+        }
+      }
+    }
+  }
 }
 
 TEST(JacobianContinuity, NeedsAMap)

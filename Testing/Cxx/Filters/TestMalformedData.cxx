@@ -661,10 +661,10 @@ TEST(CellIdsInMessages, TrianglesWithoutArea)
   for (const bool mask : { false, true })
   {
     EXPECT_NE(Message([&](const MeshPair& pair) { flatten(pair.Source); }, Linear, mask)
-                .find("1 triangle of the source (cell 3) has no area"),
+                .find("1 triangle of the source (cell 3) is degenerate"),
       std::string::npos);
     EXPECT_NE(Message([&](const MeshPair& pair) { flatten(pair.Target); }, Linear, mask)
-                .find("1 triangle of the target (cell 7) has no area"),
+                .find("1 triangle of the target (cell 7) is degenerate"),
       std::string::npos);
   }
 }

@@ -7,6 +7,8 @@
 
 #include "MappedPoints.h"
 
+#include "Mesh/Homeomorphism.h"
+
 #include "vtkHomeomorphismTransform.h"
 #include "vtkTriangularCoordinates.h"
 
@@ -330,8 +332,7 @@ TEST(MeshRefusals, PolygonsThatAreNotTriangles)
   const auto mesh = MakePolygons(points, polygons);
   const Texts advice{ "Triangulate the source (vtkTriangleFilter) and give the target the source's "
                       "cells, so that both are cut along the same diagonals." };
-  const std::string fault =
-    "(cells 0, 3, 4, 5, 6) are not triangles (polygon with another number of corners than three)";
+  const std::string fault = "(cells 0, 3, 4, 5, 6) are not triangles";
   ExpectPairRefused({ mesh, mesh },
     { advice[0], "5 cells of the source " + fault, "5 cells of the target " + fault });
   ExpectAloneRefused(mesh, { advice[0], "5 cells of the triangulation " + fault });
@@ -360,7 +361,7 @@ TEST(MeshRefusals, Strips)
     mesh->SetStrips(strips);
   }
   // Strips come after the eight polygons.
-  const Texts texts{ "(cells 8, 9) are not triangles (triangle strip)",
+  const Texts texts{ "(cells 8, 9) are triangle strips",
     "Triangulate the source (vtkTriangleFilter)" };
   ExpectPairRefused(pair, texts);
   ExpectAloneRefused(pair.Source, texts);
@@ -386,7 +387,7 @@ TEST(MeshRefusals, PointsThatDoNotExist)
       triangles[31][corner] = wrong;
       const MeshPair spoilt = WithTriangles(pair, triangles);
       const std::string fault = "(cells 7, 31) refer to points that do not exist. The mesh is "
-                                "corrupt: read or build it again.";
+                                "corrupt: read or make it again.";
       ExpectPairRefused(
         spoilt, { "2 triangles of the source " + fault, "2 triangles of the target " + fault });
       ExpectPairRefused({ pair.Source, spoilt.Target }, { "2 triangles of the target " + fault });
@@ -649,7 +650,7 @@ TEST(MeshRefusals, NoAreaInThePlane)
     MovePoint(mesh, 6, { 1.0, 0.25, 0.0 });
   };
   ExpectRefusedOnEachSide(
-    MakePlanarPair(4, 24, 0.0), spoil, "1 triangle", "(cell 0) has no area", { RepairOrMask });
+    MakePlanarPair(4, 24, 0.0), spoil, "1 triangle", "(cell 0) is degenerate", { RepairOrMask });
 }
 
 TEST(MeshRefusals, NoAreaWithCoincidingPoints)
@@ -658,7 +659,7 @@ TEST(MeshRefusals, NoAreaWithCoincidingPoints)
     [](vtkPolyData* mesh) {
       MovePoint(mesh, 0, { 1.0, 1.0, 0.0 });
     },
-    "2 triangles", "(cells 0, 1) have no area", { RepairOrMask });
+    "2 triangles", "(cells 0, 1) are degenerate", { RepairOrMask });
 }
 
 TEST(MeshRefusals, TheAreaOfOneUlpIsAnArea)
@@ -670,7 +671,7 @@ TEST(MeshRefusals, TheAreaOfOneUlpIsAnArea)
     const auto mesh = MakeMesh({ { 0, 0, 0 }, { 2, 1, 0 }, { 1, height, 0 } }, { { 0, 1, 2 } });
     if (height == 0.5)
     {
-      ExpectAloneRefused(mesh, { "1 triangle of the triangulation (cell 0) has no area" });
+      ExpectAloneRefused(mesh, { "1 triangle of the triangulation (cell 0) is degenerate" });
     }
     else
     {
@@ -693,7 +694,7 @@ TEST(MeshRefusals, NoAreaInSpace)
       }
       MovePoint(mesh, 24, between);
     },
-    "1 triangle", "(cell 31) has no area", { RepairOrMask });
+    "1 triangle", "(cell 31) is degenerate", { RepairOrMask });
 }
 
 TEST(MeshRefusals, NoAreaInSpaceInFloat)
@@ -713,19 +714,19 @@ TEST(MeshRefusals, NoAreaInSpaceInFloat)
     rounded->SetPoint(24, 3.0, 3.5, 0.5);
     mesh->SetPoints(rounded);
   }
-  ExpectPairRefused(pair, { "1 triangle of the source (cell 31) has no area" });
-  ExpectAloneRefused(pair.Target, { "1 triangle of the triangulation (cell 31) has no area" });
+  ExpectPairRefused(pair, { "1 triangle of the source (cell 31) is degenerate" });
+  ExpectAloneRefused(pair.Target, { "1 triangle of the triangulation (cell 31) is degenerate" });
 }
 
 TEST(MeshRefusals, AllPointsInALine)
 {
   const auto mesh =
     MakeMesh({ { 0, 0, 0 }, { 1, 2, 3 }, { 2, 4, 6 }, { 3, 6, 9 } }, { { 0, 1, 2 }, { 1, 2, 3 } });
-  ExpectAloneRefused(mesh, { "2 triangles of the triangulation (cells 0, 1) have no area" });
+  ExpectAloneRefused(mesh, { "2 triangles of the triangulation (cells 0, 1) are degenerate" });
   const auto point = MakeMesh(std::vector<Point>(3, { 1, 2, 3 }), { { 0, 1, 2 } });
-  ExpectAloneRefused(point, { "1 triangle of the triangulation (cell 0) has no area" });
+  ExpectAloneRefused(point, { "1 triangle of the triangulation (cell 0) is degenerate" });
   const auto origin = MakeMesh(std::vector<Point>(3, { 0, 0, 0 }), { { 0, 1, 2 } });
-  ExpectAloneRefused(origin, { "1 triangle of the triangulation (cell 0) has no area" });
+  ExpectAloneRefused(origin, { "1 triangle of the triangulation (cell 0) is degenerate" });
 }
 
 TEST(MeshRefusals, DefectsOfBothMeshesAreTold)
@@ -734,8 +735,8 @@ TEST(MeshRefusals, DefectsOfBothMeshesAreTold)
   MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
   MovePoint(pair.Target, 24, { 3.0, 3.0, 0.0 });
   ExpectPairRefused(pair,
-    { "2 triangles of the source (cells 0, 1) have no area",
-      "2 triangles of the target (cells 30, 31) have no area" });
+    { "2 triangles of the source (cells 0, 1) are degenerate",
+      "2 triangles of the target (cells 30, 31) are degenerate" });
 }
 
 TEST(MeshRefusals, ExactlyTenAreNamedInFull)
@@ -749,14 +750,14 @@ TEST(MeshRefusals, ExactlyTenAreNamedInFull)
       MovePoint(pair.Source, i, { double(i), 1.0, 0.0 });
     }
     ExpectPairRefused(pair,
-      { n == 5 ? "10 triangles of the source (cells 0, 1, 2, 3, 4, 5, 6, 7, 8, 9) have no area"
-               : "12 triangles of the source (cells 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, ...) have no "
-                 "area" });
+      { n == 5 ? "10 triangles of the source (cells 0, 1, 2, 3, 4, 5, 6, 7, 8, 9) are degenerate"
+               : "12 triangles of the source (cells 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, ...) are "
+                 "degenerate" });
   }
 }
 
 //------------------------------------------------------------------------------------------------
-// Surfaces that are none, or have one side only.
+// Non-manifold and non-orientable surfaces.
 
 TEST(MeshRefusals, EdgeWithThreeTriangles)
 {
@@ -770,7 +771,7 @@ TEST(MeshRefusals, EdgeWithThreeTriangles)
     points.push_back({ 0.5, 0.5, 2.0 });
     *mesh = MakeMesh(points, triangles);
   }
-  const std::string fault = "(cells 0, 1, 18) lie at edges that have more than two triangles";
+  const std::string fault = "(cells 0, 1, 18) are at non-manifold edges";
   ExpectPairRefused(pair, { "3 triangles of the source " + fault, RepairOrMask });
   ExpectAloneRefused(pair.Target, { "3 triangles of the triangulation " + fault, RepairOrMask });
 }
@@ -802,12 +803,13 @@ vtkSmartPointer<vtkPolyData> MakeTwistedRing(int n, int halfTurns, double width)
   return MakeMesh(points, triangles);
 }
 
-TEST(MeshRefusals, OneSidedSurface)
+TEST(MeshRefusals, NonOrientableSurface)
 {
   const MeshPair pair{ MakeTwistedRing(12, 1, 0.3), MakeTwistedRing(12, 1, 0.2) };
-  const Texts texts{ "cannot be wound consistently with their neighbors (the surface has one side "
-                     "only)",
-    "Cut the surface open along a line of edges in both meshes." };
+  const Texts texts{
+    "cannot be wound consistently with their neighbors: the surface is non-orientable",
+    "Cut the surface open along a line of edges in both meshes."
+  };
   ExpectPairRefused(pair, { texts[0], texts[1], "2 triangles of the source (cells " });
   ExpectAloneRefused(pair.Source, { texts[0], texts[1], "2 triangles of the triangulation" });
   const MeshPair threeTurns{ MakeTwistedRing(12, 3, 0.3), MakeTwistedRing(12, 3, 0.2) };
@@ -1202,7 +1204,7 @@ TEST(MeshRefusals, VerticesAndLinesShiftTheCellIds)
       ->GetTuple1(0));
 
   MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
-  ExpectPairRefused(pair, { "2 triangles of the source (cells 5, 6) have no area" });
+  ExpectPairRefused(pair, { "2 triangles of the source (cells 5, 6) are degenerate" });
   ExpectAloneRefused(pair.Source, { "2 triangles of the triangulation (cells 5, 6)" });
 }
 
@@ -1247,7 +1249,7 @@ TEST(MeshRefusals, TheTargetsOwnCellIdsAreNamed)
   AddVerticesAndLines(pair.Source, 3, 2);
   AddVerticesAndLines(pair.Target, 1, 0);
   MovePoint(pair.Target, 0, { 1.0, 1.0, 0.0 });
-  ExpectPairRefused(pair, { "2 triangles of the target (cells 1, 2) have no area" });
+  ExpectPairRefused(pair, { "2 triangles of the target (cells 1, 2) are degenerate" });
 }
 
 /// Marks cells or points as hidden.
@@ -1380,6 +1382,45 @@ TEST(MeshRefusals, ABlankedTriangleDoesNotBendThePlane)
   const Point probe{ 2.3, 2.7, 11.0 };
   EXPECT_TRUE(transform->IsInside(probe.data()));
   EXPECT_EQ("", messages.Error());
+}
+
+TEST(MeshRefusals, NearlyPlanarMeshesAreNamed)
+{
+  using homeomorphism::MeshDiagnostic;
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 0, 2, 3 } };
+  const auto flat = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1.5, 0 } }, triangles);
+  const std::vector<Point> probes{ { 0.3, 0.2, 0 }, { 0.6, 0.9, 0 }, { 0.5, 0.5, 0 } };
+  for (const double noise : { 1e-9, 1e-12, 1e-7 })
+  {
+    const auto noisy =
+      MakeMesh({ { 0, 0, noise }, { 1, 0, -noise }, { 1, 1, noise }, { 0, 1, 0 } }, triangles);
+    homeomorphism::MeshDiagnostics diagnostics;
+    ASSERT_TRUE(homeomorphism::Homeomorphism::Make(noisy, flat, {}, diagnostics));
+    ASSERT_EQ(1u, diagnostics.size());
+    EXPECT_EQ(MeshDiagnostic::Kind::NearlyPlanar, diagnostics[0].What);
+    EXPECT_EQ(MeshDiagnostic::Mesh::Source, diagnostics[0].Where);
+    EXPECT_EQ(MeshDiagnostic::Outcome::Accepted, diagnostics[0].Result);
+    EXPECT_NEAR(2.0 * noise, diagnostics[0].Size, 1e-15);
+    EXPECT_LT(diagnostics[0].Tolerance, 100.0 * noise);
+
+    MapOptions options;
+    const MappedPoints without = MapPoints({ noisy, flat }, probes, options);
+    options.Tolerance = diagnostics[0].Tolerance;
+    const MappedPoints with = MapPoints({ noisy, flat }, probes, options);
+    for (std::size_t i = 0; i + 1 < probes.size(); ++i)
+    {
+      EXPECT_FALSE(without.IsInside(i));
+      EXPECT_TRUE(with.IsInside(i));
+    }
+  }
+  // Planar meshes and surfaces are not.
+  for (const auto& mesh :
+    { flat, MakeMesh({ { 0, 0, 0 }, { 1, 0, 1e-3 }, { 1, 1, 0 }, { 0, 1, 0 } }, triangles) })
+  {
+    homeomorphism::MeshDiagnostics diagnostics;
+    EXPECT_TRUE(homeomorphism::Homeomorphism::Make(mesh, mesh, {}, diagnostics));
+    EXPECT_TRUE(diagnostics.empty());
+  }
 }
 
 TEST(MeshRefusals, EmptyMeshesLeaveAllPointsOutside)

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// FindOverlapping compares only triangles at the boundary unless the mesh is folded. Here every
-// triangle of many small meshes is compared with every other one in integer arithmetic.
+// FindOverlapping looks only at boundary edges unless the mesh is folded. Here every triangle of
+// many small meshes is compared with every other, in integers. What overlaps by the rounding of its
+// coordinates does not count.
 
 #include "TestMeshes.h"
 
@@ -16,8 +17,10 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <numeric>
+#include <random>
 
 namespace
 {
@@ -229,7 +232,7 @@ TriangleList FindOverlappingQuickly(const Complex& complex, const std::array<int
   triangulation.FindAdjacency(points->GetNumberOfPoints());
   const MeshGeometry geometry(points, triangulation);
   const PointLocation location(triangulation, geometry);
-  return FindOverlapping(triangulation, geometry, location);
+  return FindOverlapping(triangulation, geometry, location).Triangles;
 }
 
 class RandomComplexes
@@ -601,20 +604,132 @@ TEST(Overlap, NothingToCompare)
   EXPECT_TRUE(FindOverlappingQuickly(one, { 0, 1, 2 }).empty());
 }
 
-TEST(Overlap, OneUlpOfOverlapCounts)
+/// A triangle, and one that pierces its edge x = 1 with a corner at @a x, of the size @a size.
+Overlaps FindOverlapOfPair(double x, double size, double origin)
 {
-  // Beyond the integer grid: a corner that crosses an edge by one ulp.
-  for (const double x : { 1.0, std::nextafter(1.0, 0.0) })
+  std::vector<test_meshes::Point> points{ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { x, 0.5, 0 },
+    { 2, 0.25, 0 }, { 2, 0.75, 0 } };
+  for (test_meshes::Point& p : points)
   {
-    const auto mesh = test_meshes::MakeMesh(
-      { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { x, 0.5, 0 }, { 2, 0.25, 0 }, { 2, 0.75, 0 } }, {});
+    p = { p[0] * size + origin, p[1] * size + origin, 0.0 };
+  }
+  const auto mesh = test_meshes::MakeMesh(points, {});
+  Triangulation triangulation;
+  triangulation.SetTriangles({ { 0, 1, 2 }, { 3, 4, 5 } }, 0);
+  triangulation.FindAdjacency(6);
+  const MeshGeometry geometry(mesh->GetPoints(), triangulation);
+  const PointLocation location(triangulation, geometry);
+  Overlaps overlaps = FindOverlapping(triangulation, geometry, location);
+  overlaps.Depth /= geometry.GetScale();
+  return overlaps;
+}
+
+TEST(Overlap, RoundingDoesNotCount)
+{
+  const Overlaps none = FindOverlapOfPair(1.0, 1.0, 0.0);
+  EXPECT_TRUE(none.Triangles.empty() && none.WithinRounding.empty());
+  const double ulp = std::numeric_limits<double>::epsilon();
+  for (const double origin : { 0.0, 1e4 })
+  {
+    // The largest coordinate is 2, and origin + 2.
+    const double rounding = ulp * (2.0 + origin);
+    const Overlaps small = FindOverlapOfPair(1.0 - rounding, 1.0, origin);
+    EXPECT_TRUE(small.Triangles.empty());
+    EXPECT_EQ((TriangleList{ 0, 1 }), small.WithinRounding);
+    for (const double depth : { 32.0 * rounding, 0.125 })
+    {
+      const Overlaps real = FindOverlapOfPair(1.0 - depth, 1.0, origin);
+      EXPECT_EQ((TriangleList{ 0, 1 }), real.Triangles);
+      EXPECT_TRUE(real.WithinRounding.empty());
+      // A triangle's overlap ends when it has moved by so much.
+      EXPECT_NEAR(depth, real.Depth, rounding);
+    }
+  }
+}
+
+TEST(Overlap, TheSizeIsRelative)
+{
+  // The same pair, however large.
+  for (const double size : { 1e-200, 1e-9, 1e9, 1e200 })
+  {
+    EXPECT_TRUE(FindOverlapOfPair(std::nextafter(1.0, 0.0), size, 0.0).Triangles.empty());
+    EXPECT_EQ(2u, FindOverlapOfPair(1.0 - 1e-13, size, 0.0).Triangles.size());
+  }
+}
+
+TEST(Overlap, TrianglesThinnerThanTheRoundingOverlap)
+{
+  // A sliver that lies within a triangle, all of it within rounding of the triangle's edge.
+  const auto mesh = test_meshes::MakeMesh(
+    { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.25, 0, 0 }, { 0.5, 0, 0 }, { 0.375, 1e-16, 0 } },
+    {});
+  Triangulation triangulation;
+  triangulation.SetTriangles({ { 0, 1, 2 }, { 3, 4, 5 } }, 0);
+  triangulation.FindAdjacency(6);
+  const MeshGeometry geometry(mesh->GetPoints(), triangulation);
+  const PointLocation location(triangulation, geometry);
+  EXPECT_EQ((TriangleList{ 0, 1 }), FindOverlapping(triangulation, geometry, location).Triangles);
+}
+
+TEST(Overlap, RoundedPointsOfAnEdgeAreAccepted)
+{
+  // Two triangles along the side of a third, their common corner a rounded point of that side.
+  std::mt19937_64 generator(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal;
+  int rounded = 0;
+  for (int k = 0; k < 1000; ++k)
+  {
+    const Vector2 a{ uniform(generator), uniform(generator) };
+    const Vector2 d{ normal(generator), normal(generator) };
+    const double t = uniform(generator);
+    const Vector2 across{ -d.y, d.x };
+    const Vector2 middle = a + 0.5 * d;
+    const Vector2 corners[] = { a, a + d, middle + across, a + t * d, middle - across };
+    std::vector<test_meshes::Point> points;
+    for (const Vector2& corner : corners)
+    {
+      points.push_back({ corner.x, corner.y, 0.0 });
+    }
+    const auto mesh = test_meshes::MakeMesh(points, {});
     Triangulation triangulation;
-    triangulation.SetTriangles({ { 0, 1, 2 }, { 3, 4, 5 } }, 0);
-    triangulation.FindAdjacency(6);
+    triangulation.SetTriangles({ { 0, 1, 2 }, { 0, 3, 4 }, { 3, 1, 4 } }, 0);
+    triangulation.FindAdjacency(5);
     const MeshGeometry geometry(mesh->GetPoints(), triangulation);
     const PointLocation location(triangulation, geometry);
-    EXPECT_EQ(x < 1.0 ? 2u : 0u, FindOverlapping(triangulation, geometry, location).size());
+    const Overlaps overlaps = FindOverlapping(triangulation, geometry, location);
+    EXPECT_TRUE(overlaps.Triangles.empty()) << "depth " << overlaps.Depth;
+    rounded += overlaps.WithinRounding.empty() ? 0 : 1;
   }
+  EXPECT_GT(rounded, 200);
+}
+
+TEST(Overlap, LongSlantedStrips)
+{
+  // The boxes around all triangles meet.
+  constexpr std::int32_t n = 20000;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const int row : { 0, 1 })
+  {
+    for (std::int32_t k = 0; k <= n; ++k)
+    {
+      points->InsertNextPoint(k + row * n, row * n, 0.0);
+    }
+  }
+  std::vector<Triangulation::Corners> triangles;
+  for (std::int32_t k = 0; k < n; ++k)
+  {
+    triangles.push_back({ k, k + 1, k + n + 1 });
+    triangles.push_back({ k + 1, k + n + 2, k + n + 1 });
+  }
+  Triangulation triangulation;
+  triangulation.SetTriangles(triangles, 0);
+  triangulation.FindAdjacency(points->GetNumberOfPoints());
+  const MeshGeometry geometry(points, triangulation);
+  const PointLocation location(triangulation, geometry);
+  const Overlaps overlaps = FindOverlapping(triangulation, geometry, location);
+  EXPECT_TRUE(overlaps.Triangles.empty() && overlaps.WithinRounding.empty());
 }
 
 TEST(Overlap, ALargeMeshTakesNearlyLinearTime)
@@ -634,7 +749,7 @@ TEST(Overlap, ALargeMeshTakesNearlyLinearTime)
   triangulation.FindAdjacency(mesh->GetNumberOfPoints());
   const MeshGeometry geometry(mesh->GetPoints(), triangulation);
   const PointLocation location(triangulation, geometry);
-  EXPECT_TRUE(FindOverlapping(triangulation, geometry, location).empty());
+  EXPECT_TRUE(FindOverlapping(triangulation, geometry, location).Triangles.empty());
 }
 
 } // namespace

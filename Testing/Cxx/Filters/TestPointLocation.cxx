@@ -7,6 +7,7 @@
 #include "MappedPoints.h"
 
 #include "Mesh/Homeomorphism.h"
+#include "Pipeline/DiagnosticMessages.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +32,7 @@ std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* targ
   auto map = Homeomorphism::Make(source, target, options, problems);
   for (const MeshDiagnostic& problem : problems)
   {
-    ADD_FAILURE() << problem.Message();
+    ADD_FAILURE() << GetName(problem.What);
   }
   return map;
 }
