@@ -125,18 +125,27 @@ set(pipeline_sources
   Pipeline/AttributeTransformation.cxx
   Pipeline/CoordinateLines.cxx
   Pipeline/DiagnosticMessages.cxx
+  Pipeline/GhostArrays.cxx
   Pipeline/HomeomorphismCache.cxx
   Pipeline/ImageSampling.cxx
-  Pipeline/ProcessStatistics.cxx)
+  Pipeline/PointBlocks.cxx
+  Pipeline/PointsOffSurface.cxx
+  Pipeline/ProcessStatistics.cxx
+  Pipeline/Requests.cxx)
 set(pipeline_headers
   Pipeline/AttributeTransformation.h
   Pipeline/CellPoints.h
+  Pipeline/CompositeData.h
   Pipeline/CoordinateLines.h
   Pipeline/DiagnosticMessages.h
-  Pipeline/FilterSupport.h
+  Pipeline/GhostArrays.h
   Pipeline/HomeomorphismCache.h
   Pipeline/ImageSampling.h
+  Pipeline/Options.h
+  Pipeline/PointBlocks.h
+  Pipeline/PointsOffSurface.h
   Pipeline/ProcessStatistics.h
+  Pipeline/Requests.h
   Pipeline/VTKVersions.h)
 
 # Which products and sums are fused into one rounding must not be the compiler's choice: results

@@ -4,16 +4,21 @@
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "Pipeline/AttributeTransformation.h"
-#include "Pipeline/FilterSupport.h"
-#include "Pipeline/ProcessStatistics.h"
+#include "Pipeline/CellPoints.h"
+#include "Pipeline/CompositeData.h"
+#include "Pipeline/GhostArrays.h"
+#include "Pipeline/Options.h"
+#include "Pipeline/PointBlocks.h"
+#include "Pipeline/PointsOffSurface.h"
+#include "Pipeline/Requests.h"
 
-#include "vtkCallbackCommand.h"
+#include "Mesh/MeshValidation.h"
+
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
-#include "vtkErrorCode.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
@@ -46,17 +51,18 @@ vtkStandardNewMacro(vtkDifferentiableHomeomorphism);
 class vtkDifferentiableHomeomorphism::Internals
 {
 public:
-  HomeomorphismCache Cache;
-  ProcessStatistics Own{ { 0.0 }, { 0.0 } };
   std::map<std::string, TransformationRule> Transformations;
 
-  /// Lets Continuity measure the map between the meshes.
-  void Measure(vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target);
+  /// Measures the map that @a self uses, unless that was done before.
+  void Measure(vtkDifferentiableHomeomorphism* self,
+    const std::shared_ptr<const Homeomorphism>& map, vtkPolyData* mesh, vtkPolyData* output);
 
   vtkNew<vtkJacobianContinuity> Continuity;
-  /// What Continuity has as its meshes.
-  std::weak_ptr<const Homeomorphism> Measured;
+  /// The last result, and what it depends on.
+  vtkNew<vtkPolyData> Measured;
+  std::weak_ptr<const Homeomorphism> MeasuredMap;
   bool MeasuredInverse = false;
+  vtkMTimeType MeasuredTime = 0;
 };
 
 namespace
@@ -140,9 +146,8 @@ private:
 
   double GetAbsoluteTolerance() const
   {
-    vtkPoints* points = this->GetInputPoints();
-    return this->Map.GetAbsoluteTolerance(this->From, this->Self->Tolerance,
-      PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
+    return this->Map.GetAbsoluteTolerance(
+      this->From, this->Self->Tolerance, PrecisionOfPoints(this->Input));
   }
 
   static vtkSmartPointer<vtkDoubleArray> NewDoubles(
@@ -199,28 +204,14 @@ private:
       this->Determinants = NewDoubles("JacobianDeterminant", 1, this->NumberOfPoints);
     }
 
-    const double tolerance = this->GetAbsoluteTolerance();
     vtkUnsignedCharArray* ghosts = GhostsOf(this->Input->GetPointData(), this->NumberOfPoints);
+    const auto isHidden = [ghosts](vtkIdType i) {
+      return ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0;
+    };
     const vtkIdType done =
-      RunInBlocks(this->Self, this->NumberOfPoints, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
-        LocationHint hint;
-        PointBlock block;
-        for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
-        {
-          block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
-          ReadPoints(this->Input, first, block);
-          this->Map.LocateBlock(this->From, block, tolerance, hint);
-          for (int i = 0; i < block.Count && ghosts; ++i)
-          {
-            // What is hidden in the input is not there: above all what an earlier map found
-            // outside.
-            if ((ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT) != 0)
-            {
-              block.Triangles[i] = -1;
-            }
-          }
-          this->Map.MapBlock(this->From, block);
-          WritePoints(block, first, outPoints->GetData());
+      MapInBlocks(this->Self, this->Map, this->From, this->Input, this->GetAbsoluteTolerance(), 0.1,
+        0.9, isHidden, [&](vtkIdType first, const PointBlock& block) {
+          WritePoints(block.Images, block.Count, first, outPoints->GetData());
           for (int i = 0; i < block.Count; ++i)
           {
             if (block.Triangles[i] >= 0)
@@ -229,8 +220,7 @@ private:
               this->SetDerived(first + i, block.GetSurfacePoint(i));
             }
           }
-        }
-      });
+        });
     // Aborted: what was not reached stays where it is, marked as outside.
     for (vtkIdType i = done; i < this->NumberOfPoints; ++i)
     {
@@ -350,6 +340,13 @@ private:
       : TransformationRule::None;
   }
 
+  void TransformArrays(
+    vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkDoubleArray* jacobians)
+  {
+    TransformAttributes(input, output, jacobians,
+      [this, input](vtkDataArray* array) { return this->GetRule(input, array); });
+  }
+
   bool TransformsAny(vtkDataSetAttributes* attributes) const
   {
     for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
@@ -361,42 +358,6 @@ private:
       }
     }
     return false;
-  }
-
-  void TransformArrays(
-    vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkDoubleArray* jacobians)
-  {
-    for (int i = 0; i < input->GetNumberOfArrays(); ++i)
-    {
-      vtkDataArray* array = input->GetArray(i);
-      const vtkSmartPointer<vtkDataArray> carried =
-        array ? TransformArray(array, jacobians, this->GetRule(input, array)) : nullptr;
-      if (!carried)
-      {
-        continue;
-      }
-      // Takes the place of the array passed, and its roles.
-      std::vector<int> roles;
-      for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
-      {
-        if (input->GetAbstractAttribute(role) == array)
-        {
-          roles.push_back(role);
-        }
-      }
-      for (int passed = output->GetNumberOfArrays() - 1; passed >= 0; --passed)
-      {
-        if (output->GetAbstractArray(passed) == array)
-        {
-          output->RemoveArray(passed);
-        }
-      }
-      const int index = output->AddArray(carried);
-      for (const int role : roles)
-      {
-        output->SetActiveAttribute(index, role);
-      }
-    }
   }
 
   void AddPointArrays()
@@ -424,6 +385,7 @@ private:
   void MarkOutside()
   {
     this->Self->NumberOfOutsidePoints += CountOutside(this->Input, this->Mask);
+    WarnOfPointsOffSurface(this->Self, this->Map, this->From, this->Input, this->Mask);
     if (this->Self->BlankOutside)
     {
       HidePoints(this->Input, this->Mask, this->Output);
@@ -451,16 +413,6 @@ vtkDifferentiableHomeomorphism::vtkDifferentiableHomeomorphism()
 }
 
 vtkDifferentiableHomeomorphism::~vtkDifferentiableHomeomorphism() = default;
-
-void vtkDifferentiableHomeomorphism::SetSourceData(vtkPolyData* source)
-{
-  this->SetInputData(0, source);
-}
-
-void vtkDifferentiableHomeomorphism::SetTargetData(vtkPolyData* target)
-{
-  this->SetInputData(1, target);
-}
 
 void vtkDifferentiableHomeomorphism::SetAttributeTransformation(
   const char* name, int transformation)
@@ -494,133 +446,40 @@ void vtkDifferentiableHomeomorphism::ClearAttributeTransformations()
 
 void vtkDifferentiableHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
 {
-  const ProcessStatistics total = Total(this, this->Internal->Own, controller);
-  this->NumberOfOutsidePoints = static_cast<vtkIdType>(total.Sums[0]);
-  this->NumberOfDiscordantTriangles = static_cast<vtkIdType>(total.Largest[0]);
+  this->Superclass::ReduceStatistics(controller);
   this->Internal->Continuity->ReduceStatistics(controller);
 }
 
-vtkIdType vtkDifferentiableHomeomorphism::GetNumberOfMeshBuilds()
-{
-  return this->Internal->Cache.GetNumberOfBuilds();
-}
-
-int vtkDifferentiableHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
-{
-  if (port < 2)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-    info->Set(AskedForWhole(), 1);
-    return 1;
-  }
-  AcceptDataSetsAndTrees(info);
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
-
-int vtkDifferentiableHomeomorphism::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkPolyData");
-  return 1;
-}
-
 int vtkDifferentiableHomeomorphism::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
-  vtkInformation* outInfo = outputs->GetInformationObject(0);
-  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
-  if (!data)
-  {
-    MakeOutput<vtkPolyData>(outInfo);
-  }
-  else if (BecomesStructuredGrid(data))
-  {
-    MakeOutput<vtkStructuredGrid>(outInfo);
-  }
-  else
-  {
-    MakeOutputLike(data, outInfo);
-  }
-  return 1;
-}
-
-int vtkDifferentiableHomeomorphism::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  DescribeDataInOutput(inputs[2]->GetInformationObject(0), outputs->GetInformationObject(0));
-  DescribeTimesInOutput(inputs, 3, outputs->GetInformationObject(0));
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
-  return 1;
-}
-
-int vtkDifferentiableHomeomorphism::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  RequestWhole(inputs[0]->GetInformationObject(0));
-  RequestWhole(inputs[1]->GetInformationObject(0));
-  if (SharesUpstreamWithPortsBefore(this, 2))
-  {
-    RequestWhole(inputs[2]->GetInformationObject(0));
-  }
-  return 1;
-}
-
-int vtkDifferentiableHomeomorphism::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const int success = this->MapData(request, inputs, outputs);
-  this->Internal->Own = { { static_cast<double>(this->NumberOfOutsidePoints) },
-    { static_cast<double>(this->NumberOfDiscordantTriangles) } };
-  this->SetProgressShiftScale(0.0, 1.0);
-  if (success)
+  if (!BecomesStructuredGrid(vtkDataObject::GetData(inputs[2])))
   {
-    this->UpdateProgress(1.0);
+    return this->Superclass::RequestDataObject(request, inputs, outputs);
   }
-  return success;
+  this->CheckInputTypes(inputs);
+  MakeOutput<vtkStructuredGrid>(outputs->GetInformationObject(0));
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
+  return 1;
 }
 
-void vtkDifferentiableHomeomorphism::Internals::Measure(
-  vtkDifferentiableHomeomorphism* self, vtkPolyData* source, vtkPolyData* target)
+void vtkDifferentiableHomeomorphism::Internals::Measure(vtkDifferentiableHomeomorphism* self,
+  const std::shared_ptr<const Homeomorphism>& map, vtkPolyData* mesh, vtkPolyData* output)
 {
-  vtkJacobianContinuity* continuity = this->Continuity;
-  const std::shared_ptr<const Homeomorphism> map =
-    this->Cache.Get(source, target, GetOptions(self));
-  // New data must not make the meshes look new.
-  if (this->Measured.lock() != map || this->MeasuredInverse != self->Inverse)
+  const vtkMTimeType time = this->Continuity->GetMTime();
+  if (this->MeasuredMap.lock() != map || this->MeasuredInverse != self->Inverse ||
+    this->MeasuredTime != time)
   {
-    // Copies: the originals belong to a pipeline of their own.
-    vtkNew<vtkPolyData> from;
-    vtkNew<vtkPolyData> to;
-    from->ShallowCopy(self->Inverse ? target : source);
-    to->ShallowCopy(self->Inverse ? source : target);
-    continuity->SetSourceData(from);
-    continuity->SetTargetData(to);
-    this->Measured = map;
+    this->Measured->Initialize();
+    const vtkNew<vtkPolyData> colored;
+    const bool complete = this->Continuity->Measure(
+      self, self->Inverse ? map->Inverted() : map, nullptr, mesh, this->Measured, colored);
+    // The result of an aborted run must not be taken for complete.
+    this->MeasuredMap = complete ? map : nullptr;
     this->MeasuredInverse = self->Inverse;
+    this->MeasuredTime = time;
   }
-  continuity->SetTransform(nullptr);
-  continuity->SetCoordinateSystem(self->CoordinateSystem);
-  continuity->SetCenterPoint(self->CenterPoint);
-  continuity->SetDiscordantTriangles(self->DiscordantTriangles);
-  continuity->SetMaskInvalidTriangles(self->MaskInvalidTriangles);
-
-  vtkNew<vtkCallbackCommand> passOn;
-  passOn->SetClientData(self);
-  passOn->SetCallback([](vtkObject* caller, unsigned long, void* client, void*) {
-    auto* inner = vtkAlgorithm::SafeDownCast(caller);
-    auto* outer = static_cast<vtkDifferentiableHomeomorphism*>(client);
-    outer->UpdateProgress(inner->GetProgress());
-    inner->SetAbortExecute(ShouldAbort(outer));
-  });
-  const unsigned long observer = continuity->AddObserver(vtkCommand::ProgressEvent, passOn);
-  continuity->Update();
-  continuity->RemoveObserver(observer);
-  if (continuity->GetAbortExecute())
-  {
-    // What an aborted run left is not to be taken for a result.
-    continuity->Modified();
-  }
+  output->ShallowCopy(this->Measured);
 }
 
 vtkJacobianContinuity* vtkDifferentiableHomeomorphism::GetJacobianContinuity()
@@ -633,26 +492,18 @@ vtkMTimeType vtkDifferentiableHomeomorphism::GetMTime()
   return std::max(this->Superclass::GetMTime(), this->Internal->Continuity->GetMTime());
 }
 
-int vtkDifferentiableHomeomorphism::MapData(
+int vtkDifferentiableHomeomorphism::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
   vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-  this->NumberOfOutsidePoints = -1;
-  this->NumberOfDiscordantTriangles = 0;
-  this->SetErrorCode(vtkErrorCode::NoError);
-
-  const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(source, target, GetOptions(this));
-  ReportProblems(this, this->Internal->Cache.GetProblems());
+  const std::shared_ptr<const Homeomorphism> map = this->GetMap(source, target);
   if (!map)
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
-  this->NumberOfOutsidePoints = 0;
 
   const ChartedTriangulation& charts = map->GetCharts(Domain::Source);
   for (TriangleIndex t = 0; t < map->GetPair().GetTriangulation().GetNumberOfTriangles(); ++t)
@@ -665,11 +516,11 @@ int vtkDifferentiableHomeomorphism::MapData(
   {
     constexpr double share = 0.8;
     this->SetProgressShiftScale(0.0, share);
-    this->Internal->Measure(this, source, target);
+    this->Internal->Measure(
+      this, map, this->Inverse ? target : source, vtkPolyData::GetData(outputs, 1));
     this->SetProgressShiftScale(share, 1.0 - share);
-    vtkPolyData::GetData(outputs, 1)->ShallowCopy(this->Internal->Continuity->GetOutput());
   }
-  if (!isFirstPiece && (!data || SharesUpstreamWithPortsBefore(this, 2)))
+  if (!isFirstPiece && (!data || this->DependsOnPortsBefore(2)))
   {
     return 1;
   }
@@ -708,8 +559,7 @@ int vtkDifferentiableHomeomorphism::MapData(
     vtkErrorMacro(<< "Data of type " << data->GetClassName()
                   << " has no points that can be moved: give a point set, an image, a rectilinear "
                      "grid, or a tree of those.");
-    this->SetErrorCode(vtkErrorCode::UserError);
-    return 0;
+    return this->Fail(DATA_REFUSED);
   }
   return 1;
 }
@@ -717,25 +567,16 @@ int vtkDifferentiableHomeomorphism::MapData(
 void vtkDifferentiableHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "Inverse: " << this->Inverse << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
-  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  PrintMappingOptions(this, os, indent);
   os << indent << "ComputeTriangleId: " << this->ComputeTriangleId << "\n";
   os << indent << "ComputeJacobian: " << this->ComputeJacobian << "\n";
   os << indent << "ComputeJacobianDeterminant: " << this->ComputeJacobianDeterminant << "\n";
-  os << indent << "TransformActiveAttributes: " << this->TransformActiveAttributes << "\n";
   os << indent << "TransformAllInputVectors: " << this->TransformAllInputVectors << "\n";
   for (const auto& transformation : this->Internal->Transformations)
   {
     os << indent << "AttributeTransformation of " << transformation.first << ": "
        << static_cast<int>(transformation.second) << "\n";
   }
-  os << indent << "BlankOutside: " << this->BlankOutside << "\n";
   os << indent << "MeasureContinuity: " << this->MeasureContinuity << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
-  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
-  os << indent << "NumberOfDiscordantTriangles: " << this->NumberOfDiscordantTriangles << "\n";
 }

@@ -4,7 +4,10 @@
 #include "vtkHomeomorphismTransform.h"
 
 #include "Pipeline/AttributeTransformation.h"
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/DiagnosticMessages.h"
+#include "Pipeline/HomeomorphismCache.h"
+#include "Pipeline/Options.h"
+#include "Pipeline/PointBlocks.h"
 
 #include "vtkDataArray.h"
 #include "vtkMath.h"
@@ -31,7 +34,7 @@ public:
                      : SurfacePoint{};
   }
 
-  void MapPlace(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
+  void MapSurfacePoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
   {
     if (surfacePoint.Triangle < 0)
     {
@@ -55,7 +58,7 @@ public:
       0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), isHint ? last : -1);
     last = surfacePoint.Triangle;
     double image[3];
-    this->MapPlace(from, surfacePoint, image);
+    this->MapSurfacePoint(from, surfacePoint, image);
     const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
     std::transform(image, image + 3, out,
       [largest](double x) { return static_cast<Real>(std::max(-largest, std::min(largest, x))); });
@@ -171,11 +174,7 @@ void vtkHomeomorphismTransform::InternalDeepCopy(vtkAbstractTransform* transform
   this->SetInverseIterations(other->InverseIterations);
   this->SetSource(other->Source);
   this->SetTarget(other->Target);
-  this->SetCoordinateSystem(other->CoordinateSystem);
-  this->SetCenterPoint(other->CenterPoint);
-  this->SetDiscordantTriangles(other->DiscordantTriangles);
-  this->SetMaskInvalidTriangles(other->MaskInvalidTriangles);
-  this->SetTolerance(other->Tolerance);
+  CopyOptions(other, this);
   this->Internal->Cache = other->Internal->Cache;
   if (this->InverseFlag != other->InverseFlag)
   {
@@ -216,21 +215,21 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
   outPts->Resize(firstPoint + count);
   outPts->SetNumberOfPoints(firstPoint + count);
 
-  struct Carried
+  struct TransformedArray
   {
     vtkDataArray* In;
     vtkDataArray* Out;
     bool Normals;
     vtkIdType First;
   };
-  std::vector<Carried> carried;
-  const auto add = [&carried, count](vtkDataArray* in, vtkDataArray* out, bool normals) {
+  std::vector<TransformedArray> arrays;
+  const auto add = [&arrays, count](vtkDataArray* in, vtkDataArray* out, bool normals) {
     if (in && out)
     {
-      carried.push_back({ in, out, normals, out->GetNumberOfTuples() });
+      arrays.push_back({ in, out, normals, out->GetNumberOfTuples() });
       out->SetNumberOfComponents(3);
-      out->Resize(carried.back().First + count);
-      out->SetNumberOfTuples(carried.back().First + count);
+      out->Resize(arrays.back().First + count);
+      out->SetNumberOfTuples(arrays.back().First + count);
     }
   };
   add(inNms, outNms, true);
@@ -265,16 +264,16 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
       {
         if (block.Triangles[i] < 0)
         {
-          std::fill_n(block.Points[i], 3, internals.OutsideCoordinate);
+          std::fill_n(block.Images[i], 3, internals.OutsideCoordinate);
         }
       }
-      WritePoints(block, firstPoint + first, outPts->GetData());
-      for (int i = 0; i < block.Count && !carried.empty(); ++i)
+      WritePoints(block.Images, block.Count, firstPoint + first, outPts->GetData());
+      for (int i = 0; i < block.Count && !arrays.empty(); ++i)
       {
         double derivative[3][3];
         internals.GetDerivative(from, block.GetSurfacePoint(i), derivative);
         const TensorTransformation transformation(&derivative[0][0]);
-        for (const Carried& array : carried)
+        for (const TransformedArray& array : arrays)
         {
           double vector[3];
           array.In->GetTuple(first + i, vector);
@@ -342,9 +341,5 @@ void vtkHomeomorphismTransform::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Source: " << this->Source << "\n";
   os << indent << "Target: " << this->Target << "\n";
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
-  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  PrintOptions(this, os, indent);
 }

@@ -4,30 +4,23 @@
  * @class   vtkHomeomorphismTransform
  * @brief   the homeomorphism between two planar triangulations as a VTK transform
  *
- * A vtkWarpTransform that carries the domain of one triangulation onto that of another with the
- * same triangles, one to one; see vtkDifferentiableHomeomorphism for the map and its coordinate
- * systems. It goes wherever VTK takes a transform: vtkTransformFilter, vtkTransformPolyDataFilter,
- * vtkGeneralTransform, and vtkImageReslice, which wants the map from the output's grid to the
- * input, that is, GetInverse() (or source and target exchanged).
+ * The map of vtkDifferentiableHomeomorphism for everything in VTK that uses a transform:
+ * vtkTransformFilter, vtkGeneralTransform, or vtkImageReslice, which needs the map from the output
+ * to the input, that is, GetInverse() (or source and target exchanged). The options are described
+ * in vtkHomeomorphismOptions.h. Inverse and derivative are exact to a few rounding errors;
+ * InverseTolerance and InverseIterations have no effect.
  *
- * Forward, inverse and derivative are in closed form or solved to the last few bits; the tolerance
- * and the number of iterations of vtkWarpTransform play no part.
+ * Both meshes must be planar, in any planes. A point's distance from the source's plane becomes its
+ * distance from the target's, as in vtkDifferentiableHomeomorphism.
  *
- * Both meshes must be planar, in any plane. A point's distance from the source's plane is kept as
- * its distance from the target's, in the direction of the planes' normals (the source's is the one
- * that points along the axis it is closest to, the target's is less than a right angle from it), so
- * a map of the xy plane leaves z alone, and the derivative takes normal to normal.
+ * A point outside the domain is mapped to a point that is in no mesh or image: its three
+ * coordinates are GetOutsideCoordinate(), 1e30 or, if that is more, a thousand times the meshes'
+ * largest coordinate. vtkImageReslice then uses its background color (not with its Wrap or Mirror
+ * modes). The derivative is NaN. If a mesh is missing or refused (an error), all are outside.
  *
- * A transform has no way to mark a point as outside. Points outside the domain go to a place that
- * is in no image or mesh: all three coordinates are GetOutsideCoordinate(), 1e30 or, if that is
- * more, a thousand times the meshes' largest coordinate. vtkImageReslice then gives such pixels its
- * background color (do not combine with its Wrap or Mirror modes). Derivatives there are NaN.
- * IsInside tells, too. Before both meshes are set, and if they are refused (an error says why),
- * every point is outside.
- *
- * Once updated, the transform may be used by any number of threads; TransformPoints and
- * TransformPointsNormalsVectors use vtkSMPTools themselves, with the same result for any number of
- * threads. Copies and inverses of an updated transform share what it has computed from the meshes.
+ * Once updated, the transform may be used by any number of threads. Methods for arrays use
+ * vtkSMPTools. Copies and inverses of an updated transform share the map. Different transforms may
+ * use the same meshes in different threads.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangularCoordinates
  */
@@ -36,6 +29,7 @@
 #define vtkHomeomorphismTransform_h
 
 #include "vtkFiltersHomeomorphismModule.h" // for the export macro
+#include "vtkHomeomorphismOptions.h"       // for the options
 #include "vtkWarpTransform.h"
 
 #include <memory> // for the internals
@@ -49,31 +43,11 @@ public:
   vtkTypeMacro(vtkHomeomorphismTransform, vtkWarpTransform);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The coordinate systems; see vtkDifferentiableHomeomorphism.
-  enum CoordinateSystems
-  {
-    LINEAR = 0,
-    CONTOUR = 1,
-    SMOOTH = 2
-  };
-
-  /// Where the contours of the Contour system start.
-  enum CenterPoints
-  {
-    CENTROID = 0,
-    INCENTER = 1
-  };
-
-  /// What becomes of discordant triangles in the Contour system.
-  enum DiscordantTrianglesModes
-  {
-    REFUSE = 0,
-    USE_LINEAR = 1
-  };
+  vtkHomeomorphismOptionsMacro();
 
   ///@{
-  /// The mesh that the transform maps from, and the one it maps to. Both are kept by reference: the
-  /// transform follows their modifications at its next update.
+  /// The source and target meshes. They are kept by reference; their modifications have effect at
+  /// the next update.
   virtual void SetSource(vtkPolyData* source);
   vtkGetObjectMacro(Source, vtkPolyData);
   virtual void SetTarget(vtkPolyData* target);
@@ -81,59 +55,18 @@ public:
   ///@}
 
   ///@{
-  /// The coordinate system: LINEAR, CONTOUR or SMOOTH (default).
-  vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
-  vtkGetMacro(CoordinateSystem, int);
-  void SetCoordinateSystemToLinear() { this->SetCoordinateSystem(LINEAR); }
-  void SetCoordinateSystemToContour() { this->SetCoordinateSystem(CONTOUR); }
-  void SetCoordinateSystemToSmooth() { this->SetCoordinateSystem(SMOOTH); }
-  ///@}
-
-  ///@{
-  /// The point where the contours of the Contour system start: CENTROID (default) or INCENTER.
-  vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
-  vtkGetMacro(CenterPoint, int);
-  ///@}
-
-  ///@{
-  /// In the Contour system, whether discordant triangles are an error (REFUSE, default) or are
-  /// carried by the Linear system (USE_LINEAR).
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
-  vtkGetMacro(DiscordantTriangles, int);
-  ///@}
-
-  ///@{
-  /// Whether invalid triangles are left out instead of refusing the meshes. Off by default.
-  vtkSetMacro(MaskInvalidTriangles, bool);
-  vtkGetMacro(MaskInvalidTriangles, bool);
-  vtkBooleanMacro(MaskInvalidTriangles, bool);
-  ///@}
-
-  ///@{
-  /// How far outside the domain a point may be and still be taken to the nearest point of it, as a
-  /// proportion of the diagonal of the domain's bounding box. 0 (default) allows only for rounding.
-  vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(Tolerance, double);
-  ///@}
-
   /// Whether a point is in the domain that the transform maps from (the target's if it is
-  /// inverted). Updates the transform.
+  /// inverted), and the value of all three coordinates of the image of a point that is not. Both
+  /// update the transform.
   bool IsInside(const double point[3]);
-
-  /// The value of all three coordinates of a point outside. Updates the transform.
   double GetOutsideCoordinate();
+  ///@}
 
-  ///@{
-  /// Whole arrays at a time, in parallel.
   void TransformPoints(vtkPoints* inPts, vtkPoints* outPts) override;
   void TransformPointsNormalsVectors(vtkPoints* inPts, vtkPoints* outPts, vtkDataArray* inNms,
     vtkDataArray* outNms, vtkDataArray* inVrs, vtkDataArray* outVrs, int nOptionalVectors = 0,
     vtkDataArray** inVrsArr = nullptr, vtkDataArray** outVrsArr = nullptr) override;
-  ///@}
-
   vtkAbstractTransform* MakeTransform() override;
-
-  /// Includes the modification of the meshes.
   vtkMTimeType GetMTime() override;
 
 protected:
@@ -156,11 +89,6 @@ protected:
 
   vtkPolyData* Source = nullptr;
   vtkPolyData* Target = nullptr;
-  int CoordinateSystem = SMOOTH;
-  int CenterPoint = CENTROID;
-  int DiscordantTriangles = REFUSE;
-  bool MaskInvalidTriangles = false;
-  double Tolerance = 0.0;
 
 private:
   vtkHomeomorphismTransform(const vtkHomeomorphismTransform&) = delete;

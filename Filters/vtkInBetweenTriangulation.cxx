@@ -5,11 +5,14 @@
 
 #include "Construction/InBetweenPath.h"
 #include "Kernel/ExactSign.h"
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/DiagnosticMessages.h"
+#include "Pipeline/HomeomorphismCache.h"
+#include "Pipeline/Requests.h"
 
 #include "vtkCellData.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -156,7 +159,7 @@ void vtkInBetweenTriangulation::SetTargetData(vtkPolyData* target)
 int vtkInBetweenTriangulation::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(AskedForWhole(), 1);
+  info->Set(RequestedWhole(), 1);
   return 1;
 }
 

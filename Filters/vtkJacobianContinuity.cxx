@@ -4,14 +4,17 @@
 #include "vtkJacobianContinuity.h"
 
 #include "Continuity/MeasuredFeatures.h"
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/DiagnosticMessages.h"
+#include "Pipeline/HomeomorphismCache.h"
+#include "Pipeline/Options.h"
+#include "Pipeline/PointBlocks.h"
 #include "Pipeline/ProcessStatistics.h"
+#include "Pipeline/Requests.h"
 
 #include "vtkAbstractTransform.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
-#include "vtkErrorCode.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -35,6 +38,7 @@ vtkStandardNewMacro(vtkJacobianContinuity);
 class vtkJacobianContinuity::Internals
 {
 public:
+  /// Of a transform, which has options of its own.
   HomeomorphismCache Cache;
   /// Edges on the boundary, then places by type and verdict; the largest jump.
   ProcessStatistics Own{ std::vector<double>(1 + (VERTEX + 1) * (UNDECIDED + 1)), { 0.0 } };
@@ -216,63 +220,29 @@ void vtkJacobianContinuity::SetTransform(vtkAbstractTransform* transform)
   vtkSetObjectBodyMacro(Transform, vtkAbstractTransform, transform);
 }
 
-void vtkJacobianContinuity::SetSourceData(vtkPolyData* source)
-{
-  this->SetInputData(0, source);
-}
-
-void vtkJacobianContinuity::SetTargetData(vtkPolyData* target)
-{
-  this->SetInputData(1, target);
-}
-
 vtkMTimeType vtkJacobianContinuity::GetMTime()
 {
   const vtkMTimeType own = this->Superclass::GetMTime();
   return this->Transform ? std::max(own, this->Transform->GetMTime()) : own;
 }
 
+vtkPolyData* vtkJacobianContinuity::GetOutput(int port)
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(port));
+}
+
 int vtkJacobianContinuity::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(AskedForWhole(), 1);
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
-  return 1;
-}
-
-int vtkJacobianContinuity::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
-  return 1;
-}
-
-int vtkJacobianContinuity::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  RequestWhole(inputs[0]->GetInformationObject(0));
-  RequestWhole(inputs[1]->GetInformationObject(0));
-  return 1;
-}
-
-int vtkJacobianContinuity::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const int success = this->Measure(request, inputs, outputs);
-  ProcessStatistics& own = this->Internal->Own;
-  own.Sums[0] = static_cast<double>(this->NumberOfBoundaryEdges);
-  std::transform(std::cbegin(this->Counts[0]), std::cend(this->Counts[VERTEX]),
-    own.Sums.begin() + 1, [](vtkIdType count) { return static_cast<double>(count); });
-  own.Largest[0] = this->LargestJump;
-  return success;
+  return this->Superclass::FillInputPortInformation(port, info);
 }
 
 void vtkJacobianContinuity::ReduceStatistics(vtkMultiProcessController* controller)
 {
+  this->Superclass::ReduceStatistics(controller);
   const ProcessStatistics total = Total(this, this->Internal->Own, controller);
   this->NumberOfBoundaryEdges = static_cast<vtkIdType>(total.Sums[0]);
   std::transform(total.Sums.begin() + 1, total.Sums.end(), std::begin(this->Counts[0]),
@@ -280,73 +250,94 @@ void vtkJacobianContinuity::ReduceStatistics(vtkMultiProcessController* controll
   this->LargestJump = total.Largest[0];
 }
 
-int vtkJacobianContinuity::Measure(
+int vtkJacobianContinuity::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
-  vtkPolyData* lines = vtkPolyData::GetData(outputs, 0);
-  vtkPolyData* colored = vtkPolyData::GetData(outputs, 1);
-  this->NumberOfBoundaryEdges = 0;
-  std::fill_n(&this->Counts[0][0], sizeof(this->Counts) / sizeof(this->Counts[0][0]), 0);
-  this->LargestJump = 0.0;
-  this->SetErrorCode(vtkErrorCode::NoError);
-
+  this->ResetStatistics();
   if (!this->Transform && !target)
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro(<< "There is no map to measure: set a transform (SetTransform) or a target mesh "
                      "(input port 1).");
-    return 0;
+    return this->Fail(MESHES_REFUSED);
   }
-  HomeomorphismOptions options = GetOptions(this);
-  auto* ours = vtkHomeomorphismTransform::SafeDownCast(this->Transform);
-  if (this->Transform)
+  std::shared_ptr<const Homeomorphism> map;
+  if (!this->Transform)
+  {
+    map = this->GetMap(source, target);
+    if (!map)
+    {
+      return 0;
+    }
+  }
+  else
   {
     this->Transform->Update();
     // A homeomorphism of the very triangulation has a closed form; of another map's domain, only
     // the edges are wanted here.
+    auto* ours = vtkHomeomorphismTransform::SafeDownCast(this->Transform);
     const bool known = ours && !ours->GetInverseFlag() && ours->GetTarget() && ours->GetSource() &&
       ours->GetSource()->GetPoints() == source->GetPoints() &&
       ours->GetSource()->GetPolys() == source->GetPolys();
-    options = known ? GetOptions(ours) : HomeomorphismOptions{};
-    target = known ? ours->GetTarget() : nullptr;
+    HomeomorphismOptions options = known ? GetOptions(ours) : HomeomorphismOptions{};
     if (!known)
     {
       options.System = homeomorphism::CoordinateSystem::Linear;
       options.MaskInvalidTriangles = this->MaskInvalidTriangles;
     }
+    HomeomorphismCache& cache = this->Internal->Cache;
+    map = cache.Get(source, known ? ours->GetTarget() : nullptr, options);
+    ReportProblems(this, cache.GetProblems());
+    if (!map)
+    {
+      return this->Fail(MESHES_REFUSED);
+    }
+    if (!map->GetPair().GetGeometry(Domain::Source).IsPlanar())
+    {
+      vtkErrorMacro(
+        << "A transform is measured on a planar triangulation only. For a surface, give the "
+           "target mesh (input port 1).");
+      return this->Fail(MESHES_REFUSED);
+    }
   }
-  const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(source, target, options);
-  ReportProblems(this, this->Internal->Cache.GetProblems());
-  if (!map)
+  if (IsFirstPiece(request, outputs))
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
-    return 0;
+    this->Measure(this, map, this->Transform, source, vtkPolyData::GetData(outputs, 0),
+      vtkPolyData::GetData(outputs, 1));
   }
-  if (this->Transform && !map->GetPair().GetGeometry(Domain::Source).IsPlanar())
-  {
-    this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro(
-      << "A transform is measured on a planar triangulation only. For a surface, give the "
-         "target mesh (input port 1).");
-    return 0;
-  }
-  if (!IsFirstPiece(request, outputs))
-  {
-    return 1;
-  }
+  return 1;
+}
 
+void vtkJacobianContinuity::ResetStatistics()
+{
+  this->NumberOfBoundaryEdges = 0;
+  std::fill_n(&this->Counts[0][0], sizeof(this->Counts) / sizeof(this->Counts[0][0]), 0);
+  this->LargestJump = 0.0;
+  this->KeepStatistics();
+}
+
+/// Keeps the statistics of this process, which ReduceStatistics replaces by totals.
+void vtkJacobianContinuity::KeepStatistics()
+{
+  ProcessStatistics& own = this->Internal->Own;
+  own.Sums[0] = static_cast<double>(this->NumberOfBoundaryEdges);
+  std::transform(std::cbegin(this->Counts[0]), std::cend(this->Counts[VERTEX]),
+    own.Sums.begin() + 1, [](vtkIdType count) { return static_cast<double>(count); });
+  own.Largest[0] = this->LargestJump;
+}
+
+bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
+  const std::shared_ptr<const Homeomorphism>& map, vtkAbstractTransform* transform,
+  vtkPolyData* mesh, vtkPolyData* lines, vtkPolyData* colored)
+{
+  this->ResetStatistics();
   // A transform that is this map needs no coordinates far from the origin.
-  const bool unknown = this->Transform && !map->GetPair().HasTarget();
+  const bool unknown = transform && !map->GetPair().HasTarget();
   const bool planar = map->GetPair().HasTarget()
     ? map->GetPair().GetGeometry(Domain::Source).IsColumnar()
     : map->GetPair().GetGeometry(Domain::Source).IsPlanar();
-  const homeomorphism::CenterPoint center =
-    options.System == homeomorphism::CoordinateSystem::Contour
-    ? options.Center
-    : homeomorphism::CenterPoint::Centroid;
+  const homeomorphism::CenterPoint center = map->GetCharts(Domain::Source).GetCenter();
   const MeasuredFeatures places(*map, center,
     { true, this->BoundaryEdges, this->Spokes, this->WingSegments, this->CenterSegments,
       this->StripBorders, this->Centroids, this->Vertices },
@@ -370,13 +361,13 @@ int vtkJacobianContinuity::Measure(
   PlaceArrays placeArrays(places, this->SecondDerivatives);
 
   const vtkIdType done = RunInBlocks(
-    this, count, 0.05, 0.95,
+    algorithm, count, 0.05, 0.95,
     [&](vtkIdType begin, vtkIdType end) {
       std::vector<Sample> values;
       for (vtkIdType index = begin; index < end; ++index)
       {
         const MapUnderTest evaluate =
-          unknown ? MakeMapUnderTest(this->Transform, *map) : MakeMapUnderTest(*map);
+          unknown ? MakeMapUnderTest(transform, *map) : MakeMapUnderTest(*map);
         const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
         const int samples = places.GetNumberOfSamples(surfacePoint.Kind);
         // A line's first point is its end, not a sample.
@@ -402,14 +393,14 @@ int vtkJacobianContinuity::Measure(
     1 << 11);
   if (done < count)
   {
-    // Aborted: nothing is better than a part that looks like the whole.
-    return 1;
+    // Aborted: a part must not look like the whole.
+    return false;
   }
 
   vtkNew<vtkCellArray> vertexCells;
   vtkNew<vtkCellArray> lineCells;
-  const auto triangleJump = NewJumpArray("JacobianJump", source->GetNumberOfCells());
-  const auto vertexJump = NewJumpArray("JacobianJump", source->GetNumberOfPoints());
+  const auto triangleJump = NewJumpArray("JacobianJump", mesh->GetNumberOfCells());
+  const auto vertexJump = NewJumpArray("JacobianJump", mesh->GetNumberOfPoints());
   for (vtkIdType index = 0; index < count; ++index)
   {
     const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
@@ -451,19 +442,19 @@ int vtkJacobianContinuity::Measure(
   lines->GetPointData()->AddArray(pointError);
   lines->GetPointData()->AddArray(pointExact);
 
-  colored->ShallowCopy(source);
+  colored->ShallowCopy(mesh);
   colored->GetCellData()->AddArray(triangleJump);
   colored->GetCellData()->SetActiveScalars("JacobianJump");
   colored->GetPointData()->AddArray(vertexJump);
-  this->UpdateProgress(1.0);
-  return 1;
+  this->KeepStatistics();
+  return true;
 }
 
-vtkIdType vtkJacobianContinuity::GetNumberOfFeatures(int placeType, int verdict)
+vtkIdType vtkJacobianContinuity::GetNumberOfFeatures(int featureType, int verdict)
 {
-  return placeType >= EDGE && placeType <= VERTEX && verdict >= DIFFERENTIABLE &&
+  return featureType >= EDGE && featureType <= VERTEX && verdict >= DIFFERENTIABLE &&
       verdict <= UNDECIDED
-    ? this->Counts[placeType][verdict]
+    ? this->Counts[featureType][verdict]
     : 0;
 }
 
@@ -471,10 +462,6 @@ void vtkJacobianContinuity::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Transform: " << this->Transform << "\n";
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
-  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
   os << indent << "SamplesPerEdge: " << this->SamplesPerEdge << "\n";
   os << indent << "Resolution: " << this->Resolution << "\n";
   os << indent << "SecondDerivatives: " << this->SecondDerivatives << "\n";

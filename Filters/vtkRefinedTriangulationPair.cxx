@@ -4,7 +4,10 @@
 #include "vtkRefinedTriangulationPair.h"
 
 #include "Construction/PairRefinement.h"
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/DiagnosticMessages.h"
+#include "Pipeline/HomeomorphismCache.h"
+#include "Pipeline/Options.h"
+#include "Pipeline/Requests.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -12,6 +15,7 @@
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -112,7 +116,7 @@ void vtkRefinedTriangulationPair::SetTargetData(vtkPolyData* target)
 int vtkRefinedTriangulationPair::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(AskedForWhole(), 1);
+  info->Set(RequestedWhole(), 1);
   return 1;
 }
 

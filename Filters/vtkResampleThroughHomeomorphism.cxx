@@ -3,13 +3,17 @@
 
 #include "vtkResampleThroughHomeomorphism.h"
 
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/AttributeTransformation.h"
+#include "Pipeline/CellPoints.h"
+#include "Pipeline/GhostArrays.h"
 #include "Pipeline/ImageSampling.h"
-#include "Pipeline/ProcessStatistics.h"
+#include "Pipeline/Options.h"
+#include "Pipeline/PointBlocks.h"
+#include "Pipeline/Requests.h"
 #include "Pipeline/VTKVersions.h"
-#include "vtkDifferentiableHomeomorphism.h"
 
-#include "vtkCallbackCommand.h"
+#include "Mesh/MeshValidation.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -17,16 +21,18 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataObjectTree.h"
-#include "vtkErrorCode.h"
+#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -59,7 +65,7 @@ void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 }
 
 /// The data's values at points, with a mask that tells where there are any.
-vtkSmartPointer<vtkPointSet> Probe(vtkPoints* points, vtkDataObject* data)
+vtkSmartPointer<vtkPointSet> FindValues(vtkPoints* points, vtkDataObject* data)
 {
   vtkNew<vtkPolyData> wanted;
   wanted->SetPoints(points);
@@ -94,7 +100,7 @@ void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
   {
     return;
   }
-  const vtkSmartPointer<vtkPointSet> again = Probe(moved, data);
+  const vtkSmartPointer<vtkPointSet> again = FindValues(moved, data);
   for (int a = 0; a < found->GetPointData()->GetNumberOfArrays(); ++a)
   {
     vtkDataArray* array = found->GetPointData()->GetArray(a);
@@ -239,6 +245,18 @@ std::string DescribeDefects(vtkDataObject* data)
   return text;
 }
 
+/// Points of its own for a copy: vtkPoints stores its bounds when they are computed, and another
+/// thread may use the original at the same time.
+vtkSmartPointer<vtkPoints> CopyPoints(vtkPointSet* data)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  if (data->GetPoints())
+  {
+    points->DeepCopy(data->GetPoints());
+  }
+  return points;
+}
+
 /// The data without what VTK has computed for searching in it: VTK 9.1 uses the lists of each
 /// point's cells even after cells were replaced in place, and then reads beyond them.
 vtkSmartPointer<vtkDataObject> WithoutCaches(vtkDataObject* data)
@@ -246,7 +264,7 @@ vtkSmartPointer<vtkDataObject> WithoutCaches(vtkDataObject* data)
   if (auto* mesh = vtkPolyData::SafeDownCast(data))
   {
     auto copy = vtkSmartPointer<vtkPolyData>::New();
-    copy->SetPoints(mesh->GetPoints());
+    copy->SetPoints(CopyPoints(mesh));
     copy->SetVerts(mesh->GetVerts());
     copy->SetLines(mesh->GetLines());
     copy->SetPolys(mesh->GetPolys());
@@ -258,7 +276,7 @@ vtkSmartPointer<vtkDataObject> WithoutCaches(vtkDataObject* data)
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
   {
     auto copy = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    copy->SetPoints(grid->GetPoints());
+    copy->SetPoints(CopyPoints(grid));
     if (grid->GetCells())
     {
       CopyCells(grid, copy.Get());
@@ -286,79 +304,52 @@ bool HasVectors(vtkPointData* pointData)
   return pointData->GetVectors() || pointData->GetNormals() || pointData->GetTensors();
 }
 
+/// The bounds of a mesh as GetBounds gives them, which would store them in the mesh: another thread
+/// may use it at the same time.
+std::array<double, 6> FindBounds(vtkPolyData* mesh)
+{
+  const vtkNew<vtkPolyData> copy;
+  copy->SetPoints(CopyPoints(mesh));
+  copy->SetVerts(mesh->GetVerts());
+  copy->SetLines(mesh->GetLines());
+  copy->SetPolys(mesh->GetPolys());
+  copy->SetStrips(mesh->GetStrips());
+  std::array<double, 6> bounds;
+  copy->GetBounds(bounds.data());
+  return bounds;
+}
+
 } // namespace
 
-class vtkResampleThroughHomeomorphism::Internals
-{
-public:
-  HomeomorphismCache Cache;
-};
-
 vtkResampleThroughHomeomorphism::vtkResampleThroughHomeomorphism()
-  : Internal(new Internals)
 {
+  this->FirstPortInPieces = 3;
   this->SetNumberOfInputPorts(4);
-  // Outside points are told by the mask; errors are this filter's own.
-  this->Mapping->BlankOutsideOff();
-  this->Mapping->ComputeTriangleIdOn();
-  vtkNew<vtkCallbackCommand> passOnErrors;
-  passOnErrors->SetClientData(this);
-  passOnErrors->SetCallback([](vtkObject*, unsigned long event, void* client, void* text) {
-    auto* self = static_cast<vtkResampleThroughHomeomorphism*>(client);
-    // VTK's macros prefix their text with where it comes from; the part after it is the message.
-    std::string message = static_cast<const char*>(text);
-    const std::size_t start = message.find("): ");
-    message = start == std::string::npos ? message : message.substr(start + 3);
-    message.erase(message.find_last_not_of('\n') + 1);
-    if (event == vtkCommand::ErrorEvent)
-    {
-      vtkErrorWithObjectMacro(self, << message);
-    }
-    else
-    {
-      vtkWarningWithObjectMacro(self, << message);
-    }
-  });
-  this->Mapping->AddObserver(vtkCommand::ErrorEvent, passOnErrors);
-  this->Mapping->AddObserver(vtkCommand::WarningEvent, passOnErrors);
 }
 
 vtkResampleThroughHomeomorphism::~vtkResampleThroughHomeomorphism() = default;
 
-void vtkResampleThroughHomeomorphism::SetSourceData(vtkPolyData* source)
-{
-  this->SetInputData(0, source);
-}
-
-void vtkResampleThroughHomeomorphism::SetTargetData(vtkPolyData* target)
-{
-  this->SetInputData(1, target);
-}
-
 void vtkResampleThroughHomeomorphism::SetGridData(vtkDataSet* grid)
 {
-  this->SetInputData(3, grid);
+  this->SetInputDataObject(3, grid);
 }
 
-vtkIdType vtkResampleThroughHomeomorphism::GetNumberOfMeshBuilds()
+vtkDataSet* vtkResampleThroughHomeomorphism::GetOutput()
 {
-  return this->Internal->Cache.GetNumberOfBuilds() + this->Mapping->GetNumberOfMeshBuilds();
+  return vtkDataSet::SafeDownCast(this->GetOutputDataObject(0));
 }
 
 int vtkResampleThroughHomeomorphism::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port < 2 ? "vtkPolyData" : "vtkDataSet");
-  if (port < 3)
-  {
-    info->Set(AskedForWhole(), 1);
-  }
+  this->Superclass::FillInputPortInformation(port, info);
   if (port == 2)
   {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   }
-  if (port >= 2)
+  else if (port == 3)
   {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   }
   return 1;
 }
@@ -372,6 +363,7 @@ int vtkResampleThroughHomeomorphism::FillOutputPortInformation(int, vtkInformati
 int vtkResampleThroughHomeomorphism::RequestDataObject(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  this->CheckInputTypes(inputs);
   if (vtkDataObject* grid = vtkDataObject::GetData(inputs[3]))
   {
     MakeOutputLike(grid, outputs->GetInformationObject(0));
@@ -384,39 +376,29 @@ int vtkResampleThroughHomeomorphism::RequestDataObject(
 }
 
 int vtkResampleThroughHomeomorphism::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkInformation* outInfo = outputs->GetInformationObject(0);
-  DescribeTimesInOutput(inputs, 4, outInfo);
-  if (vtkInformation* gridInfo = inputs[3]->GetInformationObject(0))
+  this->Superclass::RequestInformation(request, inputs, outputs);
+  if (!inputs[3]->GetInformationObject(0))
   {
-    DescribeDataInOutput(gridInfo, outInfo);
-    return 1;
+    const int extent[6] = { 0, std::max(1, this->SamplingDimensions[0]) - 1, 0,
+      std::max(1, this->SamplingDimensions[1]) - 1, 0, 0 };
+    vtkInformation* outInfo = outputs->GetInformationObject(0);
+    outInfo->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   }
-  const int extent[6] = { 0, std::max(1, this->SamplingDimensions[0]) - 1, 0,
-    std::max(1, this->SamplingDimensions[1]) - 1, 0, 0 };
-  outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
-  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   return 1;
 }
 
 int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  for (int port = 0; port < 3; ++port)
-  {
-    RequestWhole(inputs[port]->GetInformationObject(0));
-  }
+  this->Superclass::RequestUpdateExtent(request, inputs, outputs);
   vtkInformation* gridInfo = inputs[3]->GetInformationObject(0);
-  vtkInformation* outInfo = outputs->GetInformationObject(0);
-  if (gridInfo && SharesUpstreamWithPortsBefore(this, 3))
+  if (gridInfo && !this->DependsOnPortsBefore(3))
   {
-    RequestWhole(gridInfo);
-  }
-  else if (gridInfo)
-  {
+    vtkInformation* outInfo = outputs->GetInformationObject(0);
     for (auto* key : { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
            Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
     {
@@ -430,35 +412,37 @@ int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
   return 1;
 }
 
-vtkDataSet* vtkResampleThroughHomeomorphism::Map(vtkDataSet* data, bool inverse, bool carryVectors)
+bool vtkResampleThroughHomeomorphism::MakeImage(
+  vtkPolyData* mesh, const int extent[6], vtkImageData* image)
 {
-  this->Mapping->SetDataObject(data);
-  this->Mapping->SetInverse(inverse);
-  this->Mapping->SetTransformActiveAttributes(carryVectors);
-  this->Mapping->Update();
-  if (this->Mapping->GetErrorCode() != vtkErrorCode::NoError)
+  std::array<double, 6> bounds = FindBounds(mesh);
+  if (bounds[4] != bounds[5] && bounds[4] <= bounds[5])
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
-    return nullptr;
+    vtkErrorMacro(<< "An image can be laid over a mesh that is parallel to the xy plane only; this "
+                     "one's z goes from "
+                  << bounds[4] << " to " << bounds[5]
+                  << ". Give the points at which values are wanted (input port 3).");
+    return false;
   }
-  return vtkDataSet::SafeDownCast(this->Mapping->GetOutputDataObject(0));
+  if (this->SamplingBounds[0] <= this->SamplingBounds[1] &&
+    this->SamplingBounds[2] <= this->SamplingBounds[3])
+  {
+    std::copy_n(this->SamplingBounds, 4, bounds.begin());
+  }
+  double spacing[3] = { 1.0, 1.0, 1.0 };
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    const int intervals = std::max(1, this->SamplingDimensions[axis]) - 1;
+    const double length = bounds[2 * axis + 1] - bounds[2 * axis];
+    spacing[axis] = intervals > 0 && length > 0.0 ? length / intervals : 1.0;
+  }
+  image->SetOrigin(bounds[0], bounds[2], bounds[4]);
+  image->SetSpacing(spacing);
+  image->SetExtent(const_cast<int*>(extent));
+  return true;
 }
 
-int vtkResampleThroughHomeomorphism::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const int success = this->Resample(request, inputs, outputs);
-  this->OwnOutsidePoints = this->NumberOfOutsidePoints;
-  return success;
-}
-
-void vtkResampleThroughHomeomorphism::ReduceStatistics(vtkMultiProcessController* controller)
-{
-  const ProcessStatistics own{ { static_cast<double>(this->OwnOutsidePoints) }, {} };
-  this->NumberOfOutsidePoints = static_cast<vtkIdType>(Total(this, own, controller).Sums[0]);
-}
-
-int vtkResampleThroughHomeomorphism::Resample(
+int vtkResampleThroughHomeomorphism::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
@@ -466,125 +450,135 @@ int vtkResampleThroughHomeomorphism::Resample(
   vtkDataObject* data = vtkDataObject::GetData(inputs[2]);
   vtkDataSet* grid = vtkDataSet::GetData(inputs[3]);
   vtkDataSet* output = vtkDataSet::GetData(outputs);
-  this->NumberOfOutsidePoints = -1;
-  this->SetErrorCode(vtkErrorCode::NoError);
-  if (grid && !IsFirstPiece(request, outputs) && SharesUpstreamWithPortsBefore(this, 3))
+  if (grid && !IsFirstPiece(request, outputs) && this->DependsOnPortsBefore(3))
   {
-    this->NumberOfOutsidePoints = 0;
     return 1;
   }
-
-  // Copies: the originals belong to a pipeline of their own. They share points and cells, so that
-  // nothing is built anew.
-  vtkNew<vtkPolyData> meshes[2];
-  meshes[0]->ShallowCopy(source);
-  meshes[1]->ShallowCopy(target);
-  this->Mapping->SetSourceData(meshes[0]);
-  this->Mapping->SetTargetData(meshes[1]);
-  this->Mapping->SetCoordinateSystem(this->CoordinateSystem);
-  this->Mapping->SetCenterPoint(this->CenterPoint);
-  this->Mapping->SetDiscordantTriangles(this->DiscordantTriangles);
-  this->Mapping->SetMaskInvalidTriangles(this->MaskInvalidTriangles);
-  this->Mapping->SetTolerance(this->Tolerance);
-  this->Mapping->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-
   if (grid)
   {
     output->CopyStructure(grid);
   }
-  else
+  else if (!this->MakeImage(this->Inverse ? source : target,
+             outputs->GetInformationObject(0)->Get(
+               vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
+             vtkImageData::SafeDownCast(output)))
   {
-    double bounds[6];
-    (this->Inverse ? source : target)->GetBounds(bounds);
-    if (bounds[4] != bounds[5] && bounds[4] <= bounds[5])
-    {
-      vtkErrorMacro(
-        << "An image can be laid over a mesh that is parallel to the xy plane only; this "
-           "one's z goes from "
-        << bounds[4] << " to " << bounds[5]
-        << ". Give the points at which values are wanted (input port 3).");
-      this->SetErrorCode(vtkErrorCode::UserError);
-      return 0;
-    }
-    if (this->SamplingBounds[0] <= this->SamplingBounds[1] &&
-      this->SamplingBounds[2] <= this->SamplingBounds[3])
-    {
-      std::copy_n(this->SamplingBounds, 4, bounds);
-    }
-    auto* image = vtkImageData::SafeDownCast(output);
-    double spacing[3] = { 1.0, 1.0, 1.0 };
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      const int intervals = std::max(1, this->SamplingDimensions[axis]) - 1;
-      const double length = bounds[2 * axis + 1] - bounds[2 * axis];
-      spacing[axis] = intervals > 0 && length > 0.0 ? length / intervals : 1.0;
-    }
-    image->SetOrigin(bounds[0], bounds[2], bounds[4]);
-    image->SetSpacing(spacing);
-    image->SetExtent(
-      outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
+    return this->Fail(MESHES_REFUSED);
+  }
+  const std::shared_ptr<const Homeomorphism> map = this->GetMap(source, target);
+  if (!map)
+  {
+    output->Initialize();
+    return 0;
   }
 
+  const vtkIdType count = output->GetNumberOfPoints();
+  const vtkNew<vtkUnsignedCharArray> mask;
+  mask->SetName(maskName);
+  mask->SetNumberOfTuples(count);
+  mask->FillValue(0);
+  vtkPolyData* mesh = this->Inverse ? target : source;
   auto* image = vtkImageData::SafeDownCast(data);
   if (image && ImageSampling::CanSample(image) &&
     !(this->TransformActiveAttributes && HasVectors(image->GetPointData())))
   {
-    return this->ResampleImage(source, target, image, grid, output);
+    this->SampleImage(*map, image, grid, output, mask);
   }
-
-  // Where the grid's points come from.
-  const vtkIdType count = output->GetNumberOfPoints();
-  vtkNew<vtkPoints> origins;
-  origins->SetDataTypeToDouble();
-  std::vector<vtkIdType> inside;
-  vtkSmartPointer<vtkDataSet> shape;
-  shape.TakeReference(output->NewInstance());
-  shape->CopyStructure(output);
-  vtkDataSet* pulledBack = this->Map(shape, !this->Inverse, false);
-  if (!pulledBack)
+  else if (!this->Probe(*map, mesh, data ? data : mesh, output, mask))
   {
     output->Initialize();
-    return 0;
+    return this->Fail(DATA_REFUSED);
   }
-  this->UpdateProgress(0.3);
-  vtkDataArray* isInside = pulledBack->GetPointData()->GetArray(maskName);
-  const vtkSmartPointer<vtkDataArray> triangles =
-    pulledBack->GetPointData()->GetArray("TriangleId");
+
+  output->GetPointData()->AddArray(mask);
+  this->NumberOfOutsidePoints = CountOutside(grid ? grid : output, mask);
+  if (grid)
+  {
+    PassGhosts(grid->GetPointData(), output->GetPointData());
+    PassGhosts(grid->GetCellData(), output->GetCellData());
+  }
+  if (this->BlankOutside)
+  {
+    HidePoints(output, mask, output);
+  }
+  return 1;
+}
+
+/// Resamples data that is an image, which takes no search and no intermediate data.
+void vtkResampleThroughHomeomorphism::SampleImage(const Homeomorphism& map, vtkImageData* image,
+  vtkDataSet* grid, vtkDataSet* output, vtkUnsignedCharArray* mask)
+{
+  const vtkIdType count = output->GetNumberOfPoints();
+  const ImageSampling sampling(image, output->GetPointData(), count);
+  const Domain from = this->Inverse ? Domain::Source : Domain::Target;
+  vtkUnsignedCharArray* ghosts = grid ? GhostsOf(grid->GetPointData(), count) : nullptr;
+  const auto isHidden = [ghosts](vtkIdType i) {
+    return ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0;
+  };
+  static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
+  MapInBlocks(this, map, from, output,
+    map.GetAbsoluteTolerance(from, this->Tolerance, PrecisionOfPoints(output)), 0.1, 0.9, isHidden,
+    [&](vtkIdType first, const PointBlock& block) {
+      bool isInside[PointBlock::Capacity];
+      std::transform(block.Triangles, block.Triangles + block.Count, isInside,
+        [](TriangleIndex t) { return t >= 0; });
+      sampling.Sample(block.Images, isInside, block.Count, first, mask);
+    });
+}
+
+/// Resamples any other data, by VTK's cells. Returns false if it was refused.
+bool vtkResampleThroughHomeomorphism::Probe(const Homeomorphism& map, vtkPolyData* mesh,
+  vtkDataObject* data, vtkDataSet* output, vtkUnsignedCharArray* mask)
+{
+  // Where the grid's points come from.
+  const Domain from = this->Inverse ? Domain::Source : Domain::Target;
+  const Domain to = Opposite(from);
+  const vtkIdType count = output->GetNumberOfPoints();
+  std::vector<TriangleIndex> triangles(static_cast<std::size_t>(count), -1);
+  const vtkNew<vtkPoints> preimages;
+  preimages->SetDataTypeToDouble();
+  preimages->SetNumberOfPoints(count);
+  MapInBlocks(
+    this, map, from, output,
+    map.GetAbsoluteTolerance(from, this->Tolerance, PrecisionOfPoints(output)), 0.0, 0.3,
+    [](vtkIdType) { return false; },
+    [&](vtkIdType first, const PointBlock& block) {
+      WritePoints(block.Images, block.Count, first, preimages->GetData());
+      std::copy_n(block.Triangles, block.Count, triangles.begin() + first);
+    });
+  std::vector<vtkIdType> inside;
+  const vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
   for (vtkIdType i = 0; i < count; ++i)
   {
-    if (isInside && isInside->GetTuple1(i) != 0.0)
+    if (triangles[static_cast<std::size_t>(i)] >= 0)
     {
       inside.push_back(i);
-      origins->InsertNextPoint(pulledBack->GetPoint(i));
+      points->InsertNextPoint(preimages->GetPoint(i));
     }
   }
   if (ShouldAbort(this))
   {
-    return 1;
+    return true;
   }
 
   // What the data has there. A point on the data's border may be outside by rounding: it is looked
   // for again, a rounding error closer to the middle of its triangle.
-  const vtkSmartPointer<vtkDataObject> probed =
-    WithoutCaches(data ? data : (this->Inverse ? target : source));
+  const vtkSmartPointer<vtkDataObject> probed = WithoutCaches(data);
   const std::string defects = DescribeDefects(probed);
   if (!defects.empty())
   {
     vtkErrorMacro(<< defects);
-    this->SetErrorCode(vtkErrorCode::UserError);
-    output->Initialize();
-    return 0;
+    return false;
   }
-  vtkSmartPointer<vtkPointSet> found = Probe(origins, probed);
+  const vtkSmartPointer<vtkPointSet> found = FindValues(points, probed);
   this->UpdateProgress(0.6);
-  vtkPolyData* mesh = this->Inverse ? target : source;
-  const CellPoints cellPoints(mesh);
+  const Triangulation& topology = map.GetPair().GetTriangulation();
   FillGaps(found, probed, [&](vtkIdType i, double point[3]) {
-    vtkNew<vtkIdList> corners;
-    cellPoints.Get(
-      static_cast<vtkIdType>(triangles->GetTuple1(inside[static_cast<std::size_t>(i)])), corners);
     double middle[3] = { 0.0, 0.0, 0.0 };
-    for (const vtkIdType corner : *corners)
+    const TriangleIndex triangle =
+      triangles[static_cast<std::size_t>(inside[static_cast<std::size_t>(i)])];
+    for (const std::int32_t corner : topology.GetCorners(triangle))
     {
       double position[3];
       mesh->GetPoint(corner, position);
@@ -600,140 +594,81 @@ int vtkResampleThroughHomeomorphism::Resample(
     }
   });
   this->UpdateProgress(0.7);
-  vtkSmartPointer<vtkDataArray> hasValues = found->GetPointData()->GetArray(maskName);
-  if (this->TransformActiveAttributes && HasVectors(found->GetPointData()))
+
+  vtkPointData* values = found->GetPointData();
+  vtkDataArray* hasValues = values->GetArray(maskName);
+  const vtkNew<vtkPointData> transformed;
+  transformed->ShallowCopy(values);
+  if (this->TransformActiveAttributes && HasVectors(values))
   {
-    vtkNew<vtkPolyData> values;
-    values->ShallowCopy(found);
-    // The map makes an array of this name of its own.
-    values->GetPointData()->RemoveArray(maskName);
-    found = vtkPointSet::SafeDownCast(this->Map(values, this->Inverse, true));
-    if (!found)
-    {
-      output->Initialize();
-      return 0;
-    }
+    const vtkNew<vtkDoubleArray> jacobians;
+    jacobians->SetNumberOfComponents(9);
+    jacobians->SetNumberOfTuples(points->GetNumberOfPoints());
+    jacobians->FillValue(vtkMath::Nan());
+    const double tolerance =
+      map.GetAbsoluteTolerance(to, this->Tolerance, PrecisionOfType(VTK_DOUBLE));
+    RunInBlocks(this, points->GetNumberOfPoints(), 0.7, 0.9, [&](vtkIdType begin, vtkIdType end) {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        double point[3];
+        points->GetPoint(i, point);
+        const SurfacePoint surfacePoint = map.Locate(to, point, tolerance,
+          triangles[static_cast<std::size_t>(inside[static_cast<std::size_t>(i)])]);
+        if (surfacePoint.Triangle >= 0)
+        {
+          const Jacobian jacobian = map.GetJacobian(to, surfacePoint);
+          jacobians->SetTypedTuple(i, jacobian.Matrix.data());
+        }
+      }
+    });
+    TransformAttributes(values, transformed, jacobians, [values](vtkDataArray* array) {
+      return array == values->GetNormals() ? TransformationRule::Normal
+        : array == values->GetVectors() || array == values->GetTensors()
+        ? TransformationRule::Tangent
+        : TransformationRule::None;
+    });
   }
 
-  vtkNew<vtkUnsignedCharArray> mask;
-  mask->SetName(maskName);
-  mask->SetNumberOfTuples(count);
-  mask->FillValue(0);
   for (std::size_t i = 0; i < inside.size(); ++i)
   {
     const bool has = hasValues && hasValues->GetTuple1(static_cast<vtkIdType>(i)) != 0.0;
     mask->SetValue(inside[i], has ? 1 : 0);
   }
   vtkPointData* result = output->GetPointData();
-  for (int a = 0; a < found->GetPointData()->GetNumberOfArrays(); ++a)
+  for (int a = 0; a < transformed->GetNumberOfArrays(); ++a)
   {
-    vtkDataArray* values = found->GetPointData()->GetArray(a);
-    if (!values || !values->GetName() || std::strcmp(values->GetName(), maskName) == 0 ||
-      std::strcmp(values->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
+    vtkDataArray* array = transformed->GetArray(a);
+    if (!array || !array->GetName() || std::strcmp(array->GetName(), maskName) == 0 ||
+      std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
     {
       continue;
     }
-    const auto array = NewEmptyLike(values, count);
+    const auto resampled = NewEmptyLike(array, count);
     for (std::size_t i = 0; i < inside.size(); ++i)
     {
       if (mask->GetValue(inside[i]))
       {
-        array->SetTuple(inside[i], static_cast<vtkIdType>(i), values);
+        resampled->SetTuple(inside[i], static_cast<vtkIdType>(i), array);
       }
     }
-    const int index = result->AddArray(array);
+    const int index = result->AddArray(resampled);
     for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
     {
-      if (found->GetPointData()->GetAbstractAttribute(role) == values)
+      if (transformed->GetAbstractAttribute(role) == array)
       {
         result->SetActiveAttribute(index, role);
       }
     }
   }
-  this->Mark(grid, mask, output);
-  return 1;
-}
-
-/// The same for data that is an image, which needs no search and no intermediate data.
-int vtkResampleThroughHomeomorphism::ResampleImage(vtkPolyData* source, vtkPolyData* target,
-  vtkImageData* image, vtkDataSet* grid, vtkDataSet* output)
-{
-  HomeomorphismCache& cache = this->Internal->Cache;
-  const std::shared_ptr<const Homeomorphism> map = cache.Get(source, target, GetOptions(this));
-  ReportProblems(this, cache.GetProblems());
-  if (!map)
-  {
-    this->SetErrorCode(vtkErrorCode::UserError);
-    output->Initialize();
-    return 0;
-  }
-  const vtkIdType count = output->GetNumberOfPoints();
-  vtkNew<vtkUnsignedCharArray> mask;
-  mask->SetName(maskName);
-  mask->SetNumberOfTuples(count);
-  mask->FillValue(0);
-  const ImageSampling sampling(image, output->GetPointData(), count);
-  const Domain from = this->Inverse ? Domain::Source : Domain::Target;
-  auto* pointSet = vtkPointSet::SafeDownCast(output);
-  vtkPoints* points = pointSet ? pointSet->GetPoints() : nullptr;
-  const double tolerance = map->GetAbsoluteTolerance(
-    from, this->Tolerance, PrecisionOfType(points ? points->GetDataType() : VTK_DOUBLE));
-  vtkUnsignedCharArray* ghosts = grid ? GhostsOf(grid->GetPointData(), count) : nullptr;
-  static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
-  RunInBlocks(this, count, 0.1, 0.9, [&](vtkIdType begin, vtkIdType end) {
-    LocationHint hint;
-    PointBlock block;
-    for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
-    {
-      block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
-      ReadPoints(output, first, block);
-      map->LocateBlock(from, block, tolerance, hint);
-      map->MapBlock(from, block);
-      bool isInside[PointBlock::Capacity];
-      for (int i = 0; i < block.Count; ++i)
-      {
-        isInside[i] = block.Triangles[i] >= 0 &&
-          !(ghosts && (ghosts->GetValue(first + i) & vtkDataSetAttributes::HIDDENPOINT));
-      }
-      sampling.Sample(block.Points, isInside, block.Count, first, mask);
-    }
-  });
-  this->Mark(grid, mask, output);
-  return 1;
-}
-
-/// Adds the mask and what follows from it.
-void vtkResampleThroughHomeomorphism::Mark(
-  vtkDataSet* grid, vtkUnsignedCharArray* mask, vtkDataSet* output)
-{
-  output->GetPointData()->AddArray(mask);
-  this->NumberOfOutsidePoints = CountOutside(grid ? grid : output, mask);
-  if (grid)
-  {
-    PassGhosts(grid->GetPointData(), output->GetPointData());
-    PassGhosts(grid->GetCellData(), output->GetCellData());
-  }
-  if (this->BlankOutside)
-  {
-    HidePoints(output, mask, output);
-  }
-  this->UpdateProgress(1.0);
+  return true;
 }
 
 void vtkResampleThroughHomeomorphism::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
-  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
-  os << indent << "Inverse: " << this->Inverse << "\n";
+  PrintMappingOptions(this, os, indent);
   os << indent << "SamplingDimensions: " << this->SamplingDimensions[0] << " "
      << this->SamplingDimensions[1] << "\n";
   os << indent << "SamplingBounds: " << this->SamplingBounds[0] << " " << this->SamplingBounds[1]
      << " " << this->SamplingBounds[2] << " " << this->SamplingBounds[3] << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "TransformActiveAttributes: " << this->TransformActiveAttributes << "\n";
-  os << indent << "BlankOutside: " << this->BlankOutside << "\n";
-  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
 }

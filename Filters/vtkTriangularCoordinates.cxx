@@ -3,13 +3,15 @@
 
 #include "vtkTriangularCoordinates.h"
 
+#include "Pipeline/CompositeData.h"
 #include "Pipeline/CoordinateLines.h"
-#include "Pipeline/FilterSupport.h"
-#include "Pipeline/ProcessStatistics.h"
+#include "Pipeline/GhostArrays.h"
+#include "Pipeline/PointBlocks.h"
+#include "Pipeline/PointsOffSurface.h"
+#include "Pipeline/Requests.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
-#include "vtkErrorCode.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -28,13 +30,6 @@
 using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkTriangularCoordinates);
-
-class vtkTriangularCoordinates::Internals
-{
-public:
-  HomeomorphismCache Cache;
-  ProcessStatistics Own{ { 0.0 }, { 0.0 } };
-};
 
 namespace
 {
@@ -177,85 +172,16 @@ vtkIdType DescribeTriangles(const Homeomorphism& map, vtkPolyData* triangulation
 } // namespace
 
 vtkTriangularCoordinates::vtkTriangularCoordinates()
-  : Internal(new Internals)
 {
+  this->NumberOfMeshPorts = 1;
+  this->FirstPortInPieces = 1;
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(3);
 }
 
 vtkTriangularCoordinates::~vtkTriangularCoordinates() = default;
 
-int vtkTriangularCoordinates::FillInputPortInformation(int port, vtkInformation* info)
-{
-  if (port == 0)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-    info->Set(AskedForWhole(), 1);
-    return 1;
-  }
-  AcceptDataSetsAndTrees(info);
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
-
-int vtkTriangularCoordinates::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkPolyData");
-  return 1;
-}
-
-int vtkTriangularCoordinates::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (vtkDataObject* data = vtkDataObject::GetData(inputs[1]))
-  {
-    MakeOutputLike(data, outputs->GetInformationObject(0));
-  }
-  else
-  {
-    MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
-  }
-  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
-  MakeOutput<vtkPolyData>(outputs->GetInformationObject(2));
-  return 1;
-}
-
-int vtkTriangularCoordinates::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  DescribeDataInOutput(inputs[1]->GetInformationObject(0), outputs->GetInformationObject(0));
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
-  return 1;
-}
-
-int vtkTriangularCoordinates::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  RequestWhole(inputs[0]->GetInformationObject(0));
-  if (SharesUpstreamWithPortsBefore(this, 1))
-  {
-    RequestWhole(inputs[1]->GetInformationObject(0));
-  }
-  return 1;
-}
-
-int vtkTriangularCoordinates::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const int success = this->AttachCoordinates(request, inputs, outputs);
-  this->Internal->Own = { { static_cast<double>(this->NumberOfOutsidePoints) },
-    { static_cast<double>(this->NumberOfDiscordantTriangles) } };
-  return success;
-}
-
-void vtkTriangularCoordinates::ReduceStatistics(vtkMultiProcessController* controller)
-{
-  const ProcessStatistics total = Total(this, this->Internal->Own, controller);
-  this->NumberOfOutsidePoints = static_cast<vtkIdType>(total.Sums[0]);
-  this->NumberOfDiscordantTriangles = static_cast<vtkIdType>(total.Largest[0]);
-}
-
-int vtkTriangularCoordinates::AttachCoordinates(
+int vtkTriangularCoordinates::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* triangulation = vtkPolyData::GetData(inputs[0]);
@@ -263,19 +189,11 @@ int vtkTriangularCoordinates::AttachCoordinates(
   vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
   vtkPolyData* lines = vtkPolyData::GetData(outputs, 1);
   vtkPolyData* described = vtkPolyData::GetData(outputs, 2);
-  this->NumberOfOutsidePoints = -1;
-  this->NumberOfDiscordantTriangles = 0;
-  this->SetErrorCode(vtkErrorCode::NoError);
-
-  const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(triangulation, nullptr, GetOptions(this));
-  ReportProblems(this, this->Internal->Cache.GetProblems());
+  const std::shared_ptr<const Homeomorphism> map = this->GetMap(triangulation, nullptr);
   if (!map)
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
-  this->NumberOfOutsidePoints = 0;
 
   const bool isFirstPiece = IsFirstPiece(request, outputs);
   const vtkNew<vtkPolyData> triangles;
@@ -295,32 +213,34 @@ int vtkTriangularCoordinates::AttachCoordinates(
     result->ShallowCopy(input);
     const vtkIdType count = input->GetNumberOfPoints();
     PointCoordinates coordinates(count);
-    auto* points = vtkPointSet::SafeDownCast(input);
-    const double tolerance = map->GetAbsoluteTolerance(Domain::Source, this->Tolerance,
-      PrecisionOfType(
-        points && points->GetPoints() ? points->GetPoints()->GetDataType() : VTK_DOUBLE));
+    const double tolerance =
+      map->GetAbsoluteTolerance(Domain::Source, this->Tolerance, PrecisionOfPoints(input));
     RunInBlocks(this, count, 0.1, 1.0, [&](vtkIdType begin, vtkIdType end) {
-      TriangleIndex hint = -1;
-      for (vtkIdType i = begin; i < end; ++i)
+      LocationHint hint;
+      PointBlock block;
+      for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
       {
-        double point[3];
-        input->GetPoint(i, point);
-        const SurfacePoint surfacePoint = map->Locate(Domain::Source, point, tolerance, hint);
-        hint = surfacePoint.Triangle;
-        if (surfacePoint.Triangle >= 0)
+        block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+        ReadPoints(input, first, block);
+        map->LocateBlock(Domain::Source, block, tolerance, hint);
+        for (int i = 0; i < block.Count; ++i)
         {
-          coordinates.Set(i, map->GetPair().GetTriangulation().GetCellId(surfacePoint.Triangle),
-            map->GetCoordinates(Domain::Source, surfacePoint));
+          if (block.Triangles[i] >= 0)
+          {
+            coordinates.Set(first + i,
+              map->GetPair().GetTriangulation().GetCellId(block.Triangles[i]),
+              map->GetCoordinates(Domain::Source, block.GetSurfacePoint(i)));
+          }
         }
       }
     });
     coordinates.AddTo(result->GetPointData());
     this->NumberOfOutsidePoints += CountOutside(input, coordinates.GetMask());
+    WarnOfPointsOffSurface(this, *map, Domain::Source, input, coordinates.GetMask());
   };
 
-  if (!isFirstPiece && (!data || SharesUpstreamWithPortsBefore(this, 1)))
+  if (!isFirstPiece && (!data || this->DependsOnPortsBefore(1)))
   {
-    this->UpdateProgress(1.0);
     return 1;
   }
   if (auto* tree = vtkCompositeDataSet::SafeDownCast(data))
@@ -340,7 +260,6 @@ int vtkTriangularCoordinates::AttachCoordinates(
     // Without data of its own, the triangulation gets the coordinates on top of its cell arrays.
     addCoordinates(triangles, vtkDataSet::SafeDownCast(output));
   }
-  this->UpdateProgress(1.0);
   return 1;
 }
 
@@ -357,15 +276,8 @@ vtkPolyData* vtkTriangularCoordinates::GetTriangulation()
 void vtkTriangularCoordinates::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
-  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "GenerateLines: " << this->GenerateLines << "\n";
   os << indent << "NumberOfContours: " << this->NumberOfContours << "\n";
   os << indent << "NumberOfRings: " << this->NumberOfRings << "\n";
   os << indent << "LineResolution: " << this->LineResolution << "\n";
-  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
-  os << indent << "NumberOfDiscordantTriangles: " << this->NumberOfDiscordantTriangles << "\n";
 }

@@ -6,7 +6,7 @@
 #include "Construction/MapStatistics.h"
 #include "Construction/PairStatistics.h"
 #include "Pipeline/DiagnosticMessages.h"
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/Requests.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -15,6 +15,7 @@
 #include "vtkErrorCode.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkIntArray.h"
 #include "vtkJacobianContinuity.h"
 #include "vtkNew.h"
@@ -163,7 +164,7 @@ double vtkTriangulationPairReport::GetStatistic(const char* column)
 int vtkTriangulationPairReport::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(AskedForWhole(), 1);
+  info->Set(RequestedWhole(), 1);
   return 1;
 }
 

@@ -97,7 +97,7 @@ def color_by_jump(display):
 def show_system(system, source, target, grid, view):
     """Shows the mapped grid over the images of the edges; returns the proxies to be saved."""
     settings = {"Source": source, "Target": target, "CoordinateSystem": system,
-                "DiscordantTriangles": "Carry by Linear"}
+                "DiscordantTriangles": "Use Linear"}
     carried = DifferentiableHomeomorphism(registrationName="Grid " + system, Data=grid, **settings)
     display = Show(carried, view)
     display.ColorArrayName = ["POINTS", ""]

@@ -254,28 +254,6 @@ void FillSmoothBatch(SmoothBatch& batch, int begin, int end)
 }
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void GetSmoothBatch(const SmoothBatch& batch, int begin, int end, double* const coordinates[3])
-{
-  const int stop = begin + InWholeVectors(end - begin);
-  double* first = coordinates[0];
-  double* second = coordinates[1];
-  double* third = coordinates[2];
-  HOMEOMORPHISM_SIMD
-  for (int i = begin; i < stop; ++i)
-  {
-    const bool is0 = batch.Corner[i] == 0;
-    const bool is1 = batch.Corner[i] == 1;
-    // Read unconditionally: a conditional load would be slower.
-    const double k = batch.L[0][i];
-    const double next = batch.L[1][i];
-    const double previous = batch.L[2][i];
-    first[i] = is0 ? k : (is1 ? previous : next);
-    second[i] = is0 ? next : (is1 ? k : previous);
-    third[i] = is0 ? previous : (is1 ? next : k);
-  }
-}
-
-HOMEOMORPHISM_FOR_WIDE_VECTORS
 void MapSmoothBatch(SmoothBatch& batch, int count)
 {
   constexpr int width = 32;

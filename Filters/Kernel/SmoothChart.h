@@ -132,10 +132,6 @@ void FillSmoothBatch(SmoothBatch& batch, int begin, int end);
 /// SmoothChart::ToReference and ToPoint. Fills elements up to the next multiple of 32.
 void MapSmoothBatch(SmoothBatch& batch, int count);
 
-/// Copies the coordinates from the batch to arrays laid out as in SetSmoothBatch. Overwrites up to
-/// WidestVector - 1 elements after the last.
-void GetSmoothBatch(const SmoothBatch& batch, int begin, int end, double* const coordinates[3]);
-
 /// The chart of the Smooth system.
 class SmoothChart
 {

@@ -42,6 +42,11 @@ public:
 
   const MeshGeometry& GetGeometry() const { return this->Geometry; }
   CoordinateSystem GetSystem() const { return this->System; }
+  /// The center of the triangles' contours: the centroid unless the system is Contour.
+  CenterPoint GetCenter() const
+  {
+    return this->System == CoordinateSystem::Contour ? this->Center : CenterPoint::Centroid;
+  }
 
   /// The system that a triangle's chart belongs to.
   CoordinateSystem GetSystemOf(TriangleIndex triangle) const

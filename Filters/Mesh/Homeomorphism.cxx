@@ -79,22 +79,52 @@ int FindRun(const PlaneFrame& frame, const double normalized[3][PointBlock::Size
   return inside;
 }
 
-/// From barycentric coordinates, arrays by corner, to a plane.
-HOMEOMORPHISM_FOR_WIDE_VECTORS
-void LeaveFrame(const PlaneFrame& frame, int begin, int end, const double* const coordinates[3],
-  double plane[3][PointBlock::Size])
+/// Barycentric coordinates of the points of a run, for two corners: the apex of the frame in which
+/// the images are, and the corner before it.
+struct BlockCoordinates
+{
+  const double* Apex;
+  const double* Second;
+
+  std::pair<double, double> Get(int i) const { return { this->Apex[i], this->Second[i] }; }
+};
+
+/// The same of points that the Smooth system has mapped.
+struct SmoothCoordinates
+{
+  const SmoothBatch& Batch;
+  int Apex;
+
+  HOMEOMORPHISM_ALWAYS_INLINE std::pair<double, double> Get(int i) const
+  {
+    // L has the coordinates of the lane's corner, the one after it and the one before it. Reading
+    // all of them is faster than a branch.
+    const bool isApex = this->Batch.Corner[i] == this->Apex;
+    const bool isSecond = this->Batch.Corner[i] == PreviousCorner(this->Apex);
+    const double own = this->Batch.L[0][i];
+    const double next = this->Batch.L[1][i];
+    const double previous = this->Batch.L[2][i];
+    return { isApex ? own : (isSecond ? next : previous),
+      isSecond ? own : (isApex ? previous : next) };
+  }
+};
+
+/// From barycentric coordinates of a run to the plane of a triangle's frame.
+template <typename Coordinates>
+HOMEOMORPHISM_FOR_WIDE_VECTORS void LeaveFrame(const PlaneFrame& frame, int begin, int end,
+  const Coordinates& coordinates, double plane[3][PointBlock::Size])
 {
   const PlaneFrame f = frame;
-  const double* apex = coordinates[f.Apex];
-  const double* second = coordinates[PreviousCorner(f.Apex)];
+  const Coordinates from = coordinates;
   const double orientation = f.Orientation;
   const int stop = begin + InWholeVectors(end - begin);
   HOMEOMORPHISM_SIMD
   for (int i = begin; i < stop; ++i)
   {
     // As in TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
-    const double x = f.Base * second[i] + f.ApexX * apex[i];
-    const double y = orientation * (f.Height * apex[i]);
+    const auto [apex, second] = from.Get(i);
+    const double x = f.Base * second + f.ApexX * apex;
+    const double y = orientation * (f.Height * apex);
     plane[0][i] = f.Origin.x + (x * f.Tangent.x - y * f.Tangent.y);
     plane[1][i] = f.Origin.y + (x * f.Tangent.y + y * f.Tangent.x);
   }
@@ -200,15 +230,29 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
     }
     if (target)
     {
-      result->Cubic = std::make_unique<CubicHomeomorphism>(*result->Pair, options.Cubic);
+      result->Cubic = std::make_shared<const CubicHomeomorphism>(*result->Pair, options.Cubic);
     }
   }
   for (const Domain domain : domains)
   {
-    result->Charts[int(domain)] = std::make_unique<ChartedTriangulation>(
+    result->Charts[int(domain)] = std::make_shared<const ChartedTriangulation>(
       topology, result->Pair->GetGeometry(domain), options.System, options.Center, mappedByLinear);
   }
   return std::shared_ptr<const Homeomorphism>(std::move(result));
+}
+
+std::shared_ptr<const Homeomorphism> Homeomorphism::Inverted() const
+{
+  std::shared_ptr<Homeomorphism> result(new Homeomorphism);
+  result->Pair = this->Pair->Inverted();
+  result->Charts = { this->Charts[1], this->Charts[0] };
+  if (this->Cubic)
+  {
+    result->Cubic = this->Cubic;
+    result->CubicPair = this->CubicPair ? this->CubicPair : this->Pair;
+    result->IsCubicInverted = !this->IsCubicInverted;
+  }
+  return result;
 }
 
 double Homeomorphism::GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const
@@ -375,54 +419,63 @@ int Homeomorphism::LocateBlock(
 
 void Homeomorphism::MapBlock(Domain from, PointBlock& block) const
 {
-  const ChartedTriangulation& charts = this->GetCharts(from);
-  if (this->Cubic)
+  switch (this->GetCharts(from).GetSystem())
   {
-    this->MapByCubics(from, block);
-    return;
+    case CoordinateSystem::Cubic:
+      this->MapByCubics(from, block);
+      break;
+    case CoordinateSystem::Smooth:
+      this->MapByStrips(from, block);
+      break;
+    case CoordinateSystem::Contour:
+      this->MapByContours(from, block);
+      break;
+    default:
+      ForEachRun(
+        block,
+        [&](int begin, int end, TriangleIndex t) { this->MapLinearly(from, t, begin, end, block); },
+        [](int) {});
   }
-  if (charts.GetSystem() == CoordinateSystem::Smooth)
+  for (int i = 0; i < block.Count; ++i)
   {
-    this->MapByStrips(from, block);
+    if (block.Triangles[i] < 0)
+    {
+      std::copy_n(block.Points[i], 3, block.Images[i]);
+    }
+    else if (block.Corners[i] >= 0)
+    {
+      this->MapPoint(from, block.GetSurfacePoint(i), block.Images[i]);
+    }
   }
-  else if (charts.GetSystem() == CoordinateSystem::Contour)
-  {
-    this->MapByContours(from, block);
-  }
-  ForEachRun(
-    block,
-    [&](int begin, int end, TriangleIndex t) {
-      if (charts.GetSystemOf(t) != CoordinateSystem::Contour)
-      {
-        this->LeaveTriangle(from, t, begin, end, block);
-      }
-    },
-    [&](int i) {
-      if (block.Triangles[i] >= 0)
-      {
-        this->MapPoint(from, block.GetSurfacePoint(i), block.Points[i]);
-      }
-    });
 }
 
-/// Takes barycentric coordinates from the source's affine charts to the target's.
+/// Maps a run of points by the affine map of their triangle.
+void Homeomorphism::MapLinearly(
+  Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const
+{
+  const std::array<const double*, 3> coordinates = this->ByCorner(from, triangle, block);
+  const int apex = this->Pair->GetGeometry(Opposite(from)).GetApex(triangle);
+  this->LeaveTriangle(from, triangle, begin, end,
+    BlockCoordinates{ coordinates[apex], coordinates[PreviousCorner(apex)] }, block);
+}
+
+/// Maps the points by the Smooth system.
 void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
 {
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  const auto ignore = [](int) {};
   // Prefetch to hide memory latency.
   ForEachRun(
     block,
     [&](int begin, int, TriangleIndex t) {
-      const std::array<double*, 3> l = this->ByCorner(from, t, block);
+      const std::array<const double*, 3> l = this->ByCorner(from, t, block);
       const int corner = LeastCorner(l[0][begin], l[1][begin], l[2][begin]);
       Prefetch(&charts.GetSmoothStrips(t)[corner]);
       Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
       target.PrefetchFrame(t);
     },
-    ignore);
+    [](int) {});
   SmoothBatch batch;
   ForEachRun(
     block,
@@ -435,9 +488,10 @@ void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
   ForEachRun(
     block,
     [&](int begin, int end, TriangleIndex t) {
-      GetSmoothBatch(batch, begin, end, this->ByCorner(from, t, block).data());
+      this->LeaveTriangle(
+        from, t, begin, end, SmoothCoordinates{ batch, target.GetApex(t) }, block);
     },
-    ignore);
+    [](int) {});
 }
 
 /// Maps the points whose triangles have contours.
@@ -463,6 +517,7 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
     [&](int begin, int end, TriangleIndex t) {
       if (charts.GetSystemOf(t) != CoordinateSystem::Contour)
       {
+        this->MapLinearly(from, t, begin, end, block);
         return;
       }
       made[begin] = { charts.GetContourChart(t), otherCharts.GetContourChart(t) };
@@ -481,7 +536,7 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
     const int i = numbers[n];
     const double offset = this->OffsetOfImage(from, block.Offsets[i]);
     target.FromNormalized(
-      target.FromFrame(block.Triangles[i], { points[n], offset }), block.Points[i]);
+      target.FromFrame(block.Triangles[i], { points[n], offset }), block.Images[i]);
   }
 }
 
@@ -489,40 +544,41 @@ void Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
 {
   for (int i = 0; i < block.Count; ++i)
   {
-    if (block.Triangles[i] >= 0)
+    if (block.Triangles[i] >= 0 && block.Corners[i] < 0)
     {
-      this->MapPoint(from, block.GetSurfacePoint(i), block.Points[i]);
+      this->MapPoint(from, block.GetSurfacePoint(i), block.Images[i]);
     }
   }
 }
 
 /// From barycentric coordinates in the target's affine chart of a triangle to its points.
-void Homeomorphism::LeaveTriangle(
-  Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const
+template <typename Coordinates>
+void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin, int end,
+  const Coordinates& coordinates, PointBlock& block) const
 {
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  const std::array<double*, 3> coordinates = this->ByCorner(from, triangle, block);
   if (!target.IsPlanar())
   {
+    const TriangleShape shape = target.GetShape(triangle);
     for (int i = begin; i < end; ++i)
     {
-      const Barycentric l{ coordinates[0][i], coordinates[1][i], coordinates[2][i] };
-      const FramePoint point{ target.GetShape(triangle).FromBarycentric(l),
+      const auto [apex, second] = coordinates.Get(i);
+      const FramePoint point{ { shape.Base * second + shape.ApexX * apex, shape.Height * apex },
         this->OffsetOfImage(from, block.Offsets[i]) };
-      target.FromNormalized(target.FromFrame(triangle, point), block.Points[i]);
+      target.FromNormalized(target.FromFrame(triangle, point), block.Images[i]);
     }
     return;
   }
   const PlaneFrame& frame = target.GetPlaneFrame(triangle);
   const double orientation = target.IsColumnar() ? 1.0 : frame.Orientation;
   double mapped[3][PointBlock::Size];
-  LeaveFrame(frame, begin, end, coordinates.data(), mapped);
+  LeaveFrame(frame, begin, end, coordinates, mapped);
   for (int i = begin; i < end; ++i)
   {
     mapped[2][i] = orientation * this->OffsetOfImage(from, block.Offsets[i]);
   }
   target.FromNormalized(
-    mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin, block.Points + begin);
+    mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin, block.Images + begin);
 }
 
 template <typename Use>
@@ -557,11 +613,10 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
     Vector2 inPlane;
     Matrix2 derivative;
     this->Cubic->MapPoint(
-      from, surfacePoint.Triangle, surfacePoint.Point.InPlane, inPlane, derivative);
+      this->ToCubic(from), surfacePoint.Triangle, surfacePoint.Point.InPlane, inPlane, derivative);
     // Heights are measured as in the triangle's frame.
-    const double orientation = target.IsColumnar()
-      ? 1.0
-      : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
+    const double orientation =
+      target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
     target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
     return;
   }
@@ -596,7 +651,7 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoin
     Vector2 image;
     Matrix2 derivative;
     this->Cubic->MapPoint(
-      from, surfacePoint.Triangle, surfacePoint.Point.InPlane, image, derivative);
+      this->ToCubic(from), surfacePoint.Triangle, surfacePoint.Point.InPlane, image, derivative);
     return this->FromFrames(from, surfacePoint.Triangle, derivative, derivative.Determinant());
   }
   return this->VisitCharts(

@@ -66,8 +66,9 @@ struct PointBlock
   static constexpr int Size = SmoothBatch::Size;
 
   int Count = 0;
-  /// The points; after MapBlock, the images of those that are inside.
   double Points[Capacity][3];
+  /// The points' images, and outside points themselves; set by MapBlock.
+  double Images[Capacity][3];
 
   /// The located points (see SurfacePoint), as structure of arrays.
   TriangleIndex Triangles[Capacity];
@@ -75,7 +76,7 @@ struct PointBlock
   double InPlane[2][Size];
   double Offsets[Capacity];
   /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one
-  /// before it. MapBlock uses them up.
+  /// before it.
   double Apex[Size];
   double First[Size];
   double Second[Size];
@@ -96,6 +97,10 @@ public:
   /// Defects are added to @a diagnostics; returns null if they made the meshes be refused.
   static std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target,
     const HomeomorphismOptions& options, MeshDiagnostics& diagnostics);
+
+  /// The map with source and target exchanged. It shares all data with this one, which must have a
+  /// target.
+  std::shared_ptr<const Homeomorphism> Inverted() const;
 
   const TriangulationPair& GetPair() const { return *this->Pair; }
   /// The map of the Cubic system, null in the others.
@@ -127,8 +132,8 @@ public:
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
   int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const;
 
-  /// Replaces the points of a block by their images: to the same bits as MapPoint. Points whose
-  /// place has no triangle stay.
+  /// Maps the points of a block that LocateBlock has located, to the same bits as MapPoint. Nothing
+  /// but Images is changed.
   void MapBlock(Domain from, PointBlock& block) const;
 
   /// The derivative at a point; on an edge, the limit from the point's triangle.
@@ -162,20 +167,25 @@ private:
   }
 
   /// The block's barycentric coordinates, ordered as a triangle's corners.
-  std::array<double*, 3> ByCorner(Domain domain, TriangleIndex triangle, PointBlock& block) const
+  std::array<const double*, 3> ByCorner(
+    Domain domain, TriangleIndex triangle, const PointBlock& block) const
   {
-    std::array<double*, 3> coordinates;
+    std::array<const double*, 3> coordinates;
     const int apex = this->Pair->GetGeometry(domain).GetApex(triangle);
     coordinates[apex] = block.Apex;
     coordinates[NextCorner(apex)] = block.First;
     coordinates[PreviousCorner(apex)] = block.Second;
     return coordinates;
   }
+  void MapLinearly(
+    Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;
   void MapByCubics(Domain from, PointBlock& block) const;
-  void LeaveTriangle(
-    Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
+  Domain ToCubic(Domain domain) const { return this->IsCubicInverted ? Opposite(domain) : domain; }
+  template <typename Coordinates>
+  void LeaveTriangle(Domain from, TriangleIndex triangle, int begin, int end,
+    const Coordinates& coordinates, PointBlock& block) const;
 
   template <typename Use>
   auto VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const;
@@ -190,8 +200,11 @@ private:
     Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
-  std::array<std::unique_ptr<ChartedTriangulation>, 2> Charts;
-  std::unique_ptr<const CubicHomeomorphism> Cubic;
+  std::array<std::shared_ptr<const ChartedTriangulation>, 2> Charts;
+  std::shared_ptr<const CubicHomeomorphism> Cubic;
+  /// Of an inverted map: the pair to which Cubic refers, and whether its domains are exchanged.
+  std::shared_ptr<const TriangulationPair> CubicPair;
+  bool IsCubicInverted = false;
 };
 
 } // namespace homeomorphism

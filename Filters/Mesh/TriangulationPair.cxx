@@ -59,7 +59,7 @@ public:
     }
     for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
-      this->Pair->Geometries[domain]->ComputeFrames(this->Pair->Topology);
+      this->Pair->Geometries[domain]->ComputeFrames(*this->Pair->Topology);
       this->ReportNearlyPlanar(domain);
     }
     return std::shared_ptr<const TriangulationPair>(std::move(this->Pair));
@@ -89,13 +89,13 @@ private:
       diagnostic.Ids.push_back(firstCell + t);
       if (mask)
       {
-        this->Pair->Topology.Mask(t);
+        this->Pair->Topology->Mask(t);
         this->HasMasked = true;
       }
     }
     if (this->Meshes[domain]->GetPoints())
     {
-      const Triangulation::Corners& corners = this->Pair->Topology.GetCorners(triangles.front());
+      const Triangulation::Corners& corners = this->Pair->Topology->GetCorners(triangles.front());
       this->Meshes[domain]->GetPoint(corners[0], diagnostic.Position.data());
     }
     this->Diagnostics.push_back(std::move(diagnostic));
@@ -138,7 +138,7 @@ private:
     {
       return;
     }
-    Triangulation& topology = this->Pair->Topology;
+    Triangulation& topology = *this->Pair->Topology;
     topology.SetTriangles(std::move(triangles), FirstPolygon(this->Meshes[0]), std::move(others));
     for (vtkPolyData* mesh : this->Meshes)
     {
@@ -154,14 +154,14 @@ private:
 
   void ReadGeometry()
   {
-    const Triangulation& topology = this->Pair->Topology;
+    const Triangulation& topology = *this->Pair->Topology;
     const vtkNew<vtkPoints> none;
     // The second is read in view of the first, which must not be one of an earlier pass.
     this->Pair->Geometries = {};
     for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
       vtkPoints* points = this->Meshes[domain]->GetPoints();
-      this->Pair->Geometries[domain] = std::make_unique<MeshGeometry>(
+      this->Pair->Geometries[domain] = std::make_shared<MeshGeometry>(
         points ? points : none.Get(), topology, this->Pair->Geometries[0].get());
       const MeshGeometry& geometry = *this->Pair->Geometries[domain];
       if (this->Exclude(MeshDiagnostic::Kind::NotFinite, domain, this->Names[domain],
@@ -192,7 +192,7 @@ private:
 
   void FindAdjacency()
   {
-    Triangulation& topology = this->Pair->Topology;
+    Triangulation& topology = *this->Pair->Topology;
     const vtkIdType numberOfPoints = this->Meshes[0]->GetNumberOfPoints();
     if (this->Exclude(MeshDiagnostic::Kind::NonManifoldEdge, 0, this->Names[0],
           topology.FindAdjacency(numberOfPoints)) &&
@@ -206,11 +206,11 @@ private:
 
   void ExcludeOverlaps()
   {
-    Triangulation& topology = this->Pair->Topology;
+    Triangulation& topology = *this->Pair->Topology;
     for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
       const MeshGeometry& geometry = *this->Pair->Geometries[domain];
-      this->Pair->Locations[domain] = std::make_unique<PointLocation>(topology, geometry);
+      this->Pair->Locations[domain] = std::make_shared<PointLocation>(topology, geometry);
       if (!geometry.IsPlanar())
       {
         continue;
@@ -239,6 +239,14 @@ std::shared_ptr<const TriangulationPair> TriangulationPair::Read(
   vtkPolyData* source, vtkPolyData* target, bool maskInvalidTriangles, MeshDiagnostics& diagnostics)
 {
   return Builder(source, target, maskInvalidTriangles, diagnostics).Build();
+}
+
+std::shared_ptr<const TriangulationPair> TriangulationPair::Inverted() const
+{
+  std::shared_ptr<TriangulationPair> result(new TriangulationPair(*this));
+  std::swap(result->Geometries[0], result->Geometries[1]);
+  std::swap(result->Locations[0], result->Locations[1]);
+  return result;
 }
 
 } // namespace homeomorphism

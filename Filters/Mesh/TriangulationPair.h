@@ -43,9 +43,11 @@ public:
   static std::shared_ptr<const TriangulationPair> Read(vtkPolyData* source, vtkPolyData* target,
     bool maskInvalidTriangles, MeshDiagnostics& diagnostics);
 
-  const Triangulation& GetTriangulation() const { return this->Topology; }
+  const Triangulation& GetTriangulation() const { return *this->Topology; }
   bool HasTarget() const { return this->Geometries[1] != nullptr; }
   const MeshGeometry& GetGeometry(Domain domain) const { return *this->Geometries[int(domain)]; }
+  /// The pair with source and target exchanged. It shares all data with this one.
+  std::shared_ptr<const TriangulationPair> Inverted() const;
   const PointLocation& GetLocation(Domain domain) const { return *this->Locations[int(domain)]; }
 
 private:
@@ -53,9 +55,9 @@ private:
 
   class Builder;
 
-  Triangulation Topology;
-  std::array<std::unique_ptr<MeshGeometry>, 2> Geometries;
-  std::array<std::unique_ptr<PointLocation>, 2> Locations;
+  std::shared_ptr<Triangulation> Topology = std::make_shared<Triangulation>();
+  std::array<std::shared_ptr<MeshGeometry>, 2> Geometries;
+  std::array<std::shared_ptr<PointLocation>, 2> Locations;
 };
 
 } // namespace homeomorphism

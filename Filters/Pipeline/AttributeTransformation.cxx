@@ -4,11 +4,13 @@
 #include "AttributeTransformation.h"
 
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkMath.h"
 #include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace homeomorphism
 {
@@ -78,7 +80,7 @@ vtkSmartPointer<vtkDataArray> TransformArray(
     return nullptr;
   }
   const vtkIdType count = array->GetNumberOfTuples();
-  // A carried integer vector is no integer any more.
+  // A transformed integer vector is no integer any more.
   const int type = array->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE;
   const auto result = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   result->SetName(array->GetName());
@@ -133,6 +135,42 @@ vtkSmartPointer<vtkDataArray> TransformArray(
     }
   });
   return result;
+}
+
+void TransformAttributes(vtkDataSetAttributes* input, vtkDataSetAttributes* output,
+  vtkDoubleArray* jacobians, const std::function<TransformationRule(vtkDataArray*)>& ruleOf)
+{
+  for (int i = 0; i < input->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = input->GetArray(i);
+    const vtkSmartPointer<vtkDataArray> transformed =
+      array ? TransformArray(array, jacobians, ruleOf(array)) : nullptr;
+    if (!transformed)
+    {
+      continue;
+    }
+    // Takes the place of the array passed, and its roles.
+    std::vector<int> roles;
+    for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+    {
+      if (input->GetAbstractAttribute(role) == array)
+      {
+        roles.push_back(role);
+      }
+    }
+    for (int passed = output->GetNumberOfArrays() - 1; passed >= 0; --passed)
+    {
+      if (output->GetAbstractArray(passed) == array)
+      {
+        output->RemoveArray(passed);
+      }
+    }
+    const int index = output->AddArray(transformed);
+    for (const int role : roles)
+    {
+      output->SetActiveAttribute(index, role);
+    }
+  }
 }
 
 } // namespace homeomorphism

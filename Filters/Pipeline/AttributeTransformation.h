@@ -9,7 +9,10 @@
 
 #include "vtkSmartPointer.h"
 
+#include <functional>
+
 class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkDoubleArray;
 
 namespace homeomorphism
@@ -53,6 +56,11 @@ enum class TransformationRule
 /// array, or if it has another number of tuples.
 vtkSmartPointer<vtkDataArray> TransformArray(
   vtkDataArray* array, vtkDoubleArray* jacobians, TransformationRule rule);
+
+/// Replaces arrays of @a output that are also in @a input by their transformed copies, which keep
+/// the arrays' roles as active attributes. @a ruleOf gives the rule for an array of @a input.
+void TransformAttributes(vtkDataSetAttributes* input, vtkDataSetAttributes* output,
+  vtkDoubleArray* jacobians, const std::function<TransformationRule(vtkDataArray*)>& ruleOf);
 
 } // namespace homeomorphism
 

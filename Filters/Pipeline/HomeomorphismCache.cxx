@@ -11,11 +11,83 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace homeomorphism
 {
+namespace
+{
 
-void HomeomorphismCache::AddStamps(vtkPolyData* mesh, std::vector<Stamp>& stamps)
+void AddWord(std::uint64_t word, std::uint64_t& hash)
+{
+  // A step of the finalizer of MurmurHash3 (Appleby, public domain).
+  hash = (hash ^ word) * 0xff51afd7ed558ccdu;
+  hash ^= hash >> 32;
+}
+
+void AddContents(vtkDataArray* array, std::uint64_t& hash)
+{
+  const vtkIdType values = array ? array->GetNumberOfValues() : 0;
+  AddWord(static_cast<std::uint64_t>(values), hash);
+  if (values == 0)
+  {
+    return;
+  }
+  if (!array->HasStandardMemoryLayout())
+  {
+    for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
+    {
+      for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+      {
+        const double value = array->GetComponent(tuple, component);
+        std::uint64_t word;
+        std::memcpy(&word, &value, sizeof(word));
+        AddWord(word, hash);
+      }
+    }
+    return;
+  }
+  const auto* bytes = static_cast<const char*>(array->GetVoidPointer(0));
+  const auto size =
+    static_cast<std::size_t>(values) * static_cast<std::size_t>(array->GetDataTypeSize());
+  for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t))
+  {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + i, std::min(sizeof(word), size - i));
+    AddWord(word, hash);
+  }
+}
+
+std::array<vtkCellArray*, 4> GetCellArrays(vtkPolyData* mesh)
+{
+  return { mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips() };
+}
+
+std::uint64_t HashContents(vtkPolyData* source, vtkPolyData* target)
+{
+  std::uint64_t hash = 0;
+  for (vtkPolyData* mesh : { source, target })
+  {
+    if (!mesh)
+    {
+      continue;
+    }
+    AddContents(mesh->GetPoints() ? mesh->GetPoints()->GetData() : nullptr, hash);
+    for (vtkCellArray* cells : GetCellArrays(mesh))
+    {
+      if (cells)
+      {
+        AddContents(cells->GetOffsetsArray(), hash);
+        AddContents(cells->GetConnectivityArray(), hash);
+      }
+    }
+    AddContents(mesh->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()), hash);
+    AddContents(mesh->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()), hash);
+  }
+  return hash;
+}
+
+void AddStamps(vtkPolyData* mesh, std::vector<std::pair<const void*, vtkMTimeType>>& stamps)
 {
   const auto add = [&stamps](vtkObject* object) {
     stamps.emplace_back(object, object ? object->GetMTime() : 0);
@@ -32,8 +104,7 @@ void HomeomorphismCache::AddStamps(vtkPolyData* mesh, std::vector<Stamp>& stamps
   addSize(mesh->GetNumberOfPoints());
   add(mesh->GetPoints());
   add(mesh->GetPoints() ? mesh->GetPoints()->GetData() : nullptr);
-  for (vtkCellArray* cells :
-    { mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips() })
+  for (vtkCellArray* cells : GetCellArrays(mesh))
   {
     add(cells);
     addSize(cells ? cells->GetNumberOfCells() : 0);
@@ -44,26 +115,46 @@ void HomeomorphismCache::AddStamps(vtkPolyData* mesh, std::vector<Stamp>& stamps
   add(mesh->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
 }
 
+/// The time of the object itself, which changes with Modified() but not with the mesh's data.
+vtkMTimeType GetOwnTime(vtkPolyData* mesh)
+{
+  return mesh ? mesh->vtkObject::GetMTime() : 0;
+}
+
+} // namespace
+
+bool HomeomorphismCache::HasChanged(vtkPolyData* source, vtkPolyData* target)
+{
+  MeshState state;
+  AddStamps(source, state.Parts);
+  AddStamps(target, state.Parts);
+  state.Times = { GetOwnTime(source), GetOwnTime(target) };
+  const bool sameParts = state.Parts == this->State.Parts;
+  if (this->NumberOfBuilds > 0 && sameParts && state.Times == this->State.Times)
+  {
+    return false;
+  }
+  // A new shallow copy of a mesh is as good as the old one, and coordinates may have been
+  // overwritten in place: only the contents can tell.
+  state.Contents = HashContents(source, target);
+  const bool changed =
+    this->NumberOfBuilds == 0 || !sameParts || state.Contents != this->State.Contents;
+  this->State = std::move(state);
+  return changed;
+}
+
 std::shared_ptr<const Homeomorphism> HomeomorphismCache::Get(
   vtkPolyData* source, vtkPolyData* target, const HomeomorphismOptions& options)
 {
-  std::vector<Stamp> stamps;
-  AddStamps(source, stamps);
-  AddStamps(target, stamps);
-  const bool sameMeshes = std::equal(stamps.begin(), stamps.end(), this->Stamps.begin(),
-    this->Stamps.end(), [](const Stamp& a, const Stamp& b) {
-      return a.first.GetPointer() == b.first.GetPointer() && a.second == b.second;
-    });
   const bool sameOptions = options.System == this->Options.System &&
     options.Center == this->Options.Center &&
     options.MaskInvalidTriangles == this->Options.MaskInvalidTriangles &&
     options.DiscordantByLinear == this->Options.DiscordantByLinear &&
     options.Cubic == this->Options.Cubic;
-  if (this->NumberOfBuilds == 0 || !sameMeshes || !sameOptions)
+  if (this->HasChanged(source, target) || !sameOptions)
   {
     this->Problems.clear();
     this->Current = Homeomorphism::Make(source, target, options, this->Problems);
-    this->Stamps = std::move(stamps);
     this->Options = options;
     ++this->NumberOfBuilds;
   }

@@ -9,10 +9,10 @@
 
 #include "Mesh/Homeomorphism.h"
 
-#include "vtkObject.h"
 #include "vtkType.h"
-#include "vtkWeakPointer.h"
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -22,12 +22,15 @@ class vtkPolyData;
 namespace homeomorphism
 {
 
-/// The homeomorphism made last, with what it was made from. Not thread-safe.
+/// The homeomorphism made last, with what it was made from. Not thread-safe itself; several caches
+/// may use the same meshes in several threads, since a cache neither references nor changes them.
 class HomeomorphismCache
 {
 public:
-  /// The homeomorphism of these meshes, made anew only if their points or cells (not their other
-  /// arrays) or the options changed since. Null if the meshes are refused; see GetProblems.
+  /// The homeomorphism of these meshes. It is made anew only if their points or cells (not their
+  /// other arrays) or the options have changed. Coordinates that were overwritten in place count as
+  /// changed once Modified() was called on the points or on the mesh. Null if the meshes are
+  /// refused; see GetProblems.
   std::shared_ptr<const Homeomorphism> Get(
     vtkPolyData* source, vtkPolyData* target, const HomeomorphismOptions& options);
 
@@ -38,14 +41,23 @@ public:
   vtkIdType GetNumberOfBuilds() const { return this->NumberOfBuilds; }
 
 private:
-  /// An object's identity and state. The pointer is weak: the cache keeps no mesh alive, and a new
-  /// object at an old address is not mistaken for the old one.
-  using Stamp = std::pair<vtkWeakPointer<vtkObject>, vtkMTimeType>;
+  /// Address and modification time of an object, or null and a size. VTK gives out each time once,
+  /// so a new object at an old address is not mistaken for the old one.
+  using Stamp = std::pair<const void*, vtkMTimeType>;
 
-  static void AddStamps(vtkPolyData* mesh, std::vector<Stamp>& stamps);
+  struct MeshState
+  {
+    std::vector<Stamp> Parts;
+    /// The modification times of the meshes themselves, their parts not included.
+    std::array<vtkMTimeType, 2> Times{};
+    /// Hash of all coordinates and point ids.
+    std::uint64_t Contents = 0;
+  };
+
+  bool HasChanged(vtkPolyData* source, vtkPolyData* target);
 
   std::shared_ptr<const Homeomorphism> Current;
-  std::vector<Stamp> Stamps;
+  MeshState State;
   HomeomorphismOptions Options;
   MeshDiagnostics Problems;
   vtkIdType NumberOfBuilds = 0;

@@ -53,7 +53,7 @@ elevation = simple.Elevation(Input=source)
 
 for system in "Linear", "Contour", "Smooth":
     settings = {"Source": source, "Target": target, "CoordinateSystem": system,
-                "DiscordantTriangles": "Carry by Linear"}
+                "DiscordantTriangles": "Use Linear"}
     for name, data in (("image", image), ("surface", surface), ("plane", plane), ("group", group),
                        ("mesh", None), ("source", source), ("elevation", elevation)):
         mapped = simple.DifferentiableHomeomorphism(

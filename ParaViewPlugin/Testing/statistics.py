@@ -44,7 +44,7 @@ def count_in_data(filter):
 outside = "NumberOfOutsidePoints"
 for system in "Contour", "Smooth":
     settings = {"Source": source, "CoordinateSystem": system,
-                "DiscordantTriangles": "Carry by Linear"}
+                "DiscordantTriangles": "Use Linear"}
     coordinates = simple.TriangularCoordinates(Data=plane, **settings)
     count("coordinates " + system, coordinates, outside, "NumberOfDiscordantTriangles")
     settings["Target"] = target

@@ -129,8 +129,8 @@ void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
       {
         map.MapPoint(domain, surfacePoint, image.data());
       }
-      ASSERT_TRUE(IsSame(image.data(), block.Points[i], 3))
-        << what << ", point " << first + i << ": " << image[0] << " " << block.Points[i][0];
+      ASSERT_TRUE(IsSame(image.data(), block.Images[i], 3))
+        << what << ", point " << first + i << ": " << image[0] << " " << block.Images[i][0];
     }
   }
 }

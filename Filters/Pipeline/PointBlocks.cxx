@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "PointBlocks.h"
+
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkArrayDispatch.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+
+#include <limits>
+#include <type_traits>
+
+namespace homeomorphism
+{
+
+double PrecisionOfType(int dataType)
+{
+  return 0.5 *
+    (dataType == VTK_FLOAT ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                           : std::numeric_limits<double>::epsilon());
+}
+
+double PrecisionOfPoints(vtkDataSet* data)
+{
+  auto* points = vtkPointSet::SafeDownCast(data);
+  return PrecisionOfType(
+    points && points->GetPoints() ? points->GetPoints()->GetDataType() : VTK_DOUBLE);
+}
+
+void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
+{
+  double* coordinates = &block.Points[0][0];
+  if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    std::copy_n(doubles->GetPointer(3 * first), 3 * block.Count, coordinates);
+    return;
+  }
+  const auto read = [first, coordinates, &block](auto* typed) {
+    const auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
+    std::transform(values.begin(), values.end(), coordinates,
+      [](auto value) { return static_cast<double>(value); });
+  };
+  if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, read))
+  {
+    read(array);
+  }
+}
+
+void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
+{
+  auto* pointSet = vtkPointSet::SafeDownCast(data);
+  if (pointSet && pointSet->GetPoints())
+  {
+    ReadPoints(pointSet->GetPoints()->GetData(), first, block);
+    return;
+  }
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    // As GetPoint, without finding the row anew for each point.
+    const int* extent = image->GetExtent();
+    const int* dimensions = image->GetDimensions();
+    const vtkIdType row = first / dimensions[0];
+    int index[3] = { static_cast<int>(first % dimensions[0]), static_cast<int>(row % dimensions[1]),
+      static_cast<int>(row / dimensions[1]) };
+    for (int i = 0; i < block.Count; ++i)
+    {
+      image->TransformIndexToPhysicalPoint(
+        extent[0] + index[0], extent[2] + index[1], extent[4] + index[2], block.Points[i]);
+      if (++index[0] == dimensions[0])
+      {
+        index[0] = 0;
+        if (++index[1] == dimensions[1])
+        {
+          index[1] = 0;
+          ++index[2];
+        }
+      }
+    }
+    return;
+  }
+  for (int i = 0; i < block.Count; ++i)
+  {
+    data->GetPoint(first + i, block.Points[i]);
+  }
+}
+
+void WritePoints(const double (*points)[3], int count, vtkIdType first, vtkDataArray* array)
+{
+  const double* coordinates = &points[0][0];
+  if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    std::copy_n(coordinates, 3 * count, doubles->GetPointer(3 * first));
+    return;
+  }
+  const auto write = [first, coordinates, count](auto* typed) {
+    using Value = vtk::GetAPIType<std::remove_pointer_t<decltype(typed)>>;
+    auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + count));
+    std::transform(coordinates, coordinates + 3 * count, values.begin(),
+      [](double value) { return static_cast<Value>(value); });
+  };
+  if (!vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>::Execute(array, write))
+  {
+    write(array);
+  }
+}
+
+} // namespace homeomorphism

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file PointBlocks.h
+/// Points of VTK objects, read, written and processed in blocks.
+
+#ifndef homeomorphism_PointBlocks_h
+#define homeomorphism_PointBlocks_h
+
+#include "VTKVersions.h"
+
+#include "Mesh/Homeomorphism.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkDataSet.h"
+#include "vtkSMPTools.h"
+#include "vtkType.h"
+
+#include <algorithm>
+
+class vtkDataArray;
+
+namespace homeomorphism
+{
+
+/// The relative rounding error of coordinates of a VTK type.
+double PrecisionOfType(int dataType);
+
+/// The same of a data set's points; that of doubles for implicit points.
+double PrecisionOfPoints(vtkDataSet* data);
+
+/// Reads the points of a block, of which the first is tuple @a first of an array of 3 components.
+void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block);
+
+/// Reads the points of a block from a data set.
+void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block);
+
+/// Writes points to an array of 3 components, from tuple @a first.
+void WritePoints(const double (*points)[3], int count, vtkIdType first, vtkDataArray* array);
+
+/// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
+/// and a request to abort is honored; a block should take a fraction of a second. Returns the
+/// number of items done: less than count only if aborted.
+template <typename Work>
+vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin, double progressEnd,
+  Work&& work, vtkIdType blockSize = 1 << 17)
+{
+  for (vtkIdType begin = 0; begin < count; begin += blockSize)
+  {
+    self->UpdateProgress(progressBegin +
+      (progressEnd - progressBegin) * static_cast<double>(begin) / static_cast<double>(count));
+    if (ShouldAbort(self))
+    {
+      return begin;
+    }
+    vtkSMPTools::For(begin, std::min(count, begin + blockSize), work);
+  }
+  return count;
+}
+
+/// Reads, locates and maps the points of a data set in parallel, block by block, and calls
+/// use(first, block) with each block. Points for which isHidden(id) holds are treated as outside.
+/// Returns the number of points processed; see RunInBlocks.
+template <typename IsHidden, typename Use>
+vtkIdType MapInBlocks(vtkAlgorithm* self, const Homeomorphism& map, Domain from, vtkDataSet* data,
+  double tolerance, double progressBegin, double progressEnd, IsHidden&& isHidden, Use&& use)
+{
+  return RunInBlocks(self, data->GetNumberOfPoints(), progressBegin, progressEnd,
+    [&](vtkIdType begin, vtkIdType end) {
+      LocationHint hint;
+      PointBlock block;
+      for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
+      {
+        block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+        ReadPoints(data, first, block);
+        map.LocateBlock(from, block, tolerance, hint);
+        for (int i = 0; i < block.Count; ++i)
+        {
+          block.Triangles[i] = isHidden(first + i) ? -1 : block.Triangles[i];
+        }
+        map.MapBlock(from, block);
+        use(first, block);
+      }
+    });
+}
+
+} // namespace homeomorphism
+
+#endif

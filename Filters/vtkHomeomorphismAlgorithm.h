@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkHomeomorphismAlgorithm
+ * @brief   superclass of the filters that use a homeomorphism between two triangulations
+ *
+ * The meshes are the source P (input port 0) and the target Q (input port 1), two vtkPolyData with
+ * the same cells, which must be triangles, and with corresponding points. The order of a triangle's
+ * three points may differ. Both may lie in any planes or be surfaces in 3-space, closed or not.
+ * Whatever piece of the output is requested, the meshes are requested whole, and what a filter
+ * makes from them alone is part of piece 0. So is data that depends upstream on the same algorithms
+ * as a mesh.
+ *
+ * The meshes are validated. Defects are reported with their kind, the number of triangles and the
+ * first of their ids. They cause an error unless MaskInvalidTriangles excludes the triangles. Empty
+ * meshes are valid; all points are then outside. The result is cached until the meshes or the
+ * options change. If coordinates are overwritten in place, call Modified() on the points or on the
+ * mesh.
+ *
+ * The options are described in vtkHomeomorphismOptions.h.
+ *
+ * GetErrorCode() returns 0, or one of ErrorCodes after an update that failed or was aborted. No
+ * filter communicates with other processes while it executes; see ReduceStatistics.
+ *
+ * Points are processed in parallel (vtkSMPTools), and results do not depend on the number of
+ * threads. Different filters may use the same meshes in different threads.
+ *
+ * @sa vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform, vtkJacobianContinuity,
+ * vtkResampleThroughHomeomorphism, vtkTriangularCoordinates
+ */
+
+#ifndef vtkHomeomorphismAlgorithm_h
+#define vtkHomeomorphismAlgorithm_h
+
+#include "vtkDataObjectAlgorithm.h"
+#include "vtkFiltersHomeomorphismModule.h" // for the export macro
+#include "vtkHomeomorphismOptions.h"       // for the options
+
+#include <memory> // for the cached map
+
+class vtkMultiProcessController;
+class vtkPolyData;
+
+namespace homeomorphism
+{
+class Homeomorphism;
+}
+
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkHomeomorphismAlgorithm : public vtkDataObjectAlgorithm
+{
+public:
+  vtkTypeMacro(vtkHomeomorphismAlgorithm, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  vtkHomeomorphismOptionsMacro();
+
+  /// Values of GetErrorCode() after an update.
+  enum ErrorCodes
+  {
+    MESHES_REFUSED = 40000, ///< the meshes are invalid or missing (vtkErrorCode::UserError)
+    DATA_REFUSED = 40001,   ///< the data has a type or contents that cannot be processed
+    UPDATE_ABORTED = 40002  ///< the update was aborted; the output is incomplete
+  };
+
+  ///@{
+  /// The source mesh, input port 0.
+  void SetSourceConnection(vtkAlgorithmOutput* output);
+  void SetSourceData(vtkPolyData* source);
+  ///@}
+
+  ///@{
+  /// The target mesh, input port 1. vtkTriangularCoordinates has none.
+  void SetTargetConnection(vtkAlgorithmOutput* output);
+  void SetTargetData(vtkPolyData* target);
+  ///@}
+
+  ///@{
+  /// The data, on the input port that follows the meshes: a vtkDataSet or a vtkDataObjectTree. It
+  /// is optional. vtkJacobianContinuity has none.
+  void SetDataConnection(vtkAlgorithmOutput* output);
+  void SetDataObject(vtkDataObject* data);
+  ///@}
+
+  /// Number of points of the data, or of the requested piece of it, that the last update found
+  /// outside the domain. Points that belong to another piece (vtkGhostType) are not counted. -1 if
+  /// the meshes or the data were refused. See ReduceStatistics.
+  vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
+
+  /// Number of valid triangles that are discordant in P or Q if the Contour system is used with
+  /// USE_LINEAR, 0 otherwise. vtkTriangularCoordinates counts them for all systems.
+  vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
+
+  /// Makes the statistics of the last update the same in all processes of @a controller (null: the
+  /// global controller; without one nothing happens). Numbers of points and of continuity features
+  /// become sums, or -1 if one process has -1; numbers of triangles and jumps become the largest.
+  /// Every process must call this after its update, even after an error. The next update replaces
+  /// the statistics by those of its own process. ParaView's plugin calls this.
+  virtual void ReduceStatistics(vtkMultiProcessController* controller);
+
+  /// Number of times the meshes have been read and validated since the filter was created.
+  vtkIdType GetNumberOfMeshBuilds();
+
+protected:
+  vtkHomeomorphismAlgorithm();
+  ~vtkHomeomorphismAlgorithm() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  /// Makes output 0 like the data, or a vtkPolyData if there is none, and others vtkPolyData.
+  int RequestDataObject(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  /// Resets statistics and error code and calls Execute.
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  /// Makes the outputs. Returns 0 after an error, which it has reported with Fail.
+  virtual int Execute(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) = 0;
+
+  /// The map between the meshes, or the triangulation alone if @a target is null. Reports defects;
+  /// returns null if the meshes were refused.
+  std::shared_ptr<const homeomorphism::Homeomorphism> GetMap(
+    vtkPolyData* source, vtkPolyData* target);
+
+  /// Sets the error code if an input has a type that its port does not accept: then the pipeline
+  /// executes no further than RequestDataObject, which must call this.
+  void CheckInputTypes(vtkInformationVector** inputs);
+
+  /// Sets the error code and the statistics of a failed update. Returns 0.
+  int Fail(int errorCode);
+
+  /// Whether a request is for piece 0, which has what is made from the meshes alone.
+  static bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
+  /// Whether a port's input depends on the same algorithms as an input of the ports before it. It
+  /// is then requested whole as well, and its results are part of piece 0.
+  bool DependsOnPortsBefore(int port);
+
+  vtkIdType NumberOfOutsidePoints = 0;
+  vtkIdType NumberOfDiscordantTriangles = 0;
+  /// The number of input ports with meshes, which come first.
+  int NumberOfMeshPorts = 2;
+  /// The first input port that is requested in pieces.
+  int FirstPortInPieces = 2;
+
+private:
+  vtkHomeomorphismAlgorithm(const vtkHomeomorphismAlgorithm&) = delete;
+  void operator=(const vtkHomeomorphismAlgorithm&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file TestHomeomorphismAlgorithm.cxx
+/// What the filters have in common: meshes shared by threads, meshes overwritten in place, error
+/// codes, and the warning about points that miss a surface.
+
+#include "FilterRuns.h"
+
+#include "vtkHomeomorphismTransform.h"
+#include "vtkJacobianContinuity.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkResampleThroughHomeomorphism.h"
+#include "vtkTable.h"
+#include "vtkTriangularCoordinates.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <sstream>
+#include <thread>
+
+namespace
+{
+
+using namespace filter_runs;
+
+/// Runs work in threads of its own, several times.
+void RunInThreads(const std::function<void()>& work)
+{
+  for (int repetition = 0; repetition < 10; ++repetition)
+  {
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i)
+    {
+      threads.emplace_back(work);
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+  }
+}
+
+TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
+{
+  const MeshPair pair = MakePlanarPair(12, 71);
+  const double point[3] = { 5.3, 4.6, 0.0 };
+  vtkNew<vtkHomeomorphismTransform> reference;
+  reference->SetSource(pair.Source);
+  reference->SetTarget(pair.Target);
+  double expected[3];
+  reference->TransformPoint(point, expected);
+  std::atomic<int> different{ 0 };
+  const auto compare = [&](const double image[3]) {
+    different += image[0] != expected[0] || image[1] != expected[1] || image[2] != expected[2];
+  };
+
+  // A transform of its own for each thread, and a copy of one that has been updated.
+  RunInThreads([&] {
+    vtkNew<vtkHomeomorphismTransform> transform;
+    transform->SetSource(pair.Source);
+    transform->SetTarget(pair.Target);
+    double image[3];
+    transform->TransformPoint(point, image);
+    compare(image);
+  });
+  RunInThreads([&] {
+    vtkNew<vtkHomeomorphismTransform> transform;
+    transform->DeepCopy(reference);
+    double image[3];
+    transform->TransformPoint(point, image);
+    compare(image);
+  });
+  // Filters of its own on shallow copies.
+  RunInThreads([&] {
+    vtkNew<vtkPolyData> source;
+    vtkNew<vtkPolyData> target;
+    source->ShallowCopy(pair.Source);
+    target->ShallowCopy(pair.Target);
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->InsertNextPoint(point);
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    const auto filter = MakeFilter(Smooth, { source.Get(), target.Get() }, data);
+    filter->Update();
+    compare(DataOf(filter)->GetPoint(0));
+    vtkNew<vtkResampleThroughHomeomorphism> resample;
+    resample->SetSourceData(source);
+    resample->SetTargetData(target);
+    resample->SetSamplingDimensions(8, 8);
+    resample->Update();
+    vtkNew<vtkTriangularCoordinates> coordinates;
+    coordinates->SetSourceData(source);
+    coordinates->Update();
+  });
+  EXPECT_EQ(different.load(), 0);
+}
+
+TEST(HomeomorphismAlgorithm, ModifiedMeshesAreReadAgain)
+{
+  // Coordinates are overwritten in place, and only the mesh itself is told.
+  const MeshPair pair = MakePlanarPair(5, 72);
+  const auto filter = MakeFilter(Smooth, pair);
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  resample->SetSourceData(pair.Source);
+  resample->SetTargetData(pair.Target);
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  coordinates->SetSourceData(pair.Target);
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetSourceData(pair.Source);
+  continuity->SetTargetData(pair.Target);
+  vtkNew<vtkHomeomorphismTransform> transform;
+  transform->SetSource(pair.Source);
+  transform->SetTarget(pair.Target);
+  const std::vector<vtkHomeomorphismAlgorithm*> filters{ filter, resample, coordinates,
+    continuity };
+  double corner[3];
+  pair.Source->GetPoint(7, corner);
+  for (const double shift : { 0.0, 1.0, 2.0 })
+  {
+    SCOPED_TRACE(shift);
+    auto* points = vtkDoubleArray::SafeDownCast(pair.Target->GetPoints()->GetData());
+    for (vtkIdType i = 0; shift > 0.0 && i < points->GetNumberOfTuples(); ++i)
+    {
+      points->GetPointer(3 * i)[0] += 1.0;
+    }
+    pair.Target->Modified();
+    double expected[3];
+    pair.Target->GetPoint(7, expected);
+    for (vtkHomeomorphismAlgorithm* each : filters)
+    {
+      each->Update();
+      EXPECT_EQ(each->GetNumberOfMeshBuilds(), 1 + static_cast<vtkIdType>(shift))
+        << each->GetClassName();
+    }
+    double image[3];
+    transform->TransformPoint(corner, image);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      EXPECT_EQ(DataOf(filter)->GetPoint(7)[axis], expected[axis]);
+      EXPECT_EQ(image[axis], expected[axis]);
+    }
+    // Without any change, Modified() alone reads nothing again.
+    pair.Target->Modified();
+    filter->Update();
+    EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 1 + static_cast<vtkIdType>(shift));
+  }
+}
+
+TEST(HomeomorphismAlgorithm, RefusedInputsHaveErrorCodes)
+{
+  const MeshPair pair = MakePlanarPair(4, 73);
+  vtkNew<vtkTable> table;
+  const auto map = MakeFilter(Smooth, pair, table);
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  coordinates->SetSourceData(pair.Source);
+  coordinates->SetDataObject(table);
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  resample->SetSourceData(pair.Source);
+  resample->SetTargetData(pair.Target);
+  resample->SetDataObject(table);
+  for (vtkHomeomorphismAlgorithm* filter :
+    std::initializer_list<vtkHomeomorphismAlgorithm*>{ map, coordinates, resample })
+  {
+    SCOPED_TRACE(filter->GetClassName());
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::DATA_REFUSED);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
+    filter->SetDataObject(pair.Source);
+    filter->Update();
+    EXPECT_EQ(filter->GetErrorCode(), 0u);
+    EXPECT_GE(filter->GetNumberOfOutsidePoints(), 0);
+    filter->SetInputDataObject(0, table);
+    filter->Update();
+    EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::MESHES_REFUSED);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
+  }
+}
+
+TEST(HomeomorphismAlgorithm, BlocksWithoutPointsAreNamed)
+{
+  const MeshPair pair = MakePlanarPair(4, 74);
+  vtkNew<vtkTable> table;
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, pair.Source);
+  blocks->SetBlock(1, table);
+  blocks->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "stations");
+  const auto filter = MakeFilter(Smooth, pair, blocks);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_FALSE(messages.HasError()) << messages.Error();
+  EXPECT_NE(messages.Warning().find("stations"), std::string::npos) << messages.Warning();
+  EXPECT_NE(messages.Warning().find("vtkTable"), std::string::npos) << messages.Warning();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  EXPECT_NE(output->GetBlock(0), nullptr);
+  EXPECT_EQ(output->GetBlock(1), nullptr);
+}
+
+TEST(HomeomorphismAlgorithm, AbortedUpdatesHaveAnErrorCode)
+{
+  const MeshPair pair = MakePlanarPair(4, 75);
+  const auto filter = MakeFilter(Smooth, pair);
+  filter->AbortExecuteOn();
+  filter->Update();
+  EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::UPDATE_ABORTED);
+  filter->AbortExecuteOff();
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetErrorCode(), 0u);
+}
+
+TEST(HomeomorphismAlgorithm, PointsThatMissASurfaceAreExplained)
+{
+  // Points of a curved surface, rounded to four decimals.
+  const MeshPair pair = MakeClosedPair(4, 76);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType cell = 0; cell < pair.Source->GetNumberOfCells(); ++cell)
+  {
+    double center[3] = { 0.0, 0.0, 0.0 };
+    vtkNew<vtkIdList> ids;
+    pair.Source->GetCellPoints(cell, ids);
+    for (const vtkIdType id : *ids)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        center[axis] += pair.Source->GetPoint(id)[axis] / 3.0;
+      }
+    }
+    points->InsertNextPoint(std::round(1e4 * center[0]) / 1e4, std::round(1e4 * center[1]) / 1e4,
+      std::round(1e4 * center[2]) / 1e4);
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  const auto filter = MakeFilter(Smooth, pair, data);
+  double tolerance = 0.0;
+  {
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_GT(filter->GetNumberOfOutsidePoints(), 0);
+    const std::string words = "A Tolerance of ";
+    const std::size_t at = messages.Warning().find(words);
+    ASSERT_NE(at, std::string::npos) << messages.Warning();
+    std::istringstream(messages.Warning().substr(at + words.size())) >> tolerance;
+  }
+  // It is the least, up to its rounding.
+  EXPECT_GT(tolerance, 0.0);
+  filter->SetTolerance(0.8 * tolerance);
+  {
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_GT(filter->GetNumberOfOutsidePoints(), 0);
+  }
+  filter->SetTolerance(tolerance);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+  EXPECT_EQ(messages.Warning(), "");
+}
+
+} // namespace
