@@ -13,10 +13,13 @@ from . import __version__, options
 from .files import FILE, USAGE, Failure, quote
 
 COMMANDS = {
+    "check": "Report whether two meshes define a map, and what the map is like.",
     "map": "Map tables, vector data, meshes and VTK's files from the source's domain to the target's.",
     "warp": "Warp an image or a raster from the source's domain to the target's.",
+    "morph": "Make frames in between: images or data on their way from the source to the target.",
     "figure": "Draw a grid or the contours on the source, and mapped to the target.",
     "coordinates": "Attach triangular coordinates (e, p, c) in a mesh to the points of data.",
+    "refine": "Make a finer pair whose piecewise linear map is close to the Smooth map, for PROJ and others.",
     "convert": "Write a pair in another format.",
 }
 
@@ -49,6 +52,7 @@ class Commands(click.Group):
     Exit status: 0 done (check: valid), 1 the data are refused (check: not valid),
                  2 wrong usage, 3 a file cannot be read or written.
     Examples:
+      dhm check shift.json
       dhm map shift.json points.csv -o shifted.csv
       dhm map shift.json parcels.gpkg -o shifted.gpkg --crs EPSG:3067
       dhm warp here.obj there.obj photo.png -o warped.png

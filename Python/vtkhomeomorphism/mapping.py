@@ -36,7 +36,8 @@ class Settings:
         center = CENTERS["incenter" if self.incenter else "centroid"]
         configure(algorithm, SYSTEMS[system or self.system or "smooth"], center, self.linear_where_discordant)
         algorithm.SetMaskInvalidTriangles(self.mask_invalid)
-        algorithm.SetTolerance(self.tolerance)
+        if hasattr(algorithm, "SetTolerance"):
+            algorithm.SetTolerance(self.tolerance)
 
 
 def run(algorithm, name=""):
@@ -99,7 +100,14 @@ class PointMap:
     def map_data(self, data):
         """A data object with its points moved, whose point arrays have the mask, and more as the filter is set up."""
         self.filter.SetDataObject(data)
-        result = run(self.filter, self.pair.name)
+        try:
+            result = run(self.filter, self.pair.name)
+        except Failure:
+            from . import report
+
+            # All kinds of defects, where the filter names the first.
+            report.refuse(self.pair)
+            raise
         self.outside = self.filter.GetNumberOfOutsidePoints()
         return result
 

@@ -74,7 +74,7 @@ def command(inputs, output, force, output_format, settings, all_systems, grid, c
     """Draw a grid, or the contours, on the source and mapped onto the target. The meshes are in a plane."""
     close_up = read_close_up(close_up)
     target = Output(output, output_format, force, plots.FORMATS, "a figure")
-    both = report.require_map(options.read_pair(inputs), settings.mask_invalid, masks=True)
+    both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     raster = None
     if image:
         with Input(image) as file:
