@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the figures share: pages measured in pixels, triangulations as arrays, their coordinate lines and maps."""
+"""Common code of the figures: pages in pixels, triangulations as arrays, coordinate lines and maps."""
 
 import os
 import sys

@@ -12,7 +12,7 @@ TARGET = numpy.array([(0.0, 0.3), (0.85, -0.1), (2.3, 0.1), (3.2, -0.05), (0.15,
 
 
 def bends(before, after):
-    """Degrees by which directions change."""
+    """Angles of bends in degrees."""
     return numpy.degrees(numpy.abs(numpy.arctan2(numpy.cross(before, after), (before * after).sum(axis=1))))
 
 

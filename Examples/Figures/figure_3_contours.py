@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The contours of the published construction: those of a triangle, and how one is made in half an edge's share."""
+"""The contours of the published construction: those of a triangle, and the construction of one in a half edge."""
 
 import numpy
 from drawing import CENTER, CONTOUR, INK, WING, Coordinates, Page, dot, draw_edges, fill, label, right_angle, stroke, \
@@ -54,7 +54,7 @@ def draw_construction(axes):
     middle_of_arc = numpy.array((b * s - h * h * (1 - s * s) / (4 * b * s), 0.0))
     on_edge = middle_of_arc + [radius, 0]
 
-    # The contour through the wing point must be the library's.
+    # Check the contour through the wing point against the library.
     f = Homeomorphism(*[numpy.array([(-b, 0.0), end, (0.0, 3 * h)])] * 2, numpy.array([(0, 1, 2)]), "contour")
     _, _, p, c = f.coordinates(numpy.array([wing, on_edge]))
     difference = max(abs(p - 0.5 * (1 + on_edge[0] / b)).max(), abs(c[0] - straight / (straight + radius * phi)))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A discordant triangle: the centroid's feet are not all on the edges. From the incenter they are; Smooth needs none."""
+"""A discordant triangle: not all feet of the centroid are on the edges. Those of the incenter are; Smooth needs none."""
 
 import numpy
 from drawing import CENTER, CONTOUR, INK, RING, SYSTEMS, Coordinates, Page, dot, draw_edges, fill, label, right_angle, \

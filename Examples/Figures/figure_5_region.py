@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the third vertex C may be for a triangle ABC with A = (0, 0) and B = (1, 0) to be concordant, and what the
-library finds for 100000 random triangles.
+"""The region of third vertices C for which the triangle ABC with A = (0, 0) and B = (1, 0) is concordant, and the
+results of the library for 100000 random triangles.
 
 With G = (A + B + C) / 3 the condition 0 < (G - A).(B - A) < |B - A|^2 means -1 < x < 2. For the edge BC it means
 (x - 1)(x - 2) + y^2 > 0 and (x - 1)(2x - 1) + 2 y^2 > 0: outside the circles about (3/2, 0) and (3/4, 0) with radius
@@ -26,7 +26,7 @@ def outside_circles(x):
 
 
 expected = (x > -UNIT) & (x < 2 * UNIT) & outside_circles(x) & outside_circles(UNIT - x)
-# Side by side, at whole numbers.
+# At integers, as a row.
 points = numpy.zeros((COUNT, 3, 2))
 points[:, 1, 0], points[:, 2] = 1, numpy.column_stack((x, y)) / UNIT
 points[:, :, 0] += 5.0 * numpy.arange(COUNT)[:, None]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The jump of the Jacobian along an edge, measured from the map's values, beside its closed form."""
+"""The jump of the Jacobian along an edge, measured from values of the map, and its closed form."""
 
 import numpy
 from drawing import CENTER, CONTOUR, INK, SYSTEMS, WING, Page

@@ -19,7 +19,7 @@ COLORS = LinearSegmentedColormap.from_list(
     "jump", ["#fdf9db", "#f7d085", "#e88a63", "#bb4a6b", "#6e286e", "#25123b"])
 NORM = LogNorm(1e-12, 1)
 
-# Landmarks of the first face on the middle line and on the right, and how the second face's move by themselves.
+# Landmarks of the first face on the middle line and on the right, and the displacements of those of the second face.
 MIDDLE = numpy.array([
     (0, 1.30, 0, 0), (0, -1.24, 0, -0.04), (0, 0.90, 0, 0.02), (0, 0.27, 0, 0), (0, -0.08, 0.05, 0.02),
     (0, -0.27, 0.04, 0.02), (0, -0.57, 0, -0.01), (0, -0.72, 0, -0.06), (0, -1.00, 0, -0.04)])
@@ -32,7 +32,7 @@ BESIDE = numpy.array([
 
 
 def turn(points):
-    """As of a ball that turns: the middle, which is nearest, goes furthest; then tilted."""
+    """Like a rotating ball, whose nearest point moves farthest; then tilted."""
     x, y = points.T
     depth = numpy.maximum(0, 1 - x * x / 1.1 - y * y / 1.9)
     x, y, tilt = x + 0.19 * depth, y + 0.05 * depth, -0.10

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What vtkTriangulationPairReport finds about a pair, in words; and pairs that must define a map."""
+"""The report of vtkTriangulationPairReport in words, and validation of pairs."""
 
 from dataclasses import replace
 
@@ -88,7 +88,7 @@ def refuse(pair, can_mask=True):
 
 
 def require_map(pair, mask_invalid=False):
-    """The pair, without its invalid triangles on request. Raises Failure if it defines no map."""
+    """The pair, without its invalid triangles on request. Raises Failure if it does not define a map."""
     report = Report(pair)
     if report.valid:
         return pair

@@ -17,7 +17,7 @@ SYSTEMS = ("Linear", "Contour", "Smooth")
 
 
 def value_at(report, column, cell=None):
-    """A value and its cell, for JSON; None where nothing was measured."""
+    """A value and its cell for JSON; None if it was not measured."""
     value = report[column]
     return None if math.isnan(value) else {"value": value, "cell": int(report[cell or column + "Cell"])}
 
@@ -28,7 +28,7 @@ def number(report, column):
 
 
 def duplicates_of(mesh):
-    """Ids of points that have the coordinates of an earlier one."""
+    """Ids of points with the coordinates of a previous point."""
     points = meshes.points_of(mesh)
     _, first = numpy.unique(points, axis=0, return_index=True)
     return numpy.setdiff1d(numpy.arange(len(points)), first)
@@ -134,8 +134,8 @@ def print_report(found, pair, deviations):
 
 
 def deviations_in_meters(report, pair):
-    """The largest deviations of the systems from Linear on the ground, of a triangulation file that names its target's
-    coordinate reference system."""
+    """The largest deviations of the systems from Linear on the ground, for a triangulation file that names the
+    coordinate reference system of its target."""
     from ..mapping import PointMap, Settings
 
     if not pair.shift or not pair.shift.crs() or math.isnan(report["SmoothDeviationFromLinearX"]):
@@ -162,15 +162,15 @@ def _point(point):
 @click.command("check")
 @options.pair_files("SOURCE [TARGET]")
 @click.option("--json", "as_text", is_flag=True, help="Write the report as JSON.")
-@click.option("--quick", is_flag=True, help="Look at the meshes only: do not measure determinants and continuity.")
+@click.option("--quick", is_flag=True, help="Validate the meshes only, without measuring determinants and continuity.")
 @click.option("--plot", default="", metavar="FILE", help="Draw the pair with invalid triangles marked: .png .svg .pdf.")
 @click.option("-f", "--force", is_flag=True, help="Replace the plot if it exists.")
 @options.quiet
 def command(inputs, as_text, quick, plot, force):
-    """Report whether two meshes define a map (exit status 0, otherwise 1), and what the map is like.
+    """Report whether two meshes define a map (exit status 0, otherwise 1), and the properties of the map.
 
-    Invalid triangles are left out of what is measured. Continuity: at each interior edge, whether the map's derivative
-    is the same on both sides, as measured from the map's values."""
+    Measurements exclude invalid triangles. Continuity: whether the derivative of the map is the same on both sides of
+    each interior edge, measured from values of the map."""
     output = Output(plot, "", force, plots.FORMATS, "a plot") if plot else None
     pair = options.read_pair(inputs)
     report = Report(pair, maps=not quick, continuity=not quick)

@@ -19,7 +19,7 @@ PATHS = {"straight": vtkInBetweenTriangulation.STRAIGHT, "rotating": vtkInBetwee
 
 
 def frame_names(pattern, number):
-    """Names in which %d, or %03d and the like, is the frame's number."""
+    """File names, with %d or %03d replaced by the number of the frame."""
     places = re.findall(r"%0?[1-9]?d", pattern)
     if len(places) != 1:
         raise Failure(f"The output's name must have one place for the frame's number, such as frame-%03d.png: {pattern}.",
@@ -29,7 +29,7 @@ def frame_names(pattern, number):
 
 
 class InBetween:
-    """The meshes on the way. Raises Failure if a triangle is folded in one of the frames."""
+    """The intermediate meshes. Raises Failure if a triangle is folded in one of the frames."""
 
     def __init__(self, both, settings, path, times):
         self.name = both.name
@@ -56,7 +56,7 @@ class InBetween:
     def at(self, time):
         self.filter.SetTime(time)
         result = run(self.filter, self.name)
-        # The filter's next output must be another object.
+        # The next output of the filter must be a separate object.
         copy = result.NewInstance()
         copy.ShallowCopy(result)
         copy.GetCellData().RemoveArray("Folded")
@@ -84,13 +84,13 @@ def blend(first, second, t):
 @click.option("-n", "--frames", type=options.Number(2, most=100000, whole=True), default=11, metavar="NUMBER",
               show_default=True, help="Number of frames, the first and the last included.")
 @click.option("--path", type=click.Choice(list(PATHS)), default="best", show_default=True,
-              help="How points move: straight; rotating with the mesh as a whole; or the one with fewer folds.")
+              help="Paths of points: straight, rotating with the mesh as a whole, or the path with fewer folds.")
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source image's).")
 @background_option
 @options.map_settings("smooth")
 @options.quiet
 def command(inputs, output, force, source_image, target_image, data, frames, path, size, background, settings):
-    """Make the frames in between: images or data on their way from the source to the target.
+    """Make intermediate frames of images or data between the source and the target.
 
     If a triangle would be folded in a frame, nothing is written (status 1)."""
     names = (source_image, target_image)

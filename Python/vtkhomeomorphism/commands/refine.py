@@ -22,16 +22,16 @@ PROJ_LIMIT = 10 * 1024 * 1024
 @options.pair_files("SOURCE [TARGET]")
 @options.output("The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output.", "json")
 @click.option("-t", "--max-error", type=options.Number(above=True), required=True, metavar="DISTANCE",
-              help="How far from the map the piecewise linear map may be anywhere, in the target's units.")
+              help="Greatest distance between the piecewise linear map and the map, in units of the target.")
 @click.option("--max-triangles", type=options.Number(1, whole=True, most=2**31), default=2000000, metavar="NUMBER",
-              show_default=True, help="Give up beyond this number.")
+              show_default=True, help="Greatest number of triangles.")
 @options.map_settings("smooth")
 @crs_options
 @options.quiet
 def command(inputs, output, force, output_format, max_error, max_triangles, settings, output_array, input_crs,
             output_crs):
-    """Make a finer pair whose piecewise linear map is close to the Smooth map, for PROJ and others. The pair is in a
-    plane. Heights of a triangulation file stay the same functions."""
+    """Make a finer pair whose piecewise linear map approximates the Smooth map, for PROJ and others. The pair is in a
+    plane. Heights of a triangulation file remain the same functions of the point."""
     target = Output(output, output_format, force, pair.FORMATS, "a pair")
     both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     both.require_flat()
@@ -58,7 +58,7 @@ def command(inputs, output, force, output_format, max_error, max_triangles, sett
     finer = replace(both, meshes=[refining.GetOutput(0), refining.GetOutput(1)], shift=None)
     inform(f"{both.source.GetNumberOfPolys()} triangles became {finer.source.GetNumberOfPolys()}; farthest from "
            f"{system.capitalize()}: {refining.GetLargestError():.4g}, at {refining.GetNumberOfSamples()} points.")
-    # The file must show that it is not the published one.
+    # Mark the file as different from the published one.
     description = finer.metadata.get("description")
     finer.metadata["description"] = (f"{description}. " if isinstance(description, str) else "") + (
         f"Refined by dhm: its piecewise linear map is within {max_error:g} of the {system.capitalize()} map of the "
