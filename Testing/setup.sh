@@ -20,12 +20,14 @@ for argument in "$@"; do
 done
 set -- "${remaining_arguments[@]}"
 
-# What the program dhm is built with.
-program_packages=(g++ cmake ninja-build libvtk9-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libcairo2-dev libpng-dev libtiff-dev
-  pkg-config)
+# What the library is built with, and what the command dhm needs besides; rasterio and geopandas are for
+# georeferenced files only.
+build_packages=(g++ cmake ninja-build libvtk9-dev libeigen3-dev)
+dhm_packages=(python3-dev python3-numpy python3-click python3-meshio python3-pil python3-matplotlib python3-tqdm
+  python3-tifffile python3-rasterio python3-geopandas)
 # What the tests need besides.
 test_packages=(libgtest-dev openmpi-bin python3-dev python3-mpi4py python3-mpmath python3-numpy python3-scipy
-  python3-vtk9 binutils xvfb xauth proj-bin)
+  python3-vtk9 python3-pytest binutils xvfb xauth proj-bin)
 
 # list_sources FOLDER...: the C++ files of this project in these folders.
 list_sources()
@@ -63,20 +65,22 @@ install_missing()
     apt-get install --yes --no-install-recommends "${missing[@]}"
 }
 
-# build_program: builds the program dhm and nothing else, in the repository's folder.
-build_program()
+# build_dhm: builds the library with the Python package and the command dhm, and nothing else, in the repository's
+# folder.
+build_dhm()
 {
   echo "Configuring"
-  cmake --log-level=WARNING -G Ninja -S . -B build/program \
-    -DBUILD_TESTING=OFF -DDHM_BUILD_PROGRAM=ON -DDHM_WRAP_PYTHON=OFF
+  cmake --log-level=WARNING -G Ninja -S . -B build/dhm -DPython3_EXECUTABLE=/usr/bin/python3 \
+    -DBUILD_TESTING=OFF
   echo "Building"
-  cmake --build build/program
-  program="$PWD/build/program/bin/dhm"
+  cmake --build build/dhm
+  dhm_program="$PWD/build/dhm/bin/dhm"
+  export PYTHONPATH="$PWD/build/dhm/lib/python3/dist-packages"
 }
 
-# dhm ARGUMENT...: says and does it, with the program that build_program has built.
+# dhm ARGUMENT...: shows the command and runs it, as build_dhm has built it.
 dhm()
 {
   echo "+ dhm $*"
-  "$program" "$@"
+  "$dhm_program" "$@"
 }

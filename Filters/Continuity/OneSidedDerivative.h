@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file OneSidedDerivative.h
-/// Estimates of one-sided derivatives of a function that can only be evaluated.
+/// Estimates of one-sided derivatives of a function from its values.
 
 #ifndef homeomorphism_OneSidedDerivative_h
 #define homeomorphism_OneSidedDerivative_h
@@ -15,7 +15,7 @@
 namespace homeomorphism
 {
 
-/// An estimate of a vector's components, and a bound on the length of its error: infinite if the
+/// An estimate of the components of a vector, and a bound on the norm of its error, infinite if the
 /// function could not be evaluated.
 struct DerivativeEstimate
 {
@@ -23,32 +23,32 @@ struct DerivativeEstimate
   double Error = std::numeric_limits<double>::infinity();
 };
 
-/// Difference quotients of a function of one variable, f(t) for t >= 0, over shrinking steps h, and
-/// their Richardson extrapolation to h = 0.
+/// Difference quotients of a function of one variable, f(t) for t >= 0, for decreasing steps h,
+/// and their Richardson extrapolation to h = 0.
 ///
-/// Steps are halved at first, while the extrapolation gains most. Then they shrink faster, down to
-/// where nothing but a large change can be told from rounding: the small ones are there to see a
-/// border between two pieces of the function close to 0. Their ratios are no powers of 2, lest a
-/// function that repeats itself from scale to scale deceives them all.
+/// Steps are halved at first, where extrapolation gains most. Then they decrease faster, down to
+/// a size at which only a large change exceeds rounding. The small steps detect a border between
+/// two pieces of the function close to 0. Their ratios are not powers of 2, so that a
+/// self-similar function does not mislead all of them.
 ///
-/// The error of the quotients is a power series in h if the function is smooth on its side. Where
-/// it is so only near 0, as for a map made of pieces, the rows of small steps agree with each
-/// other; where the steps are so small that rounding rules, rows disagree again. So the
-/// extrapolation is taken whose neighbors in Neville's tableau agree with it best (Ridders 1982)
-/// and that no smaller step contradicts; the disagreement, with what rounding can do to it, bounds
+/// If the function is smooth on its side, the error of the quotients is a power series in h. If
+/// it is smooth only near 0, as for a piecewise map, the rows of small steps agree with each
+/// other; where the steps are so small that rounding dominates, rows disagree again. The estimate
+/// is the extrapolation that agrees best with its neighbors in Neville's tableau (Ridders 1982)
+/// and that no smaller step contradicts. The disagreement and the effect of rounding on it bound
 /// its error.
 class OneSidedDerivative
 {
 public:
   using Vector = std::array<double, 3>;
   static constexpr int MaximumSteps = 22;
-  /// As many steps are halved: enough where only the size of a derivative is wanted.
+  /// The number of halved steps, sufficient for the magnitude of a derivative.
   static constexpr int HalvedSteps = 11;
 
-  /// Quotients of order 1, (f(h) - f(0)) / h, or 2, (f(2 h) - 2 f(h) + f(0)) / h^2.
+  /// Quotients of order 1, (f(h) - f(0)) / h, or of order 2, (f(2 h) - 2 f(h) + f(0)) / h^2.
   ///
-  /// @a function takes a step to a Vector (NaN where it cannot be evaluated), @a largestStep is the
-  /// largest argument used, @a rounding bounds the absolute error of each component.
+  /// @a function maps a step to a Vector (NaN where it cannot be evaluated), @a largestStep is the
+  /// largest argument used, and @a rounding bounds the absolute error of each component.
   template <typename Function>
   OneSidedDerivative(
     Function&& function, int order, double largestStep, double rounding, int steps = MaximumSteps)
@@ -57,8 +57,8 @@ public:
     const Vector start = function(0.0);
     const Vector end = function(largestStep);
     const double slope = Distance(start, end) / largestStep;
-    // A function that does not change where it should is known to no better than that: its values
-    // were stored, or found, with fewer digits than they have.
+    // A function that is constant where it should change has values with fewer digits than a
+    // double; increase the rounding accordingly.
     double quantum = 0.0;
     Vector last = start;
     for (int i = 0; i < this->NumberOfSteps; ++i)
@@ -75,7 +75,7 @@ public:
         this->Quotients[i] = Quotient(start, near, step);
         continue;
       }
-      // Twice the step is the step before, as long as steps are halved.
+      // Twice the step is the previous step while steps are halved.
       const Vector far =
         i == 0 ? end : (2.0 * step == this->Steps[i - 1] ? last : function(2.0 * step));
       this->Quotients[i] = Quotient(Quotient(start, near, step), Quotient(near, far, step), step);
@@ -105,9 +105,9 @@ public:
     {
       const auto best = std::min_element(begin + first, end,
         [](const DerivativeEstimate& a, const DerivativeEstimate& b) { return a.Error < b.Error; });
-      // Large steps may agree on the wrong limit, that of another piece of the map. Smaller ones,
-      // which do not reach that piece, then contradict them: their quotients are farther from the
-      // limit than rounding and a straight approach to it explain.
+      // Large steps may agree on a wrong limit, that of another piece of the map. Smaller steps,
+      // which do not reach that piece, contradict them: the distance of their quotients from that
+      // limit exceeds rounding and linear convergence.
       const int row = static_cast<int>(best - begin);
       const double approach = 4.0 * Distance(this->Quotients[row], best->Value) / this->Steps[row];
       bool contradicted = false;
@@ -118,7 +118,7 @@ public:
       }
       if (!contradicted)
       {
-        // Neighbors in the tableau can agree by chance; the next best row hardly does as well.
+        // Neighbors in the tableau can agree by chance; the second-best row hardly does as well.
         DerivativeEstimate result = *best;
         if (!std::isfinite(result.Error))
         {
@@ -152,7 +152,7 @@ private:
     return { (b[0] - a[0]) / step, (b[1] - a[1]) / step, (b[2] - a[2]) / step };
   }
 
-  /// The best extrapolation of each row of Neville's tableau: from step i and the larger ones.
+  /// The best extrapolation of each row of Neville's tableau, from step i and the larger ones.
   std::array<DerivativeEstimate, MaximumSteps> ExtrapolateRows() const
   {
     struct Entry
@@ -190,8 +190,8 @@ private:
     return best;
   }
 
-  /// The sum of the components' differences: not less than the distance, nor twice as large, and
-  /// far cheaper, there being hundreds.
+  /// The sum of the absolute differences of the components: between the distance and twice the
+  /// distance, and far cheaper, since it is evaluated hundreds of times.
   static double Distance(const Vector& a, const Vector& b)
   {
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Box.h
-/// Boxes around points.
+/// Axis-parallel bounding boxes.
 
 #ifndef homeomorphism_Box_h
 #define homeomorphism_Box_h
@@ -14,7 +14,7 @@
 namespace homeomorphism
 {
 
-/// An axis-parallel box in the plane or in 3-space. It starts empty.
+/// An axis-parallel box in the plane or in 3-space. Empty by default.
 template <int Dimension>
 struct Box
 {

@@ -14,14 +14,14 @@ namespace homeomorphism
 namespace
 {
 
-/// What the triangle on one side of an edge is to the one on the other side. What an edge sees of a
-/// triangle does not change when the triangle turns about the edge.
+/// The triangle on one side of an edge as the neighbor of the other. The view from an edge is
+/// invariant under unfolding about that edge.
 EdgeView Unfolded(const EdgeView& view, const Twin& across)
 {
   return across.SameDirection ? view : Reversed(view);
 }
 
-/// Makes the strips of edges of a plane, many at once.
+/// Computes the strips of edges of a plane in batches.
 class StripMaker
 {
 public:
@@ -72,7 +72,7 @@ private:
     PointBatch Ends;
     PointBatch Opposites;
     ViewBatch Views;
-    /// What they are to the triangles on the other side.
+    /// Their edges in the triangles on the other side.
     ViewBatch Unfolded;
 
     void Set(int i, TriangleIndex triangle, int edge, const Vector2& start, const Vector2& end,
@@ -116,7 +116,7 @@ private:
   SmoothStrip Made[EdgeBatchSize];
 };
 
-/// The strips of all triangles. Each edge is looked at once, for both of its triangles.
+/// Computes the strips of all triangles. Each edge is visited once, for both of its triangles.
 LargeArray<SmoothStrips> MakeStrips(
   const Triangulation& triangulation, const MeshGeometry& geometry)
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ChartedTriangulation.h
-/// The charts that a coordinate system gives to the triangles of one mesh.
+/// The charts of all triangles of one mesh in a coordinate system.
 
 #ifndef homeomorphism_ChartedTriangulation_h
 #define homeomorphism_ChartedTriangulation_h
@@ -22,21 +22,21 @@
 namespace homeomorphism
 {
 
-/// Neighbors of a triangle, unfolded about its edges into its plane.
+/// The twin triangles of a triangle, unfolded about its edges into its plane.
 std::array<Neighbor, 3> UnfoldNeighbors(
   const Triangulation& triangulation, const MeshGeometry& geometry, TriangleIndex triangle);
 
-/// Triangles, masked ones excepted, that are not concordant in a geometry.
+/// The unmasked triangles that are not concordant in a geometry.
 std::vector<TriangleIndex> FindDiscordant(
   const Triangulation& triangulation, const MeshGeometry& geometry);
 
-/// Charts of all triangles of one geometry, made as they are asked for from what is expensive to
-/// find. Immutable; any number of threads may use it.
+/// The charts of all triangles of one geometry. Stores the data that is expensive to compute, and
+/// constructs charts from it on request. Immutable; any number of threads may use it.
 class ChartedTriangulation
 {
 public:
-  /// Refers to the geometry, which must outlive it. @a mappedByLinear says for which triangles
-  /// the Linear system stands in (empty: for none); it must be the same in both meshes of a pair.
+  /// Keeps a reference to the geometry. @a mappedByLinear marks the triangles that the Linear
+  /// system maps (empty: none), the same in both meshes of a pair.
   ChartedTriangulation(const Triangulation& triangulation, const MeshGeometry& geometry,
     CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> mappedByLinear);
 
@@ -48,7 +48,7 @@ public:
     return this->System == CoordinateSystem::Contour ? this->Center : CenterPoint::Centroid;
   }
 
-  /// The system that a triangle's chart belongs to.
+  /// The coordinate system of the chart of a triangle.
   CoordinateSystem GetSystemOf(TriangleIndex triangle) const
   {
     return this->System == CoordinateSystem::Contour && !this->MappedByLinear.empty() &&
@@ -75,7 +75,7 @@ public:
     return this->Strips[triangle];
   }
 
-  /// Calls visit(chart) with the triangle's chart, whatever its type, and returns what it returns.
+  /// Calls visit(chart) with the chart of the triangle, whatever its type, and returns the result.
   template <typename Visit>
   auto VisitChart(TriangleIndex triangle, Visit&& visit) const
   {
@@ -90,7 +90,7 @@ public:
     }
   }
 
-  /// Triangular coordinates of a point of a triangle's frame, and back.
+  /// Converts between points in the frame of a triangle and their triangular coordinates.
   TriangularCoordinates ToCoordinates(TriangleIndex triangle, const Vector2& point) const;
   Vector2 FromCoordinates(TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
@@ -99,7 +99,7 @@ private:
   CoordinateSystem System;
   CenterPoint Center;
   std::vector<std::uint8_t> MappedByLinear;
-  // A third of the charts' size, from which they are quickly made.
+  // A third of the size of the charts, which are constructed quickly from it.
   LargeArray<EdgeViews> ContourViews;
   LargeArray<SmoothStrips> Strips;
 };

@@ -18,8 +18,8 @@ namespace homeomorphism
 {
 
 /// A CubicMap of a planar TriangulationPair, in both meshes' normalized coordinates. Triangles are
-/// turned anticlockwise for it, and parts that the target mirrors are mirrored back. Immutable; any
-/// number of threads may use it.
+/// turned counterclockwise for it, and parts that the target mirrors are mirrored back. Immutable;
+/// any number of threads may use it.
 class CubicHomeomorphism
 {
 public:

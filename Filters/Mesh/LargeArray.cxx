@@ -27,7 +27,7 @@ void* AllocateLarge(std::size_t bytes)
   constexpr std::size_t largePage = std::size_t(1) << 21;
   if (bytes >= 2 * largePage)
   {
-    // Of the small pages that are within the array. It does not matter if it is refused.
+    // Only for whole huge pages within the array. Failure is harmless.
     const auto smallPage = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     const std::size_t before = smallPage - reinterpret_cast<std::uintptr_t>(memory) % smallPage;
     madvise(

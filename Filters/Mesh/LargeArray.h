@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file LargeArray.h
-/// Arrays with an element for each triangle or point of a mesh.
+/// Arrays with one element per triangle or point of a mesh.
 
 #ifndef homeomorphism_LargeArray_h
 #define homeomorphism_LargeArray_h
@@ -18,15 +18,15 @@
 namespace homeomorphism
 {
 
-/// Memory for an array, for ReleaseLarge to give back. It starts at a line of the processor's
-/// cache. Much memory is asked for in the system's large pages, where it has some: to be given
-/// small pages one by one takes longer than to compute what is written to them, and to look up
-/// where they are takes longer than to read them.
+/// Allocates memory for an array, to be released by ReleaseLarge. It is aligned to
+/// a cache line. Large arrays use huge pages where the system has them: page
+/// faults and address translation for small pages would take longer than the
+/// computation.
 void* AllocateLarge(std::size_t bytes);
 void ReleaseLarge(void* memory);
 
-/// An array whose size does not change. Its elements have no values until some are assigned: memory
-/// is written once.
+/// An array of fixed size. Its elements are uninitialized until they are assigned, so memory is
+/// written only once.
 template <typename T>
 class LargeArray
 {
@@ -49,7 +49,7 @@ public:
     std::fill(this->begin(), this->end(), value);
   }
 
-  /// Copies, for meshes written down element by element.
+  /// Copies, for meshes given element by element.
   LargeArray(const std::vector<T>& elements) // NOLINT(google-explicit-constructor)
     : LargeArray(elements.size())
   {

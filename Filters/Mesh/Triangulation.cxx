@@ -23,10 +23,10 @@ void Triangulation::SetTriangles(
 
 std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints)
 {
-  // Half edges are put into one list for each point, the lesser of their two; those with the same
-  // greater point in a list then are the same edge. A half edge's code is triangle * 8 + edge * 2 +
-  // whether it runs from the lesser to the greater point; what is to become its adjacency has the
-  // code of the next in its list meanwhile.
+  // Half edges are stored in one list per point, the lesser of their two points. Half edges with
+  // the same greater point in a list belong to the same edge. The code of a half edge is triangle *
+  // 8 + edge * 2 + whether it runs from the lesser to the greater point. Until its adjacency is
+  // known, its entry contains the code of the next half edge in its list.
   const TriangleIndex count = this->GetNumberOfTriangles();
   if (this->Adjacency.size() != this->Triangles.size())
   {
@@ -52,8 +52,8 @@ std::vector<TriangleIndex> Triangulation::FindAdjacency(vtkIdType numberOfPoints
 
   this->MixedWinding = false;
   std::vector<TriangleIndex> crowded;
-  // The half edges of a point: the greater point above the code, so that sorting brings those of an
-  // edge together, in the order of their triangles.
+  // The half edges of a point, with the greater point in the high bits, so that sorting groups them
+  // by edge in the order of their triangles.
   constexpr int bits = 31;
   static_assert(MaximumTriangles * 8 <= (vtkIdType(1) << bits), "The codes of half edges");
   std::vector<std::uint64_t> halfEdges;

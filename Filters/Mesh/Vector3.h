@@ -30,7 +30,7 @@ inline Vector3 Scaled(const Vector3& a, double factor)
 
 inline double Length(const Vector3& a)
 {
-  // The function of three arguments takes (0, NaN, NaN) for 0 in some libraries.
+  // Some implementations of the three-argument function return 0 for (0, NaN, NaN).
   return std::hypot(std::hypot(a[0], a[1]), a[2]);
 }
 
@@ -51,14 +51,14 @@ inline Vector3 Unit(const Vector3& a)
   return { a[0] / length, a[1] / length, a[2] / length };
 }
 
-/// The unit vector at a right angle to a line, with a unit tangent, towards a point beside it.
+/// The unit vector perpendicular to a line, given by its unit tangent, towards a point beside it.
 inline Vector3 UnitAcross(const Vector3& onLine, const Vector3& tangent, const Vector3& beside)
 {
   const Vector3 d = Unit(Difference(beside, onLine));
   return Unit(Sum(d, -Dot3(d, tangent), tangent));
 }
 
-/// Accurate in each component, so that a needle's normal is as good as any.
+/// Accurate in each component, so that normals of needles are accurate too.
 inline Vector3 Cross3(const Vector3& a, const Vector3& b)
 {
   return { DifferenceOfProducts(a[1], b[2], a[2], b[1]),

@@ -13,16 +13,19 @@ from . import __version__, options
 from .files import FILE, USAGE, Failure, quote
 
 COMMANDS = {
+    "check": "Report whether two meshes define a map, and the properties of the map.",
     "map": "Map tables, vector data, meshes and VTK's files from the source's domain to the target's.",
     "warp": "Warp an image or a raster from the source's domain to the target's.",
+    "morph": "Make intermediate frames of images or data between the source and the target.",
     "figure": "Draw a grid or the contours on the source, and mapped to the target.",
     "coordinates": "Attach triangular coordinates (e, p, c) in a mesh to the points of data.",
+    "refine": "Make a finer pair whose piecewise linear map approximates the Smooth map, for PROJ and others.",
     "convert": "Write a pair in another format.",
 }
 
 
 class Commands(click.Group):
-    """Each command is a module, imported when it is needed."""
+    """A group whose commands are modules, imported on use."""
 
     def list_commands(self, context):
         return list(COMMANDS)
@@ -49,6 +52,7 @@ class Commands(click.Group):
     Exit status: 0 done (check: valid), 1 the data are refused (check: not valid),
                  2 wrong usage, 3 a file cannot be read or written.
     Examples:
+      dhm check shift.json
       dhm map shift.json points.csv -o shifted.csv
       dhm map shift.json parcels.gpkg -o shifted.gpkg --crs EPSG:3067
       dhm warp here.obj there.obj photo.png -o warped.png
@@ -60,8 +64,8 @@ class Commands(click.Group):
 @click.version_option(__version__, prog_name="dhm", message="dhm %(version)s")
 @options.quiet
 def dhm():
-    """Maps data from one triangulated domain onto another that has the same triangles, one to one and smoothly, with
-    an exact inverse."""
+    """Maps data between the domains of two triangulations with the same triangles, one to one and smoothly, with an
+    exact inverse."""
 
 
 def fail(message, status):
@@ -72,10 +76,10 @@ def fail(message, status):
 def main():
     from .vtkfiles import capture_messages
 
-    # Long computations end at once when they are interrupted.
+    # Interrupts end long computations at once.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     capture_messages()
-    # GDAL's errors are raised; they need not be printed as well.
+    # GDAL's errors are raised and need not be printed.
     os.environ.setdefault("CPL_LOG", os.devnull)
     try:
         dhm.main(prog_name="dhm", standalone_mode=False)
@@ -90,7 +94,7 @@ def main():
     except MemoryError:
         return fail("There is not enough memory.", FILE)
     except OSError as error:
-        # Standard output is full, or its reader has gone.
+        # Standard output is full or closed by its reader.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return fail(f"Cannot write to standard output: {error.strerror or quote(error)}.", FILE)
 

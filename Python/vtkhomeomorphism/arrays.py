@@ -105,7 +105,7 @@ def _cast(values: numpy.ndarray, dtype) -> numpy.ndarray:
         return values.astype(dtype)
     limits = numpy.iinfo(dtype)
     rounded = numpy.rint(numpy.nan_to_num(values))
-    # The largest integers of 64 bits are not numbers of float64: they are compared, not converted.
+    # The largest 64-bit integers are not exact in float64, so compare them without conversion.
     low, high = rounded <= limits.min, rounded >= limits.max
     result = numpy.where(low | high, 0, rounded).astype(dtype)
     result[low], result[high] = limits.min, limits.max
@@ -350,7 +350,7 @@ class Homeomorphism:
             raise ValueError(f"spacing must be a number greater than 0, not {spacing}")
         if max(out_rows, out_columns) > numpy.iinfo(numpy.int32).max:
             raise MemoryError(f"an image of {out_rows} x {out_columns} pixels is too large")
-        # VTK would end the process if there were not enough memory for values, mask and points.
+        # VTK aborts if there is not enough memory for values, mask and points.
         numpy.empty((out_rows, out_columns, channels + 4))
         vtk_image = vtkImageData()
         vtk_image.SetDimensions(columns, rows, 1)

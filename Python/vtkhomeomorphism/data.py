@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data of any kind to which a command does something point by point: tables, vector data, meshes, VTK's files, images."""
+"""Data that commands process point by point: tables, vector data, meshes, VTK files, images."""
 
 import functools
 
@@ -29,25 +29,25 @@ def data_options(command):
                      help="Names or numbers (from 1) of a table's coordinate columns, separated by commas (default: "
                           "usual names, such as x,y,z, E,N or lon,lat; of a table without names, the first two)."),
         click.option("--data-format", default="csv", metavar="EXTENSION", show_default=True,
-                     help="What the data is if it comes from standard input."),
+                     help="Format of data from standard input."),
         click.option("--require-inside", is_flag=True,
                      help="Write nothing and fail (status 1) if a point is outside the domain."),
     )(wrapped)
 
 
 class Data:
-    """Data that is read, worked on and written."""
+    """Data that is read, processed and written."""
 
     def __init__(self, output, force, output_format, columns, data_format, require_inside, crs):
         self.output = Output(output, output_format, force, WRITE, "data")
         self.columns, self.data_format, self.require_inside, self.crs = columns, data_format, require_inside, crs
 
     def process(self, name, work, moves, shift=None, densify=0.0, known_crs=None):
-        """Reads the data, works on it and writes it.
+        """Reads the data, processes it and writes it.
 
         work : object with map_points(points) -> images, arrays and map_data(data) -> data, and the count `outside`
         moves : whether points move
-        shift : a triangulation file's, whose map takes heights as the third coordinate
+        shift : that of a triangulation file, whose map uses heights as the third coordinate
         """
         input = Input(name, self.data_format, "--data-format")
         kind, target = input.format, self.output.format
@@ -105,7 +105,7 @@ class Data:
         self._write(result)
 
     def _map_data(self, work, data, shift):
-        """VTK's data; of a triangulation file with heights as the third coordinate."""
+        """Maps VTK data; for a triangulation file, with heights as the third coordinate."""
         if shift is None or not isinstance(data, vtkPolyData):
             return work.map_data(data)
         points = meshes.points_of(data)
@@ -114,7 +114,7 @@ class Data:
         flat.ShallowCopy(data)
         flat.SetPoints(meshes.as_points(points * [1, 1, 0]))
         result = work.map_data(flat)
-        # Where the filter leaves points outside, they stay.
+        # Points outside keep their coordinates.
         moved = numpy.where(numpy.isnan(moved), points, moved)
         result.SetPoints(meshes.as_points(moved))
         if "Fallback" in arrays:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are read and written: standard input and output, and outputs that are whole or absent."""
+"""Input and output files, including standard input and output. Outputs are written completely or not at all."""
 
 import contextlib
 import errno
@@ -22,7 +22,7 @@ _quiet = False
 
 
 class Failure(Exception):
-    """What ends a command: a message for the user, and the exit status."""
+    """Ends a command with a message and an exit status."""
 
     def __init__(self, message, status=REFUSED):
         super().__init__(message)
@@ -35,7 +35,7 @@ def set_quiet(quiet):
 
 
 def inform(message):
-    """Prints a remark or a warning to standard error."""
+    """Prints information or a warning to standard error."""
     if not _quiet:
         print("dhm: " + message, file=sys.stderr)
 
@@ -52,7 +52,7 @@ def progress(items, text):
 
 
 def quote(text, length=80):
-    """A text as a message can show it: one short line."""
+    """A text shortened to one line, for messages."""
     text = " ".join(str(text).split())
     text = "".join(c if c.isprintable() else "?" for c in text)
     return text if len(text) <= length else text[:length] + " ..."
@@ -68,7 +68,7 @@ def format_of(name):
 
 
 def import_extra(module, package, purpose):
-    """An optional library, or a message that names its package."""
+    """Imports an optional library. Raises Failure with the name of its package."""
     import importlib
 
     try:
@@ -93,7 +93,7 @@ def _clean_up_and_stop(number, frame):
 
 @contextlib.contextmanager
 def scratch_folder(parent=None):
-    """A temporary folder that also goes when the process is interrupted."""
+    """A temporary folder that is removed even if the process is interrupted."""
     signals = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     before = {number: signal.signal(number, _clean_up_and_stop) for number in signals}
     folder = tempfile.mkdtemp(prefix=".dhm-unfinished-", dir=parent)
@@ -149,7 +149,7 @@ class Input:
 
 
 def replace_path(message, input):
-    """A library's message with the name that the user gave."""
+    """The message of a library, with the name of the file as the user gave it."""
     return quote(str(message).replace(input.path, input.name), 300)
 
 
@@ -212,7 +212,7 @@ class Output:
 
     def _failure(self, error):
         if isinstance(error, BrokenPipeError):
-            # Python would complain once more when it closes standard output.
+            # Prevents a second error message when Python closes standard output.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE)
 
@@ -229,7 +229,7 @@ class Output:
         if not os.path.exists(self.path):
             raise OSError(errno.EIO, "nothing was written")
         folder = os.path.dirname(self.path)
-        # What stands beside the output first, so that the output's own name means that it is whole.
+        # Rename accompanying files first, so that the output exists only if it is complete.
         for name in sorted(os.listdir(folder), key=lambda name: name == os.path.basename(self.path)):
             goal = os.path.join(os.path.dirname(self.target), name)
             if self.force:

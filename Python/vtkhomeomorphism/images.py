@@ -23,7 +23,7 @@ WRITE = PICTURES + ("vti",)
 
 @dataclass
 class Grid:
-    """Where pixels are: x of the centers of the first column, y of those of the upper row, and distances."""
+    """The position of pixels: x of the centers of the first column, y of those of the upper row, and spacing."""
 
     width: int
     height: int
@@ -33,7 +33,7 @@ class Grid:
     dy: float = 1.0
     crs: object = None
     placed: bool = False
-    """Whether the file says where it is; otherwise the lower left pixel's center is (0, 0)."""
+    """Whether the file is georeferenced; otherwise the center of the lower left pixel is (0, 0)."""
 
     def __post_init__(self):
         if self.y is None:
@@ -152,7 +152,7 @@ def _read_tiff(input):
     logging.getLogger("rasterio").setLevel(logging.CRITICAL)
     warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
     raster = GdalRaster(input, rasterio)
-    # Files that have been cut off are seen at their ends.
+    # Read to the end, to detect truncated files.
     width, height = raster.grid.width, raster.grid.height
     raster.window((0, 1), (0, 1))
     raster.window((width - 1, width), (height - 1, height))
@@ -181,7 +181,7 @@ def _read_picture(input):
 
 
 def _read_deep_png(input):
-    # Pillow would cut 16 bits to 8.
+    # Pillow would reduce 16 bits to 8.
     from vtkmodules.vtkIOImage import vtkPNGReader
 
     reader = vtkPNGReader()
@@ -233,7 +233,7 @@ def require_overlap(grid, name, mesh, mesh_name):
 
 
 class Warp:
-    """Images over one domain of a pair, seen over the other: pulled back along the exact map, tile by tile."""
+    """Warps images from one domain of a pair to the other, sampling at exact preimages, tile by tile."""
 
     def __init__(self, pair, settings, inverse=False):
         flat = [meshes.make_mesh(meshes.points_of(mesh)[:, :2], mesh.GetPolys()) for mesh in pair.meshes]
@@ -252,7 +252,7 @@ class Warp:
         triangles = meshes.triangles_of(flat[0])
         edges = numpy.sort(numpy.vstack((triangles[:, :2], triangles[:, 1:], triangles[:, ::2])), axis=1)
         edges, counts = numpy.unique(edges, axis=0, return_counts=True)
-        # What is left out has borders of its own.
+        # Masked triangles have boundaries of their own.
         self.rims = edges if settings.mask_invalid else edges[counts == 1]
 
     def image_bounds(self, grid, mapping, here, there):
@@ -266,7 +266,7 @@ class Warp:
         ] + [numpy.column_stack(numpy.broadcast_arrays(x, grid.y - rows * grid.dy)) for x in (x0, x1)])
         images = mapping.map_points(rim)[0]
         steps = numpy.abs(numpy.diff(images, axis=0))
-        # Between lines that do not follow each other, steps are no steps.
+        # Differences between nonadjacent lines are not steps.
         steps[[grid.width - 1, 2 * grid.width - 1, 2 * grid.width + grid.height - 1]] = numpy.nan
         a, b = here[self.rims[:, 0]], here[self.rims[:, 1]]
         low, high = numpy.zeros(len(a)), numpy.ones(len(a))
@@ -310,7 +310,7 @@ class Warp:
             dx, dy = (grid.dx, grid.dy) if kept else (own * factor, own * factor)
             if resolution:
                 dx = dy = resolution
-            # A rounding error is not a pixel.
+            # A rounding error must not add a pixel.
             size = [int(math.ceil(span / d - 1e-6)) + 1 for span, d in zip(high - low, (dx, dy))]
         return Grid(*size, low[0], high[1], dx, dy, crs, True)
 
@@ -368,8 +368,7 @@ def brightest(dtype):
 
 
 def finish(pixels, mask, has_alpha, background, nodata=None):
-    """Pixels with the background outside: a color, no data, or transparent in an alpha band that is added if there is
-    none."""
+    """Sets pixels outside to the background: a color, no data, or transparency (adding an alpha band if needed)."""
     full = brightest(pixels.dtype)
     colors = pixels.shape[2] - has_alpha
     fill = numpy.zeros(pixels.shape[2])
@@ -454,7 +453,7 @@ class TiffWriter:
         self.file.write(numpy.moveaxis(pixels, 2, 0), window=window)
 
     def close(self):
-        """GDAL does not tell when a disk is full at the end: reading the file again does."""
+        """Reads the file again, because GDAL does not report a full disk at the end."""
         import rasterio
 
         try:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filters as commands use them: settings, errors, and what PROJ's triangulation files add to the map (heights,
-points outside, the distance from the piecewise linear map on the ground)."""
+"""Use of the filters by the commands: settings, errors, and the additions of PROJ's triangulation files to the map
+(heights, points outside, the distance from the piecewise linear map on the ground)."""
 
 from dataclasses import dataclass, replace
 
@@ -20,10 +20,10 @@ MASK = "vtkValidPointMask"
 
 @dataclass
 class Settings:
-    """How the map is made from the meshes."""
+    """The options of the map."""
 
     system: str = ""
-    """A key of SYSTEMS; empty: Smooth, of triangulation files Linear, which is their official meaning."""
+    """A key of SYSTEMS. If empty, Smooth; for triangulation files Linear, which is their official meaning."""
     incenter: bool = False
     linear_where_discordant: bool = False
     mask_invalid: bool = False
@@ -36,7 +36,8 @@ class Settings:
         center = CENTERS["incenter" if self.incenter else "centroid"]
         configure(algorithm, SYSTEMS[system or self.system or "smooth"], center, self.linear_where_discordant)
         algorithm.SetMaskInvalidTriangles(self.mask_invalid)
-        algorithm.SetTolerance(self.tolerance)
+        if hasattr(algorithm, "SetTolerance"):
+            algorithm.SetTolerance(self.tolerance)
 
 
 def run(algorithm, name=""):
@@ -97,15 +98,22 @@ class PointMap:
         return algorithm
 
     def map_data(self, data):
-        """A data object with its points moved, whose point arrays have the mask, and more as the filter is set up."""
+        """A data object with moved points, whose point arrays include the mask and others requested of the filter."""
         self.filter.SetDataObject(data)
-        result = run(self.filter, self.pair.name)
+        try:
+            result = run(self.filter, self.pair.name)
+        except Failure:
+            from . import report
+
+            # All kinds of defects; the filter reports the first only.
+            report.refuse(self.pair)
+            raise
         self.outside = self.filter.GetNumberOfOutsidePoints()
         return result
 
     def map_points(self, points):
-        """Images of points of shape (n, 2) or (n, 3), NaN where there are none, and arrays for each point by name:
-        vtkValidPointMask, what the filter is asked for, and `Fallback` for a file with a fallback strategy. Of a
+        """Images of points of shape (n, 2) or (n, 3), NaN outside, and arrays with one element per point by name:
+        vtkValidPointMask, those requested of the filter, and `Fallback` for a file with a fallback strategy. For a
         triangulation file, the third coordinate is a height."""
         shift = self.pair.shift
         with_ids = self.filter.GetComputeTriangleId()
@@ -125,7 +133,7 @@ class PointMap:
         return images, arrays
 
     def _shift(self, points, images, mask, arrays):
-        """Heights, and points outside, as PROJ maps them."""
+        """Maps heights and points outside like PROJ."""
         shift, cells = self.pair.shift, arrays["TriangleId"].astype(numpy.int64)
         flat = points[:, :2]
         if shift.fallback != "none":
@@ -145,15 +153,15 @@ class PointMap:
             images[:, 2] = numpy.where(cells >= 0, points[:, 2], numpy.nan)
             if shift.offsets is not None:
                 inside = numpy.flatnonzero(cells >= 0)
-                # By the place in the source, in both directions.
+                # By the position in the source, in both directions.
                 places = images if self.inverse else points
                 weights = shift.weights(places[inside, :2], cells[inside])
                 change = shift.interpolate(shift.offsets, weights, cells[inside])
                 images[inside, 2] += -change if self.inverse else change
 
     def _report_deviation(self, points, images):
-        """Informs of the largest distance from Linear, the official meaning of a triangulation file, in meters where
-        the coordinate reference system tells."""
+        """Informs of the largest distance from Linear, the official meaning of a triangulation file, in meters if
+        the coordinate reference system is known."""
         if not self.pair.shift or self.system == "linear" or not len(points):
             return
         linear = PointMap(self.pair, replace(self.settings, system="linear"), self.inverse).map_points(points[:, :2])[0]

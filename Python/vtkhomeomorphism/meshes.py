@@ -117,7 +117,7 @@ def _read_meshio(input):
             if input.format == "ply":
                 with open(path, "rb") as file:
                     data = file.read()
-                # Both names of the list are usual.
+                # Both names of the list are common.
                 data = data.replace(b" vertex_index\n", b" vertex_indices\n", 1)
                 mesh = meshio.ply._ply.read_buffer(io.BytesIO(data))
             else:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Options that several commands have."""
+"""Options common to several commands."""
 
 import functools
 import math
@@ -15,7 +15,7 @@ from .mapping import Settings
 
 
 class Number(click.ParamType):
-    """A finite number from a least value, itself excluded if `above`."""
+    """A finite number, at least `least`, or greater if `above`."""
 
     name = "number"
 
@@ -45,7 +45,7 @@ def quiet(command):
 
 
 def add(*options):
-    """A decorator that adds options in the order in which help shows them."""
+    """A decorator that adds options in the order of the help text."""
 
     def decorate(command):
         for option in reversed(options):
@@ -56,8 +56,8 @@ def add(*options):
 
 
 def pair_files(names, others=0):
-    """The arguments SOURCE [TARGET] ..., and the options for reading the pair. The command takes `inputs`, which has
-    the pair's files, the others, and the options."""
+    """The arguments SOURCE [TARGET] ..., and the options for reading the pair. The command takes `inputs`, with the
+    files of the pair, the other files, and the options."""
     options = add(
         click.argument("files", nargs=-1, metavar=names),
         click.option("--target-array", default="Target", metavar="NAME", show_default=True,
@@ -65,7 +65,7 @@ def pair_files(names, others=0):
         click.option("--target-uv", is_flag=True,
                      help="Take an OBJ file's texture coordinates (vt, without seams) as the target."),
         click.option("--input-format", default="", metavar="EXTENSION",
-                     help="What standard input (-) holds (default: json)."),
+                     help="Format of standard input (-), json by default."),
         click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
                      help="Of xmorph's meshes that do not fill their pictures: the size of its working picture "
                           "(resulting_size in a session's file)."),
@@ -91,7 +91,7 @@ def pair_files(names, others=0):
 
 
 def read_pair(inputs):
-    """The pair of a command's inputs. A file may be missing, or in the place of another."""
+    """The pair of the inputs of a command. Reports missing or misplaced files."""
     from . import pair
 
     try:
@@ -111,16 +111,16 @@ def map_settings(default, mask=True):
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False), default=None,
                      help=f"Coordinate system: smooth (twice continuously differentiable except at vertices), contour "
                           f"(the published construction) or linear (piecewise linear). Default: {default}."),
-        click.option("--incenter", is_flag=True, help="Let Contour's contours start at the incenter."),
+        click.option("--incenter", is_flag=True, help="Start the contours of Contour at the incenter."),
         click.option("--linear-where-discordant", is_flag=True,
-                     help="Use Linear in triangles in which Contour does not exist, instead of refusing them."),
+                     help="Map discordant triangles by Linear (Contour only) instead of refusing them."),
         click.option("--tolerance", type=Number(), default=0.0, metavar="NUMBER",
-                     help="How far outside a point may be and still be taken to the nearest point of the domain, "
+                     help="Greatest distance from the domain of a point that is mapped like the nearest point of the domain, "
                           "relative to the domain's diagonal (default: rounding only)."),
     ]
     if mask:
         options.append(click.option("--mask-invalid", is_flag=True,
-                                    help="Leave invalid triangles out instead of refusing the meshes."))
+                                    help="Mask invalid triangles instead of refusing the meshes."))
 
     def decorate(command):
         @functools.wraps(command)
@@ -141,8 +141,8 @@ def output(help, default=""):
     ]
     if default:
         options.append(click.option("--output-format", default=default, metavar="EXTENSION", show_default=True,
-                                    help="What is written to standard output (-)."))
+                                    help="Format of standard output (-)."))
     return add(*options)
 
 
-inverse = click.option("-i", "--inverse", is_flag=True, help="From the target's domain to the source's.")
+inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the target's domain to the source's.")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pairs of triangulations: how commands read them from files, and write them."""
+"""Pairs of triangulations, read from files and written to files."""
 
 from dataclasses import dataclass, field
 from typing import Optional
@@ -25,11 +25,11 @@ class Pair:
     names: list
     """Their files."""
     shift: Optional[tinshift.Shift] = None
-    """If they come from a triangulation file."""
+    """The shift, for a pair from a triangulation file."""
     extents: Optional[list] = None
-    """Of xmorph's meshes: the largest x and y of their pictures, or None where the file does not tell."""
+    """For xmorph meshes: the largest x and y of their images, or None if unknown."""
     metadata: dict = field(default_factory=dict)
-    """For a triangulation file that is written."""
+    """Metadata for writing a triangulation file."""
 
     @property
     def source(self):
@@ -116,7 +116,7 @@ def _read_one(name, options):
 
 
 def read_mesh(name, input_format=""):
-    """A single mesh: of a triangulation file the source."""
+    """A single mesh; for a triangulation file, the source."""
     with _open(name, input_format) as file:
         if file.format not in ("json", "mesh"):
             return meshes.read(file)
@@ -138,7 +138,7 @@ def _read_grid(file):
 
 
 def _upright(grid, bottom=None):
-    """With y upwards."""
+    """Converts to y upwards."""
     bottom = xmorph.extent(grid)[1] if bottom is None else bottom
     return numpy.stack((grid[..., 0], bottom - grid[..., 1]), axis=-1)
 
@@ -164,7 +164,7 @@ def _read_xmorph(files, options):
 
 
 def _join_points(pair):
-    """Of meshes whose triangles have points of their own: makes those one that coincide in both meshes."""
+    """Merges points that coincide in both meshes, for meshes whose triangles do not share points."""
     points = [meshes.points_of(mesh) for mesh in pair.meshes]
     triangles = [meshes.triangles_of(mesh) for mesh in pair.meshes]
     if points[0].shape != points[1].shape or not numpy.array_equal(*triangles):
@@ -179,7 +179,7 @@ def _join_points(pair):
 
 
 def fit_to_pictures(pair, sizes):
-    """Scales xmorph's meshes to their pictures, whose widths and heights in pixels are given."""
+    """Scales xmorph meshes to their images of given width and height in pixels."""
     if pair.extents is None:
         return
     for side, (size, end) in enumerate(zip(sizes, pair.extents)):

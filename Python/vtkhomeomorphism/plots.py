@@ -14,7 +14,7 @@ INVALID, DISCORDANT, DUPLICATE, EDGE = "#d91a1a", "#fabf4d", "#990099", "#33496f
 
 
 def new_figure(width, height):
-    """A figure of a size in pixels, whose text stays text."""
+    """A figure of a size in pixels, with text stored as text."""
     import_extra("matplotlib", "python3-matplotlib", "Drawing")
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -39,7 +39,7 @@ def add_panel(figure, box, title, bounds):
 
 
 def flatten(points):
-    """The two coordinates in which points are spread most, and points that are not finite in the middle."""
+    """The two coordinates with the largest extent. Non-finite points are moved to the middle."""
     finite = numpy.isfinite(points).all(axis=1)
     low, high = points[finite].min(axis=0), points[finite].max(axis=0)
     extent = high - low
@@ -74,7 +74,7 @@ def draw_edges(axes, polygons, color=EDGE, width=0.7, **options):
 
 
 def draw_cells(axes, polygons, ids, color, marker=0.0):
-    """Fills some polygons; each also gets a marker of that size, which shows where there is no area."""
+    """Fills polygons. Each also gets a marker of that size, so that degenerate polygons are visible."""
     from matplotlib.collections import PolyCollection
 
     chosen = [polygons[i] for i in ids if i < len(polygons) and len(polygons[i])]

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of points as text. All fields stay the texts that they are, to the last digit, unless they are
-coordinates that have changed."""
+"""Tables of points as text. All fields keep their text, to the last digit, except changed coordinates."""
 
 import csv
 import itertools
@@ -28,7 +27,7 @@ _QUOTED_OR_TAB = re.compile(r'("(?:[^"]|"")*")|\t')
 
 
 def _number(text):
-    """A number, or None: what Python alone takes for one is not meant as such."""
+    """A number, or None. Excludes notations that only Python accepts."""
     try:
         value = float(text)
     except ValueError:
@@ -69,7 +68,7 @@ class Table:
             self.separator = max(counts, key=counts.get) if any(counts.values()) else " "
             lines = itertools.chain([first] if first else [], lines)
             if self.separator == " ":
-                # Tabs separate, too, but not within quotes.
+                # Tabs are separators too, except within quotes.
                 lines = (_QUOTED_OR_TAB.sub(lambda m: m[1] or " ", line).strip() + "\n" for line in lines)
             reader = csv.reader(lines, delimiter=self.separator, skipinitialspace=self.separator == " ", strict=True)
             self.rows, numbers = [], []
@@ -125,7 +124,7 @@ class Table:
             self.columns += [place for place in map(self._find, HEIGHT_NAMES) if place is not None][:1]
 
     def _find(self, name):
-        """The column of a name; names may differ in their case only."""
+        """The column with a name. Names may differ in case only."""
         first = self.rows[0]
         if name in first:
             return first.index(name)
@@ -135,7 +134,7 @@ class Table:
     def _choose_named(self, columns):
         first, self.columns = self.rows[0], []
         for name in columns.split(","):
-            # A number is never a name: in a table without names it may well be a coordinate.
+            # A number is not a name: in a table without names it may be a coordinate.
             is_number = re.fullmatch(r"\s*\d+\s*", name)
             place = int(name) - 1 if is_number else self._find(name)
             if place is None or not 0 <= place < len(first):
@@ -174,7 +173,7 @@ class Table:
     def _has_decimal_commas(self, row):
         if self.separator != ",":
             return any("," in field and _number(field.replace(",", ".", 1)) is not None for field in row)
-        # Where commas were taken for separators, two numbers are left in one field.
+        # If the separator was guessed wrong, one field contains two numbers.
         parts = [re.split("[; \t]", field.strip("; \t"), 1) for field in row]
         return any(len(part) == 2 and None not in map(_number, part) for part in parts)
 
@@ -190,7 +189,7 @@ class Table:
         )
 
     def move(self, points):
-        """Replaces the coordinates; those that do not change keep their text."""
+        """Replaces the coordinates. Unchanged ones keep their text."""
         for k, column in enumerate(self.columns):
             changed = numpy.flatnonzero(points[:, k] != self.coordinates[:, k])
             for i, value in zip(changed.tolist(), points[changed, k].tolist()):
@@ -198,7 +197,7 @@ class Table:
         self.coordinates = points
 
     def add(self, name, values):
-        """Adds columns of an array of shape (n,) or (n, k), in the place of those of the same names."""
+        """Adds columns from an array of shape (n,) or (n, k), replacing those with the same names."""
         values = numpy.asarray(values)
         if values.ndim == 2:
             for k in range(values.shape[1]):
@@ -216,7 +215,7 @@ class Table:
             row.append(text)
 
     def add_columns_to(self, data):
-        """Adds the columns that are not coordinates to a data set's point arrays, as numbers where all are."""
+        """Adds the columns that are not coordinates to the point arrays of a data set, as numbers if all values are."""
         arrays = data.GetPointData()
         for column in range(len(self.rows[0])):
             if column in self.columns:
@@ -237,7 +236,7 @@ class Table:
             arrays.AddArray(array)
 
     def write(self, output):
-        """Writes the table with the separator that it came with."""
+        """Writes the table with its original separator."""
         rows = itertools.chain([self.names] if self.names is not None else [], self.rows)
         with open(output.path, "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
             file.writelines(comment + "\n" for comment in self.comments)

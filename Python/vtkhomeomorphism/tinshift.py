@@ -16,12 +16,12 @@ DEEPEST = 100
 
 
 class Invalid(Exception):
-    """What is wrong with a file."""
+    """A defect of a file."""
 
 
 @dataclass
 class Shift:
-    """What a triangulation file says."""
+    """The contents of a triangulation file."""
 
     source: numpy.ndarray
     """Vertices in the source, of shape (n, 2)."""
@@ -53,8 +53,8 @@ class Shift:
         return numpy.einsum("ij,ij...->i...", weights, corners)
 
     def nearest(self, points, inverse=False):
-        """For each point outside, the triangle that extends to it by the file's fallback strategy; -1 if there is
-        none. Degenerate triangles are passed over, as by PROJ."""
+        """For each point outside, the triangle that the fallback strategy of the file selects; -1 if there is
+        none. Degenerate triangles are skipped, as in PROJ."""
         corners = (self.target if inverse else self.source)[self.triangles]
         squared = ((corners - numpy.roll(corners, -1, axis=1)) ** 2).sum(axis=2)
         usable = (squared >= 1e-10).all(axis=1)
@@ -71,7 +71,7 @@ class Shift:
                     with numpy.errstate(divide="ignore", invalid="ignore"):
                         t = ((some - a) * (b - a)).sum(axis=2) / squared[:, k]
                         foot = a + t.clip(0, 1)[..., None] * (b - a)
-                    # At the ends exactly the vertex, so that triangles that share it are equally far.
+                    # Exactly the vertex at the ends, so that triangles that share it are equally far.
                     foot = numpy.where((t >= 1)[..., None], b, foot)
                     distance = numpy.fmin(distance, ((some - foot) ** 2).sum(axis=2))
             distance[:, ~usable] = numpy.inf
@@ -87,7 +87,7 @@ class Shift:
 
 
 def _depth_of(text):
-    """How deeply the brackets of a JSON text are nested, outside strings."""
+    """The nesting depth of the brackets of a JSON text, outside strings."""
     import re
 
     depth = deepest = 0
@@ -197,7 +197,7 @@ def read(path):
 
 
 def text_of(shift):
-    """The file's text: one vertex and one triangle a line, numbers with all their digits."""
+    """The text of the file, with one vertex or triangle per line and all digits of numbers."""
     document = {"file_type": "triangulation_file", "format_version": "1.0", **shift.metadata}
     document["transformed_components"] = ["horizontal"] * shift.horizontal + ["vertical"] * bool(shift.columns)
     names, values = ["source_x", "source_y"], [shift.source]

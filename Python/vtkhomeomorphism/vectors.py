@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Vector data (GeoPackage, GeoJSON, Shapefile, FlatGeobuf) by geopandas: geometries are mapped vertex by vertex,
-attributes and layers stay."""
+attributes and layers are kept."""
 
 import math
 
@@ -59,7 +59,7 @@ def _densify(step):
 
 def map_layers(layers, map_points, densify=0.0):
     """The layers with each vertex mapped, once for all of them: `map_points` takes an array of shape (n, 3) and returns
-    images, NaN outside. Returns the layers, and the number of features that are not within the domain as a whole."""
+    images, NaN outside. Returns the layers, and the number of features that are not entirely inside the domain."""
     from shapely.ops import transform
 
     divided, chunks = {}, []

@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's readers and writers. Run as `python -m vtkhomeomorphism.vtkfiles FILE FORMAT` it reads a file and tells
-whether that can be done: damaged files crash some of VTK's readers, or keep them busy for minutes, and so a child
-process tries first."""
+"""VTK's readers and writers. Run as `python -m vtkhomeomorphism.vtkfiles FILE FORMAT` it reads a file and reports
+success: damaged files crash some of VTK's readers or block them for minutes, so a child process tries first."""
 
 import os
 import subprocess
@@ -30,7 +29,7 @@ def capture_messages():
     """Keeps VTK's errors and warnings from standard error."""
 
     def collect(caller, event, text=""):
-        # VTK's prefix tells the place in the C++ source.
+        # VTK's prefix contains the position in the C++ source.
         _messages.append(text.split("): ", 1)[-1].strip())
 
     collect.CallDataType = "string0"
@@ -47,7 +46,7 @@ def take_messages():
 
 
 def _read(path, format):
-    """Data and errors. Warnings are errors: many readers only warn of data that is missing."""
+    """Data and errors. Warnings count as errors, because many readers only warn of missing data."""
     take_messages()
     if format == "vtk":
         reader = legacy.vtkGenericDataObjectReader()
@@ -80,8 +79,7 @@ def leaves_of(data):
 
 
 def _find_bad_cell(data):
-    """What is wrong with the cells' point ids, which no reader of VTK looks at: otherwise memory of others would be
-    read."""
+    """A defect of the point ids of cells. VTK's readers do not check them, and invalid ids would be read out of bounds."""
     for leaf in leaves_of(data):
         first = 0
         for name in ("Verts", "Lines", "Polys", "Strips", "Cells"):
@@ -132,8 +130,8 @@ def extension_for(data):
 
 
 def write(data, output):
-    """Writes a data object to a .vtk, or to the XML file of its type. (Via memory: on full disks some of VTK 9.1's
-    writers crash, others do not notice.)"""
+    """Writes a data object to a .vtk, or to the XML file of its type. (Via memory, because on full disks some writers
+    of VTK 9.1 crash and others do not report an error.)"""
     right = extension_for(data)
     if output.format not in ("vtk", right):
         raise Failure(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes of xmorph and gtkmorph: grids of quadrilaterals laid over two photographs by hand. Rows run from the top,
+"""Meshes of xmorph and gtkmorph: grids of quadrilaterals placed on two photographs by hand. Rows run from the top,
 y downwards."""
 
 import numpy
@@ -41,14 +41,14 @@ def extent(grid):
 
 
 def fills_picture(grid):
-    """Whether the rim is the rectangle from the origin to the largest x and y, to a pixel of the hand."""
+    """Whether the boundary is the rectangle from the origin to the largest x and y, up to one pixel."""
     end = extent(grid)
     rims = ((grid[0, :, 1], 0), (grid[-1, :, 1], end[1]), (grid[:, 0, 0], 0), (grid[:, -1, 0], end[0]))
     return all((numpy.abs(rim - value) <= 0.005 * end.max()).all() for rim, value in rims)
 
 
 def _smallest_angle(grid, triangles):
-    """Of each triangle (..., 3), the smallest angle in the grid; negative where it is turned over."""
+    """The smallest angle of each triangle (..., 3) in the grid; negative if it is flipped."""
     corners = grid.reshape(-1, 2)[triangles]
     u = numpy.roll(corners, -1, axis=-2) - corners
     v = numpy.roll(corners, -2, axis=-2) - corners
@@ -57,7 +57,7 @@ def _smallest_angle(grid, triangles):
 
 
 def triangulate(first, second):
-    """Cuts each quadrilateral along the diagonal that has the better smallest angle in both grids (y upwards)."""
+    """Divides each quadrilateral along the diagonal with the larger smallest angle in both grids (y upwards)."""
     if first.shape != second.shape:
         raise ValueError("the two meshes do not have the same numbers of columns and rows.")
     rows, columns = first.shape[:2]

@@ -3,6 +3,7 @@
 """The Python package agrees with computations by numpy and scipy."""
 
 import doctest
+import tempfile
 import unittest
 
 import numpy
@@ -10,9 +11,15 @@ import scipy.interpolate
 import scipy.ndimage
 import scipy.spatial
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import vtkhomeomorphism
 from vtkhomeomorphism import Homeomorphism, arrays
+
+try:
+    from vtkmodules.vtkIOHDF import vtkHDFReader, vtkHDFWriter
+except ImportError:
+    vtkHDFWriter = None
 
 
 def make_pair(count=60, seed=5, move=0.02):
@@ -195,6 +202,33 @@ class Arrays(unittest.TestCase):
         self.assertIn("carry data", vtkhomeomorphism.vtkDifferentiableHomeomorphism.__doc__)
         with self.assertRaises(AttributeError):
             vtkhomeomorphism.nothing
+
+
+class Files(unittest.TestCase):
+    @unittest.skipUnless(vtkHDFWriter, "this VTK writes no VTKHDF files")
+    def test_a_mesh_from_a_vtkhdf_file(self):
+        """vtkHDFReader gives cells in a storage of their own."""
+        sphere = vtkSphereSource()
+        sphere.Update()
+        with tempfile.TemporaryDirectory() as folder:
+            writer = vtkHDFWriter()
+            writer.SetInputConnection(sphere.GetOutputPort())
+            writer.SetFileName(folder + "/sphere.vtkhdf")
+            writer.Write()
+            reader = vtkHDFReader()
+            reader.SetFileName(folder + "/sphere.vtkhdf")
+            reader.Update()
+            mesh = reader.GetOutputDataObject(0)
+        self.assertEqual(mesh.GetNumberOfPolys(), 96)
+        identity = vtkhomeomorphism.vtkDifferentiableHomeomorphism()
+        identity.SetSourceData(mesh)
+        identity.SetTargetData(sphere.GetOutput())
+        identity.SetDataObject(mesh)
+        identity.Update()
+        self.assertEqual(identity.GetNumberOfOutsidePoints(), 0)
+        numpy.testing.assert_allclose(
+            vtk_to_numpy(identity.GetOutputDataObject(0).GetPoints().GetData()),
+            vtk_to_numpy(mesh.GetPoints().GetData()), rtol=0, atol=1e-6)
 
 
 if __name__ == "__main__":

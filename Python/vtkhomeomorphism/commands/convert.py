@@ -28,9 +28,9 @@ def describe(metadata, input_crs, output_crs):
 @options.pair_files("SOURCE [TARGET]")
 @options.output("The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a point "
                 "array; with --target-output the source alone: .vtp .vtk .obj .off .ply.", "json")
-@click.option("--target-output", default="", metavar="FILE", help="Write the target to a file of its own.")
+@click.option("--target-output", default="", metavar="FILE", help="Write the target to a separate file.")
 @crs_options
-@click.option("--mask-invalid", is_flag=True, help="Leave invalid triangles out of a triangulation file.")
+@click.option("--mask-invalid", is_flag=True, help="Drop invalid triangles from a triangulation file.")
 @options.quiet
 def command(inputs, output, force, output_format, target_output, output_array, input_crs, output_crs, mask_invalid):
     """Write a pair in another format."""
@@ -43,7 +43,7 @@ def command(inputs, output, force, output_format, target_output, output_array, i
     both = options.read_pair(inputs)
     describe(both.metadata, input_crs, output_crs)
     if first.format == "json" and not target_output:
-        # PROJ does not look.
+        # PROJ does not check this.
         both = report.require_map(both, mask_invalid)
     with contextlib.ExitStack() as stack:
         path = stack.enter_context(first)

@@ -33,7 +33,7 @@ class Coordinates:
 @click.command("coordinates")
 @click.argument("files", nargs=2, metavar="MESH DATA")
 @click.option("--input-format", default="json", metavar="EXTENSION", show_default=True,
-              help="What the mesh is if it comes from standard input.")
+              help="Format of a mesh from standard input.")
 @data_options
 @options.map_settings("smooth")
 @options.quiet

@@ -59,7 +59,7 @@ def read_close_up(text):
 @options.pair_files("SOURCE [TARGET]")
 @options.output("The figure: .png .svg .pdf, or - for standard output.", "png")
 @options.map_settings("smooth")
-@click.option("--all-systems", is_flag=True, help="Draw a panel for each of the systems.")
+@click.option("--all-systems", is_flag=True, help="Draw one panel per coordinate system.")
 @click.option("--grid", type=options.Number(1, most=500, whole=True), default=16, metavar="NUMBER", show_default=True,
               help="Squares of the grid along the longer side.")
 @click.option("--contours", is_flag=True, help="Draw each mesh's own triangular coordinates (contours and rings) "
@@ -74,7 +74,7 @@ def command(inputs, output, force, output_format, settings, all_systems, grid, c
     """Draw a grid, or the contours, on the source and mapped onto the target. The meshes are in a plane."""
     close_up = read_close_up(close_up)
     target = Output(output, output_format, force, plots.FORMATS, "a figure")
-    both = report.require_map(options.read_pair(inputs), settings.mask_invalid, masks=True)
+    both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     raster = None
     if image:
         with Input(image) as file:
@@ -90,7 +90,7 @@ def command(inputs, output, force, output_format, settings, all_systems, grid, c
     lines = grid_lines(plots.bounds_of(points[0], 0.0), grid)
     maps = [PointMap(replace(both, shift=None), replace(settings, system=name)) for name in systems]
     mapped = [m.map_points(lines.reshape(-1, 2))[0].reshape(lines.shape) for m in maps]
-    # The source's lines end where the domain ends.
+    # Lines of the source end at the boundary of the domain.
     shown = numpy.where(numpy.isnan(mapped[0]), numpy.nan, lines)
     panels = [("Source", 0, systems[-1], shown)]
     panels += [(name.capitalize(), 1, name, drawn) for name, drawn in zip(systems, mapped)]

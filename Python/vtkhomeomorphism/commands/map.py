@@ -20,10 +20,10 @@ from ..mapping import PointMap
               help="Divide the segments of vector data so that none is longer.")
 @click.option("-j", "--jacobian", is_flag=True, help="Add the derivative at each point: Jacobian, 9 numbers row by row.")
 @click.option("--determinant", is_flag=True, help="Add the ratio of areas at each point: JacobianDeterminant.")
-@click.option("--triangle-id", is_flag=True, help="Add the number of each point's triangle: TriangleId.")
+@click.option("--triangle-id", is_flag=True, help="Add the cell id of each point's triangle: TriangleId.")
 @click.option("--transform-all-vectors", is_flag=True, help="Transform all arrays of 3, 6 and 9 components by the "
               "derivative, not only the active vectors, normals and tensors.")
-@click.option("--keep-vectors", is_flag=True, help="Leave vectors, normals and tensors as they are.")
+@click.option("--keep-vectors", is_flag=True, help="Keep the components of vectors, normals and tensors.")
 @options.quiet
 def command(inputs, data, settings, inverse, densify, jacobian, determinant, triangle_id, transform_all_vectors,
             keep_vectors):
@@ -32,8 +32,8 @@ def command(inputs, data, settings, inverse, densify, jacobian, determinant, tri
     DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl),
     VTK's (.vtp .vtu .vts .vtr .vti .vtm .vtk), or an image, whose pixels move as points (to warp it, use dhm warp).
 
-    Points outside the domain become nan and are marked 0 in vtkValidPointMask; features outside become empty. Of a
-    PROJ triangulation file, heights (a third coordinate) and the fallback strategy count as PROJ has them."""
+    Points outside the domain become nan and are marked 0 in vtkValidPointMask; features outside become empty. For a
+    PROJ triangulation file, heights (a third coordinate) and the fallback strategy are those of PROJ."""
     pair = options.read_pair(inputs)
     work = PointMap(pair, settings, inverse)
     work.filter.SetComputeJacobian(jacobian)

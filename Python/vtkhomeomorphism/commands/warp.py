@@ -18,7 +18,7 @@ background_option = click.option(
 @options.pair_files("SOURCE [TARGET] IMAGE", others=1)
 @options.output("The warped image: .png .jpg .tif .ppm .vti, or - for standard output.", "png")
 @click.option("--image-format", default="png", metavar="EXTENSION", show_default=True,
-              help="What the image is if it comes from standard input.")
+              help="Format of an image from standard input.")
 @options.map_settings("smooth; for a PROJ triangulation file linear")
 @options.inverse
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
@@ -37,7 +37,7 @@ def command(inputs, output, force, output_format, image_format, settings, invers
     upwards), or, for xmorph's meshes, in their own units. A GeoTIFF is mapped in its coordinate reference system,
     piece by piece, and becomes a GeoTIFF.
 
-    Each pixel of the result is looked up where the exact inverse says, and interpolated linearly."""
+    Each pixel of the result is interpolated linearly at its exact preimage."""
     size = options.read_size(size)
     target = Output(output, output_format, force, images.WRITE, "an image")
     color = images.read_background(background, target.format)

@@ -8,8 +8,6 @@
 
 #include "Pipeline/DiagnosticMessages.h"
 
-#include "../../../Filters/Program/XmorphMesh.h"
-
 #include "vtkAlgorithmOutput.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
@@ -242,33 +240,6 @@ std::string GoodFile()
   return content;
 }
 
-Outcome ReadXmorph(const char* content)
-{
-  const std::string name = TemporaryFile("mesh");
-  if (content)
-  {
-    WriteFile(name, content);
-  }
-  try
-  {
-    XmorphMesh mesh = ReadXmorphMesh(name);
-    FitToPicture(mesh, 100, 100);
-    std::remove(name.c_str());
-    return { "", false };
-  }
-  catch (const std::runtime_error& error)
-  {
-    std::string text = error.what();
-    const std::size_t path = text.find(name);
-    if (path != std::string::npos)
-    {
-      text.replace(path, name.size(), "(the file)");
-    }
-    std::remove(name.c_str());
-    return { text };
-  }
-}
-
 /// A pair on which the transform is asked; what an outside point's image is.
 Outcome AskTransform(vtkHomeomorphismTransform* transform, bool taken)
 {
@@ -427,24 +398,6 @@ std::vector<BadInput> Table()
       WriteFile(name, "");
       return RunWithFile(name);
     });
-  add(files, "An xmorph mesh (example) does not exist", { "Cannot open (the file)" },
-    "Give the right name.", []() { return ReadXmorph(nullptr); });
-  add(files, "An xmorph mesh is something else", { "line 1: expected \"M2\"" },
-    "Give an xmorph mesh.", []() { return ReadXmorph("GIF89a\x01\x02"); });
-  add(files, "An xmorph mesh is too small", { "line 2: expected the numbers of columns and rows" },
-    "Give a grid of at least 2 x 2 points.", []() { return ReadXmorph("M2\n1 5\n"); });
-  add(files, "An xmorph mesh claims more points than can be", { "line 2", "columns and rows" },
-    "The file is corrupt: write or copy it again.",
-    []() { return ReadXmorph("M2\n2000000000 2000000000\n0 0\n"); });
-  add(files, "An xmorph mesh is cut off", { "line 5: expected x and y of point 2" },
-    "The file is corrupt: write or copy it again.",
-    []() { return ReadXmorph("M2\n2 2\n0 0 0\n1 0 0\n"); });
-  add(files, "An xmorph mesh has words for numbers", { "line 4: expected x and y of point 1" },
-    "The file is corrupt: write or copy it again.",
-    []() { return ReadXmorph("M2\n2 2\n0 0 0\nnan inf 0\n0 1 0\n1 1 0\n"); });
-  add(files, "An xmorph mesh has no extent", { "no extent" },
-    "The file is corrupt: write or copy it again.",
-    []() { return ReadXmorph("M2\n2 2\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n"); });
 
   // --- Two meshes that are not the same
   add(pairs, "Numbers of points differ", { "25", "26", sameMesh }, "Refused.",

@@ -422,7 +422,7 @@ TEST(CubicElement, RightAnglesChangeNothingButRounding)
     const Vector2 normal =
       left ? Vector2{ -tangent.y, tangent.x } : Vector2{ tangent.y, -tangent.x };
     CubicElement element{ {}, random.Matrix(1.0), {}, {}, {} };
-    // Start, right angle and third corner, anticlockwise.
+    // Start, right angle and third corner, counterclockwise.
     const int start = n % 3;
     const int corner = left ? NextCorner(start) : PreviousCorner(start);
     const int third = 3 - start - corner;
