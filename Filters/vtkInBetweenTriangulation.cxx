@@ -5,14 +5,11 @@
 
 #include "Construction/InBetweenPath.h"
 #include "Kernel/ExactSign.h"
-#include "Pipeline/DiagnosticMessages.h"
-#include "Pipeline/HomeomorphismCache.h"
+#include "Mesh/Homeomorphism.h"
 #include "Pipeline/Requests.h"
 
 #include "vtkCellData.h"
-#include "vtkErrorCode.h"
 #include "vtkInformation.h"
-#include "vtkInformationIntegerKey.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -20,6 +17,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <array>
@@ -30,12 +28,6 @@
 using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkInBetweenTriangulation);
-
-class vtkInBetweenTriangulation::Internals
-{
-public:
-  HomeomorphismCache Cache;
-};
 
 namespace
 {
@@ -139,52 +131,36 @@ private:
 } // namespace
 
 vtkInBetweenTriangulation::vtkInBetweenTriangulation()
-  : Internal(new Internals)
 {
   this->SetNumberOfInputPorts(2);
 }
 
 vtkInBetweenTriangulation::~vtkInBetweenTriangulation() = default;
 
-void vtkInBetweenTriangulation::SetSourceData(vtkPolyData* source)
+vtkPolyData* vtkInBetweenTriangulation::GetOutput(int port)
 {
-  this->SetInputData(0, source);
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(port));
 }
 
-void vtkInBetweenTriangulation::SetTargetData(vtkPolyData* target)
+int vtkInBetweenTriangulation::FillOutputPortInformation(int, vtkInformation* info)
 {
-  this->SetInputData(1, target);
-}
-
-int vtkInBetweenTriangulation::FillInputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(RequestedWhole(), 1);
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
   return 1;
 }
 
-int vtkInBetweenTriangulation::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkInBetweenTriangulation::RequestDataObject(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
   return 1;
 }
 
-int vtkInBetweenTriangulation::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  RequestWhole(inputs[0]->GetInformationObject(0));
-  RequestWhole(inputs[1]->GetInformationObject(0));
-  return 1;
-}
-
-int vtkInBetweenTriangulation::RequestData(
+int vtkInBetweenTriangulation::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputs);
-  this->SetErrorCode(vtkErrorCode::NoError);
   this->UsedPath = STRAIGHT;
   this->RotationAngle = 0.0;
   this->ScaleFactor = 1.0;
@@ -196,15 +172,9 @@ int vtkInBetweenTriangulation::RequestData(
   this->LastFoldTime = 0.0;
   this->NumberOfFoldedTriangles = 0;
 
-  HomeomorphismOptions options;
-  options.System = CoordinateSystem::Linear;
-  options.MaskInvalidTriangles = this->MaskInvalidTriangles;
-  const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(source, target, options);
-  ReportProblems(this, this->Internal->Cache.GetProblems());
+  const std::shared_ptr<const Homeomorphism> map = this->GetMap(source, target);
   if (!map)
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
   if (!IsFirstPiece(request, outputs))
@@ -321,7 +291,6 @@ int vtkInBetweenTriangulation::RequestData(
   output->ShallowCopy(source);
   output->SetPoints(points);
   output->GetCellData()->AddArray(folded);
-  this->UpdateProgress(1.0);
   return 1;
 }
 
@@ -330,7 +299,6 @@ void vtkInBetweenTriangulation::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Time: " << this->Time << "\n";
   os << indent << "Path: " << this->Path << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
   os << indent << "UsedPath: " << this->UsedPath << "\n";
   os << indent << "RotationAngle: " << this->RotationAngle << "\n";
   os << indent << "ScaleFactor: " << this->ScaleFactor << "\n";

@@ -22,9 +22,8 @@
  * Folds are defined if both meshes are planar, in planes parallel to the same two axes
  * (GetPlanar). Other meshes move along straight lines, and no folds are reported.
  *
- * The meshes are validated as in vtkDifferentiableHomeomorphism, and requested whole; the output is
- * part of piece 0. Points are processed in parallel (vtkSMPTools); results do not depend on the
- * number of threads.
+ * See vtkHomeomorphismAlgorithm for the meshes and for MaskInvalidTriangles, the only one of its
+ * options that matters here: triangles left out have part neither in the path nor in the folds.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
  */
@@ -33,15 +32,13 @@
 #define vtkInBetweenTriangulation_h
 
 #include "vtkFiltersHomeomorphismModule.h" // for the export macro
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkHomeomorphismAlgorithm.h"
 
-#include <memory> // for the internals
-
-class VTKFILTERSHOMEOMORPHISM_EXPORT vtkInBetweenTriangulation : public vtkPolyDataAlgorithm
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkInBetweenTriangulation : public vtkHomeomorphismAlgorithm
 {
 public:
   static vtkInBetweenTriangulation* New();
-  vtkTypeMacro(vtkInBetweenTriangulation, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkInBetweenTriangulation, vtkHomeomorphismAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// The paths of the points.
@@ -58,18 +55,6 @@ public:
   };
 
   ///@{
-  /// The source mesh, input port 0.
-  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
-  void SetSourceData(vtkPolyData* source);
-  ///@}
-
-  ///@{
-  /// The target mesh, input port 1.
-  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
-  void SetTargetData(vtkPolyData* target);
-  ///@}
-
-  ///@{
   /// How far the points have moved, from 0 (the source) to 1 (the target). 0.5 by default.
   vtkSetClampMacro(Time, double, 0.0, 1.0);
   vtkGetMacro(Time, double);
@@ -80,14 +65,6 @@ public:
   /// one path.
   vtkSetClampMacro(Path, int, STRAIGHT, FEWEST_FOLDS);
   vtkGetMacro(Path, int);
-  ///@}
-
-  ///@{
-  /// See vtkDifferentiableHomeomorphism. Triangles left out have part neither in the path nor in
-  /// the folds. Off by default.
-  vtkSetMacro(MaskInvalidTriangles, bool);
-  vtkGetMacro(MaskInvalidTriangles, bool);
-  vtkBooleanMacro(MaskInvalidTriangles, bool);
   ///@}
 
   /// The path of the last update, STRAIGHT or ROTATING.
@@ -117,6 +94,12 @@ public:
   vtkGetMacro(LastFoldTime, double);
   ///@}
 
+  ///@{
+  /// The mesh at Time.
+  vtkPolyData* GetOutput() { return this->GetOutput(0); }
+  vtkPolyData* GetOutput(int port);
+  ///@}
+
   /// Number of triangles that are folded at Time: the sum of the array `Folded`.
   vtkGetMacro(NumberOfFoldedTriangles, vtkIdType);
 
@@ -124,17 +107,14 @@ protected:
   vtkInBetweenTriangulation();
   ~vtkInBetweenTriangulation() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
+  int Execute(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   double Time = 0.5;
   int Path = FEWEST_FOLDS;
-  bool MaskInvalidTriangles = false;
   int UsedPath = STRAIGHT;
   double RotationAngle = 0.0;
   double ScaleFactor = 1.0;
@@ -149,9 +129,6 @@ protected:
 private:
   vtkInBetweenTriangulation(const vtkInBetweenTriangulation&) = delete;
   void operator=(const vtkInBetweenTriangulation&) = delete;
-
-  class Internals;
-  std::unique_ptr<Internals> Internal;
 };
 
 #endif

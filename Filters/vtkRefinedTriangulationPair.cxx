@@ -5,13 +5,10 @@
 
 #include "Construction/PairRefinement.h"
 #include "Pipeline/DiagnosticMessages.h"
-#include "Pipeline/HomeomorphismCache.h"
-#include "Pipeline/Options.h"
 #include "Pipeline/Requests.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkErrorCode.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -27,12 +24,6 @@
 using namespace homeomorphism;
 
 vtkStandardNewMacro(vtkRefinedTriangulationPair);
-
-class vtkRefinedTriangulationPair::Internals
-{
-public:
-  HomeomorphismCache Cache;
-};
 
 namespace
 {
@@ -95,7 +86,6 @@ void MakeMesh(vtkPolyData* original, const Triangulation& triangulation, const R
 } // namespace
 
 vtkRefinedTriangulationPair::vtkRefinedTriangulationPair()
-  : Internal(new Internals)
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
@@ -103,54 +93,36 @@ vtkRefinedTriangulationPair::vtkRefinedTriangulationPair()
 
 vtkRefinedTriangulationPair::~vtkRefinedTriangulationPair() = default;
 
-void vtkRefinedTriangulationPair::SetSourceData(vtkPolyData* source)
+vtkPolyData* vtkRefinedTriangulationPair::GetOutput(int port)
 {
-  this->SetInputData(0, source);
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(port));
 }
 
-void vtkRefinedTriangulationPair::SetTargetData(vtkPolyData* target)
+int vtkRefinedTriangulationPair::FillOutputPortInformation(int, vtkInformation* info)
 {
-  this->SetInputData(1, target);
-}
-
-int vtkRefinedTriangulationPair::FillInputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(RequestedWhole(), 1);
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
   return 1;
 }
 
-int vtkRefinedTriangulationPair::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkRefinedTriangulationPair::RequestDataObject(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(0));
-  DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(1));
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
   return 1;
 }
 
-int vtkRefinedTriangulationPair::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  RequestWhole(inputs[0]->GetInformationObject(0));
-  RequestWhole(inputs[1]->GetInformationObject(0));
-  return 1;
-}
-
-int vtkRefinedTriangulationPair::RequestData(
+int vtkRefinedTriangulationPair::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkPolyData* source = vtkPolyData::GetData(inputs[0]);
   vtkPolyData* target = vtkPolyData::GetData(inputs[1]);
-  this->SetErrorCode(vtkErrorCode::NoError);
   this->Result = INVALID;
   this->LargestError = 0.0;
   this->NumberOfSamples = 0;
-  const std::shared_ptr<const Homeomorphism> map =
-    this->Internal->Cache.Get(source, target, GetOptions(this));
-  ReportProblems(this, this->Internal->Cache.GetProblems());
+  const std::shared_ptr<const Homeomorphism> map = this->GetMap(source, target);
   if (!map)
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
     return 0;
   }
   if (!IsFirstPiece(request, outputs))
@@ -172,19 +144,17 @@ int vtkRefinedTriangulationPair::RequestData(
       break;
     case RefinedPair::Outcome::TooManyTriangles:
       this->Result = TOO_MANY_TRIANGLES;
-      this->SetErrorCode(vtkErrorCode::UserError);
       vtkErrorMacro(<< "More than " << this->MaximumNumberOfTriangles
                     << " triangles are needed for a maximum error of " << maximumError
                     << "; the error is still " << refined.LargestError
                     << ". Increase MaximumError or MaximumNumberOfTriangles.");
-      return 0;
+      return this->Fail(MESHES_REFUSED);
     case RefinedPair::Outcome::BelowRounding:
       this->Result = BELOW_ROUNDING;
-      this->SetErrorCode(vtkErrorCode::UserError);
       vtkErrorMacro(<< "A maximum error of " << maximumError
                     << " is below the rounding of the coordinates; the error is still "
                     << refined.LargestError << ". Increase MaximumError.");
-      return 0;
+      return this->Fail(MESHES_REFUSED);
     case RefinedPair::Outcome::Aborted:
       this->Result = ABORTED;
       return 1;
@@ -197,26 +167,20 @@ int vtkRefinedTriangulationPair::RequestData(
   MeshDiagnostics problems;
   if (!TriangulationPair::Read(meshes[0], meshes[1], false, problems))
   {
-    this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro(<< "In the rounding of coordinates the finer meshes are not valid. Increase "
                      "MaximumError. "
                   << DescribeProblems(problems, MeshDiagnostic::Outcome::Refused));
-    return 0;
+    return this->Fail(MESHES_REFUSED);
   }
   this->Result = REFINED;
   vtkPolyData::GetData(outputs, 0)->ShallowCopy(meshes[0]);
   vtkPolyData::GetData(outputs, 1)->ShallowCopy(meshes[1]);
-  this->UpdateProgress(1.0);
   return 1;
 }
 
 void vtkRefinedTriangulationPair::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
-  os << indent << "DiscordantTriangles: " << this->DiscordantTriangles << "\n";
-  os << indent << "MaskInvalidTriangles: " << this->MaskInvalidTriangles << "\n";
   os << indent << "MaximumError: " << this->MaximumError << "\n";
   os << indent << "MaximumNumberOfTriangles: " << this->MaximumNumberOfTriangles << "\n";
   os << indent << "Result: " << this->Result << "\n";

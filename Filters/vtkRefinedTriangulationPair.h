@@ -24,7 +24,8 @@
  *
  * The error is measured at 595 points of each triangle, including its edges; it is not bounded in
  * between. Triangles are measured in parallel (vtkSMPTools); results do not depend on the number of
- * threads. The meshes are requested whole; the outputs are part of piece 0.
+ * threads. See vtkHomeomorphismAlgorithm for the meshes and the options of the homeomorphism.
+ * Triangles left out are no part of the finer pair.
  *
  * If MaximumError cannot be reached, the outputs are empty and an error is reported; see Results.
  *
@@ -35,15 +36,13 @@
 #define vtkRefinedTriangulationPair_h
 
 #include "vtkFiltersHomeomorphismModule.h" // for the export macro
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkHomeomorphismAlgorithm.h"
 
-#include <memory> // for the internals
-
-class VTKFILTERSHOMEOMORPHISM_EXPORT vtkRefinedTriangulationPair : public vtkPolyDataAlgorithm
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkRefinedTriangulationPair : public vtkHomeomorphismAlgorithm
 {
 public:
   static vtkRefinedTriangulationPair* New();
-  vtkTypeMacro(vtkRefinedTriangulationPair, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkRefinedTriangulationPair, vtkHomeomorphismAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// The result of the last update.
@@ -56,63 +55,17 @@ public:
     ABORTED = 4             ///< the update was aborted
   };
 
-  /// The coordinate systems; see vtkDifferentiableHomeomorphism.
-  enum CoordinateSystems
-  {
-    LINEAR = 0,
-    CONTOUR = 1,
-    SMOOTH = 2
-  };
-
-  /// The start of the contours of the Contour system.
-  enum CenterPoints
-  {
-    CENTROID = 0,
-    INCENTER = 1
-  };
-
-  /// The treatment of discordant triangles in the Contour system.
-  enum DiscordantTrianglesModes
-  {
-    REFUSE = 0,
-    USE_LINEAR = 1
-  };
-
   ///@{
-  /// The source mesh, input port 0.
-  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
-  void SetSourceData(vtkPolyData* source);
-  ///@}
-
-  ///@{
-  /// The target mesh, input port 1.
-  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
-  void SetTargetData(vtkPolyData* target);
-  ///@}
-
-  ///@{
-  /// The finer target, output port 1. The finer source is GetOutput().
+  /// The finer source and the finer target (output ports 0 and 1).
+  vtkPolyData* GetOutput() { return this->GetOutput(0); }
+  vtkPolyData* GetOutput(int port);
   vtkPolyData* GetTargetOutput() { return this->GetOutput(1); }
   ///@}
 
   ///@{
-  /// The options of the homeomorphism: LINEAR, CONTOUR or SMOOTH (default), and others. See
-  /// vtkDifferentiableHomeomorphism. Masked triangles are not part of the finer pair.
-  vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
-  vtkGetMacro(CoordinateSystem, int);
-  vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
-  vtkGetMacro(CenterPoint, int);
-  vtkSetClampMacro(DiscordantTriangles, int, REFUSE, USE_LINEAR);
-  vtkGetMacro(DiscordantTriangles, int);
-  vtkSetMacro(MaskInvalidTriangles, bool);
-  vtkGetMacro(MaskInvalidTriangles, bool);
-  vtkBooleanMacro(MaskInvalidTriangles, bool);
-  ///@}
-
-  ///@{
-  /// The greatest distance between the images of a point under the piecewise linear map of the
-  /// finer pair and under the homeomorphism, in units of the target. 0 (default) stands for 1e-4
-  /// times the diagonal of the target's bounding box.
+  /// The largest distance allowed between the image of a point by the finer pair's piecewise linear
+  /// map and by the homeomorphism, in the target's units. 0 (default) stands for 1e-4 times the
+  /// diagonal of the target's bounding box.
   vtkSetClampMacro(MaximumError, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumError, double);
   ///@}
@@ -137,18 +90,12 @@ protected:
   vtkRefinedTriangulationPair();
   ~vtkRefinedTriangulationPair() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
+  int Execute(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  int CoordinateSystem = SMOOTH;
-  int CenterPoint = CENTROID;
-  int DiscordantTriangles = REFUSE;
-  bool MaskInvalidTriangles = false;
   double MaximumError = 0.0;
   vtkIdType MaximumNumberOfTriangles = 2000000;
   int Result = REFINED;
@@ -158,9 +105,6 @@ protected:
 private:
   vtkRefinedTriangulationPair(const vtkRefinedTriangulationPair&) = delete;
   void operator=(const vtkRefinedTriangulationPair&) = delete;
-
-  class Internals;
-  std::unique_ptr<Internals> Internal;
 };
 
 #endif

@@ -12,7 +12,6 @@
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkDoubleArray.h"
-#include "vtkErrorCode.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
@@ -23,6 +22,7 @@
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <array>
@@ -133,14 +133,9 @@ vtkTriangulationPairReport::vtkTriangulationPairReport()
 
 vtkTriangulationPairReport::~vtkTriangulationPairReport() = default;
 
-void vtkTriangulationPairReport::SetSourceData(vtkPolyData* source)
+vtkPolyData* vtkTriangulationPairReport::GetOutput(int port)
 {
-  this->SetInputData(0, source);
-}
-
-void vtkTriangulationPairReport::SetTargetData(vtkPolyData* target)
-{
-  this->SetInputData(1, target);
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(port));
 }
 
 vtkTable* vtkTriangulationPairReport::GetStatistics()
@@ -161,49 +156,33 @@ double vtkTriangulationPairReport::GetStatistic(const char* column)
   return array && array->GetNumberOfTuples() > 0 ? array->GetTuple1(0) : None;
 }
 
-int vtkTriangulationPairReport::FillInputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(RequestedWhole(), 1);
-  return 1;
-}
-
 int vtkTriangulationPairReport::FillOutputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port < 2 ? "vtkPolyData" : "vtkTable");
   return 1;
 }
 
-int vtkTriangulationPairReport::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkTriangulationPairReport::RequestDataObject(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
-  {
-    DescribeTimesInOutput(inputs, 2, outputs->GetInformationObject(port));
-  }
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
+  MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
+  MakeOutput<vtkTable>(outputs->GetInformationObject(2));
+  MakeOutput<vtkTable>(outputs->GetInformationObject(3));
   return 1;
 }
 
-int vtkTriangulationPairReport::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  RequestWhole(inputs[0]->GetInformationObject(0));
-  RequestWhole(inputs[1]->GetInformationObject(0));
-  return 1;
-}
-
-int vtkTriangulationPairReport::RequestData(
+int vtkTriangulationPairReport::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const std::array<vtkPolyData*, 2> meshes{ vtkPolyData::GetData(inputs[0]),
     vtkPolyData::GetData(inputs[1]) };
-  this->SetErrorCode(vtkErrorCode::NoError);
   this->Valid = false;
 
   // Leaving invalid triangles out finds all kinds of defects, and lets the rest be measured.
   MeshDiagnostics defects;
   HomeomorphismOptions options;
-  options.System = CoordinateSystem::Linear;
+  options.System = homeomorphism::CoordinateSystem::Linear;
   options.MaskInvalidTriangles = true;
   options.DiscordantByLinear = true;
   const std::shared_ptr<const Homeomorphism> linear =
@@ -370,15 +349,12 @@ int vtkTriangulationPairReport::RequestData(
     row.Add(name + "LargestJump", continuity.LargestJump);
     this->UpdateProgress(0.05 + 0.3 * (system + 1));
   }
-  this->UpdateProgress(1.0);
   return 1;
 }
 
 void vtkTriangulationPairReport::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "CenterPoint: " << this->CenterPoint << "\n";
   os << indent << "MeasureMaps: " << this->MeasureMaps << "\n";
   os << indent << "MeasureContinuity: " << this->MeasureContinuity << "\n";
   os << indent << "Valid: " << this->Valid << "\n";

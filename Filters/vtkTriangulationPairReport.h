@@ -65,8 +65,11 @@
  * field data array `Ids` has all cell ids.
  *
  * Contour is measured with USE_LINEAR for discordant triangles. Samples are always the same points.
- * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads. The
- * meshes are requested whole, and the outputs are part of piece 0.
+ * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
+ *
+ * See vtkHomeomorphismAlgorithm for the meshes and the options. CoordinateSystem is the system of
+ * the cell arrays; the table has all. CenterPoint is that of Contour. The other options have no
+ * effect.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkJacobianContinuity
  */
@@ -75,55 +78,16 @@
 #define vtkTriangulationPairReport_h
 
 #include "vtkFiltersHomeomorphismModule.h" // for the export macro
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkHomeomorphismAlgorithm.h"
 
 class vtkTable;
 
-class VTKFILTERSHOMEOMORPHISM_EXPORT vtkTriangulationPairReport : public vtkPolyDataAlgorithm
+class VTKFILTERSHOMEOMORPHISM_EXPORT vtkTriangulationPairReport : public vtkHomeomorphismAlgorithm
 {
 public:
   static vtkTriangulationPairReport* New();
-  vtkTypeMacro(vtkTriangulationPairReport, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkTriangulationPairReport, vtkHomeomorphismAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  /// The coordinate systems; see vtkDifferentiableHomeomorphism.
-  enum CoordinateSystems
-  {
-    LINEAR = 0,
-    CONTOUR = 1,
-    SMOOTH = 2
-  };
-
-  /// Where the contours of the Contour system start.
-  enum CenterPoints
-  {
-    CENTROID = 0,
-    INCENTER = 1
-  };
-
-  ///@{
-  /// The source mesh, input port 0.
-  void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
-  void SetSourceData(vtkPolyData* source);
-  ///@}
-
-  ///@{
-  /// The target mesh, input port 1.
-  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
-  void SetTargetData(vtkPolyData* target);
-  ///@}
-
-  ///@{
-  /// The system of the cell arrays: LINEAR, CONTOUR or SMOOTH (default). The table has all.
-  vtkSetClampMacro(CoordinateSystem, int, LINEAR, SMOOTH);
-  vtkGetMacro(CoordinateSystem, int);
-  ///@}
-
-  ///@{
-  /// Where the contours of the Contour system start: CENTROID (default) or INCENTER.
-  vtkSetClampMacro(CenterPoint, int, CENTROID, INCENTER);
-  vtkGetMacro(CenterPoint, int);
-  ///@}
 
   ///@{
   /// Whether the maps are sampled: determinants, deviations and second differences. On by default.
@@ -141,8 +105,10 @@ public:
   ///@}
 
   ///@{
-  /// The outputs, after an update: the target with its arrays (port 1; the source's is
-  /// GetOutput()), the statistics (port 2) and the defects (port 3).
+  /// The outputs, after an update: source and target with their arrays (ports 0 and 1), the
+  /// statistics (port 2) and the defects (port 3).
+  vtkPolyData* GetOutput() { return this->GetOutput(0); }
+  vtkPolyData* GetOutput(int port);
   vtkPolyData* GetTargetOutput() { return this->GetOutput(1); }
   vtkTable* GetStatistics();
   vtkTable* GetDefects();
@@ -158,17 +124,12 @@ protected:
   vtkTriangulationPairReport();
   ~vtkTriangulationPairReport() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
+  int RequestDataObject(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestData(
+  int Execute(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  int CoordinateSystem = SMOOTH;
-  int CenterPoint = CENTROID;
   bool MeasureMaps = true;
   bool MeasureContinuity = true;
   bool Valid = false;
