@@ -5,6 +5,7 @@
 
 #include "Pipeline/AttributeTransformation.h"
 #include "Pipeline/CellPoints.h"
+#include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/GhostArrays.h"
 #include "Pipeline/ImageSampling.h"
 #include "Pipeline/Options.h"

@@ -216,15 +216,14 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
     {
       if (!result->Pair->GetGeometry(domain).IsPlanar())
       {
-        MeshDiagnostic problem;
-        problem.What = MeshDiagnostic::Kind::NotPlanar;
-        problem.Where = domain == Domain::Source ? "source" : "target";
-        problem.Details = "The " + problem.Where +
-          " does not lie in a plane, and the Cubic system maps plane meshes only";
-        problems.push_back(problem);
+        MeshDiagnostic diagnostic;
+        diagnostic.What = MeshDiagnostic::Kind::NotPlanar;
+        diagnostic.Where =
+          domain == Domain::Source ? MeshDiagnostic::Mesh::Source : MeshDiagnostic::Mesh::Target;
+        diagnostics.push_back(diagnostic);
       }
     }
-    if (IsRefused(problems))
+    if (IsRefused(diagnostics))
     {
       return nullptr;
     }

@@ -36,6 +36,8 @@ MeshDiagnostic::Remedy MeshDiagnostic::GetRemedy() const
       return Remedy::MovePointsOrMask;
     case Kind::Discordant:
       return Remedy::UseOtherSystem;
+    case Kind::NotPlanar:
+      return Remedy::UseSmoothSystem;
     case Kind::NearlyPlanar:
       break;
   }

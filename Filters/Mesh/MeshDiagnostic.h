@@ -54,6 +54,8 @@ struct MeshDiagnostic
     Overlapping,
     /// Triangles for which the Contour system with the centroid does not exist.
     Discordant,
+    /// The mesh is a surface, and the Cubic system maps planar meshes only.
+    NotPlanar,
     /// The points nearly lie in a plane, but the mesh is treated as a surface. Size is the largest
     /// distance from that plane, Tolerance the relative tolerance that finds points of the plane.
     NearlyPlanar
@@ -105,6 +107,8 @@ struct MeshDiagnostic
     MovePointsOrMask,
     /// Use the Smooth system, or map the triangles by the Linear system.
     UseOtherSystem,
+    /// Use the Smooth system.
+    UseSmoothSystem,
     /// Project the mesh to the plane, or use the tolerance.
     FlattenOrUseTolerance
   };

@@ -102,6 +102,8 @@ const char* GetAdvice(MeshDiagnostic::Remedy remedy)
     case Remedy::UseOtherSystem:
       return "Use the Smooth system, which takes any triangle, or map them by the Linear system "
              "(DiscordantTriangles).";
+    case Remedy::UseSmoothSystem:
+      return "Use the Smooth system, which maps surfaces too.";
     case Remedy::FlattenOrUseTolerance:
       break;
   }
@@ -126,6 +128,10 @@ std::string DescribeWhole(const MeshDiagnostic& diagnostic)
       text << "The " << GetName(diagnostic.Where) << " has " << first << " polygons and " << second
            << " points; fewer than " << Triangulation::MaximumTriangles << " and "
            << std::numeric_limits<std::int32_t>::max() << " can be numbered";
+      break;
+    case Kind::NotPlanar:
+      text << "The points of the " << GetName(diagnostic.Where)
+           << " do not lie in a plane, and the Cubic system maps planar meshes only";
       break;
     default:
       text << "The points of the " << GetName(diagnostic.Where)
@@ -154,7 +160,8 @@ const char* GetName(MeshDiagnostic::Kind kind)
   static constexpr std::array<const char*, MeshDiagnostic::NumberOfKinds> names{
     "PointCountsDiffer", "CellCountsDiffer", "TooManyTriangles", "NotTriangles", "TriangleStrips",
     "BadConnectivity", "ConnectivityDiffers", "RepeatedCorner", "NotFinite", "DegenerateTriangle",
-    "NonManifoldEdge", "NonOrientable", "Flipped", "Overlapping", "Discordant", "NearlyPlanar"
+    "NonManifoldEdge", "NonOrientable", "Flipped", "Overlapping", "Discordant", "NotPlanar",
+    "NearlyPlanar"
   };
   return names[static_cast<std::size_t>(kind)];
 }
@@ -174,9 +181,9 @@ const char* GetName(MeshDiagnostic::Outcome outcome)
 
 const char* GetName(MeshDiagnostic::Remedy remedy)
 {
-  static constexpr std::array<const char*, 10> names{ "UseSameMesh", "SplitMeshes", "Triangulate",
+  static constexpr std::array<const char*, 11> names{ "UseSameMesh", "SplitMeshes", "Triangulate",
     "ReadAgain", "UseSourceCells", "RepairOrMask", "CutOpen", "MovePointsOrMask", "UseOtherSystem",
-    "FlattenOrUseTolerance" };
+    "UseSmoothSystem", "FlattenOrUseTolerance" };
   return names[static_cast<std::size_t>(remedy)];
 }
 
