@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Images and rasters: read in windows, warped in tiles, so that only parts of large GeoTIFF files are in memory."""
 
+import io
 import math
 from dataclasses import dataclass, replace
 
@@ -17,6 +18,7 @@ from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 TILE = 2048
 MOST_PIXELS = 2**31
 """Of images that are read as a whole."""
+PILLOW_FORMATS = {"jpg": "JPEG", "jpeg": "JPEG", "png": "PNG", "bmp": "BMP", "webp": "WEBP"}
 OPAQUE = ("jpg", "jpeg", "ppm", "pgm", "pnm", "bmp")
 WRITE = PICTURES + ("vti",)
 
@@ -163,8 +165,7 @@ def _read_picture(input):
     from PIL import Image
 
     Image.MAX_IMAGE_PIXELS = None
-    kinds = {"jpg": "JPEG", "jpeg": "JPEG", "png": "PNG", "bmp": "BMP", "webp": "WEBP"}
-    with Image.open(input.path, formats=[kinds.get(input.format, "PPM")]) as image:
+    with Image.open(input.path, formats=[PILLOW_FORMATS.get(input.format, "PPM")]) as image:
         if image.width * image.height > MOST_PIXELS:
             input.fail(f"an image of {image.width} x {image.height} pixels is too large for .{input.format}.")
         raw = image.tile[0][3] if image.tile else ""
@@ -395,7 +396,9 @@ def write(pixels, output, grid=None):
     flat = pixels[:, :, 0] if bands == 1 else pixels
     if format in ("tif", "tiff"):
         tifffile = import_extra("tifffile", "python3-tifffile", f"Writing {output.name}")
-        tifffile.imwrite(output.path, flat, photometric="rgb" if bands in (3, 4) else "minisblack")
+        buffer = io.BytesIO()
+        tifffile.imwrite(buffer, flat, photometric="rgb" if bands in (3, 4) else "minisblack")
+        output.write_bytes(buffer.getbuffer())
         return
     deep = kind == numpy.uint16 and format == "png"
     if bands > (3 if format in OPAQUE else 4) or not (kind == numpy.uint8 or deep) or bands == 2 and format in OPAQUE:
@@ -412,7 +415,10 @@ def write(pixels, output, grid=None):
     from PIL import Image
 
     options = {"quality": 95} if format in ("jpg", "jpeg") else {"compress_level": 3} if format == "png" else {}
-    Image.fromarray(flat).save(output.path, **options)
+    # Written here, because Pillow does not notice full disks.
+    buffer = io.BytesIO()
+    Image.fromarray(flat).save(buffer, PILLOW_FORMATS.get(format, "PPM"), **options)
+    output.write_bytes(buffer.getbuffer())
 
 
 class TiffWriter:

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plots of pairs by matplotlib."""
 
+import io
+
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -110,4 +112,6 @@ def draw_pair(pair, invalid, discordant, duplicates):
 def save(figure, output):
     with output as place:
         metadata = {"Date": None} if place.format == "svg" else {"CreationDate": None} if place.format == "pdf" else None
-        figure.savefig(place.path, format=place.format, dpi=DPI, metadata=metadata)
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format=place.format, dpi=DPI, metadata=metadata)
+        place.write_bytes(buffer.getbuffer())
