@@ -20,29 +20,29 @@ namespace homeomorphism
 /// An edge and its two sides.
 struct MeshEdge
 {
-  /// The second is -1 on the boundary, as is the second apex.
+  /// The second triangle and apex are -1 on the boundary.
   std::array<TriangleIndex, 2> Triangles;
-  /// Its ends.
+  /// The ends of the edge.
   std::array<std::int32_t, 2> Points;
   /// The corners opposite the edge.
   std::array<std::int32_t, 2> Apexes;
 };
 
-/// The edges of a map's source, each once, in the order of their first triangle.
+/// The edges of the source of a map, each once, in the order of their first triangle.
 class EdgeCrossings
 {
 public:
-  /// Refers to the map. Its target need not exist.
+  /// Keeps a reference to the map. Its target is optional.
   explicit EdgeCrossings(const Homeomorphism& map);
 
   const std::vector<MeshEdge>& GetInteriorEdges() const { return this->InteriorEdges; }
   const std::vector<MeshEdge>& GetBoundaryEdges() const { return this->BoundaryEdges; }
 
-  /// The crossing at a proportion of an interior edge's length. The image's axes follow from the
-  /// target, if there is one, or from the map's values.
+  /// The crossing at a proportion of the length of an interior edge. The axes of the image follow
+  /// from the target if there is one, otherwise from the values of the map.
   LineCrossing GetCrossing(std::size_t edge, double proportion, const MapUnderTest& map) const;
 
-  /// The jump at a crossing of the edge by the map's closed form.
+  /// The jump at a crossing of the edge, from the closed form of the map.
   JacobianJump GetExactJump(std::size_t edge, const LineCrossing& crossing) const;
 
   Vector3 GetPosition(Domain domain, std::int32_t point) const;

@@ -175,8 +175,8 @@ JacobianJump InnerLines::GetExactJump(TriangleIndex triangle, FeatureKind kind, 
     none.Jump = none.Normal = none.Tangential = none.Angle = none.Stretch = 0.0;
     return none;
   }
-  // Corners follow each other counterclockwise, so to the left of the way to corner k lies the
-  // corner before it, the other end of the edge that ends in corner k.
+  // Corners are counterclockwise. To the left of the segment to corner k lies the corner before it,
+  // the other end of the edge that ends in corner k.
   const Jacobian left =
     this->Map.GetJacobian(Domain::Source, triangle, { NextCorner(number) + 1, 1.0, t });
   const Jacobian right =

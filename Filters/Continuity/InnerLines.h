@@ -14,11 +14,11 @@
 namespace homeomorphism
 {
 
-/// The inner lines of a map's source, whatever the map's own coordinate system is.
+/// The inner lines of the source of a map, independently of the coordinate system of the map.
 class InnerLines
 {
 public:
-  /// Refers to the map. Its target need not exist. @a center is the center of the Contour system.
+  /// Keeps a reference to the map, whose target is optional. @a center: for the Contour system.
   InnerLines(const Homeomorphism& map, CenterPoint center)
     : Map(map)
     , Center(center)
@@ -38,13 +38,13 @@ public:
   LineCrossing GetCrossing(
     TriangleIndex triangle, FeatureKind kind, int number, double t, const MapUnderTest& map) const;
 
-  /// The jump across the line by the map's closed form: that of the Contour system at spokes.
-  /// Nowhere else within a triangle is there one, in any system.
+  /// The jump across the line from the closed form of the map: that of the Contour system at
+  /// spokes. All other inner lines have no jump in any system.
   JacobianJump GetExactJump(TriangleIndex triangle, FeatureKind kind, int number, double t,
     const LineCrossing& crossing) const;
 
 private:
-  /// In the triangle's frame.
+  /// In the frame of the triangle.
   struct PointOnLine
   {
     Vector2 Position;
@@ -66,7 +66,7 @@ private:
 /// direction is a unit vector.
 double DistanceToExit(const TriangleShape& shape, const Vector2& point, const Vector2& direction);
 
-/// A direction of a triangle's frame as a direction of the input's space.
+/// Transforms a direction from the frame of a triangle to the space of the input.
 Vector3 ToSpace(const MeshGeometry& geometry, TriangleIndex triangle, const Vector2& direction);
 
 } // namespace homeomorphism

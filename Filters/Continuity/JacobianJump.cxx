@@ -46,15 +46,16 @@ double Noise(Function&& function, double length)
       difference[axis] = values[i][axis] - 4.0 * values[i + 1][axis] + 6.0 * values[i + 2][axis] -
         4.0 * values[i + 3][axis] + values[i + 4][axis];
     }
-    // The root of the sum of the squared coefficients is 8.4.
+    // The norm of the coefficients is 8.4.
     noise = std::max(noise, Length(difference) / 4.0);
   }
   return noise;
 }
 
-/// What must be zero if the derivatives of this order in the directions Inward, given in the sides'
-/// own axes, are those of one smooth map. The two directions are opposite, so the first derivatives
-/// are as well, and second derivatives equal; a side's second axis is opposite to the other's.
+/// A linear expression in the derivatives of this order in the directions Inward, given in the axes
+/// of each side, that is zero if both belong to one smooth map. The two directions are opposite, so
+/// the sum of first derivatives and the difference of second derivatives vanish. The second axes of
+/// the two sides are opposite.
 Vector3 Mismatch(const std::array<Vector3, 2>& derivatives, int order)
 {
   const double sign = order == 1 ? 1.0 : -1.0;
@@ -62,7 +63,7 @@ Vector3 Mismatch(const std::array<Vector3, 2>& derivatives, int order)
     derivatives[0][1] - sign * derivatives[1][1], derivatives[0][2] + sign * derivatives[1][2] };
 }
 
-/// Fills in all that follows from the derivatives themselves.
+/// Computes all quantities that follow from the derivatives.
 JacobianJump Describe(const std::array<Vector3, 2>& derivatives, int order, double norm)
 {
   const Vector3 mismatch = Mismatch(derivatives, order);
@@ -70,7 +71,7 @@ JacobianJump Describe(const std::array<Vector3, 2>& derivatives, int order, doub
   jump.Jump = Length(mismatch) / norm;
   jump.Normal = std::hypot(mismatch[1], mismatch[2]) / norm;
   jump.Tangential = std::abs(mismatch[0]) / norm;
-  // The second side's derivative, seen from the first.
+  // The derivative of the second side in the axes of the first.
   const double sign = order == 1 ? -1.0 : 1.0;
   const Vector3 other{ sign * derivatives[1][0], -sign * derivatives[1][1],
     sign * derivatives[1][2] };
@@ -84,8 +85,8 @@ JacobianJump Describe(const std::array<Vector3, 2>& derivatives, int order, doub
   return jump;
 }
 
-/// Slope of log(difference) against log(step), where the difference stands out from rounding: the
-/// median over neighboring steps. @a any has the steps, the others take the number of one.
+/// Slope of log(difference) against log(step) where the difference exceeds rounding: the median
+/// over neighboring steps. @a any returns the steps; the other functions take the index of one.
 template <typename DifferenceAt, typename RoundingAt>
 double ObservedOrder(
   const OneSidedDerivative& any, DifferenceAt&& differenceAt, RoundingAt&& roundingAt)
@@ -109,7 +110,7 @@ double ObservedOrder(
   {
     return JacobianJump::None;
   }
-  // The last few: closest to the limit.
+  // The last few steps, closest to the limit.
   const auto begin =
     slopes.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, slopes.size()));
   const auto middle = begin + (slopes.end() - begin) / 2;
@@ -117,20 +118,21 @@ double ObservedOrder(
   return *middle;
 }
 
-/// @a magnification is how much larger the jump is relative to the derivative that jumps than to
-/// the whole Jacobian: much, where the map stretches along the line far more than across it.
+/// @a magnification is the ratio of the jump relative to the derivative that jumps and the jump
+/// relative to the whole Jacobian. It is large where the map stretches along the line far more than
+/// across it.
 JumpVerdict Conclude(const JacobianJump& jump, double magnification, double resolution)
 {
   const double size = magnification * jump.Jump;
   const double error = magnification * jump.Error;
-  // A jump that shrinks with the step may be that of another border of the map, closer than the
-  // steps can tell, unless the extrapolation leaves no doubt.
+  // A jump that decreases with the step may belong to another border of the map that the steps do
+  // not resolve, unless the extrapolation excludes it.
   if (size > 2.0 * error && size > resolution &&
     (std::abs(jump.Order) < 0.1 || size > 1000.0 * error))
   {
     return JumpVerdict::Crease;
   }
-  // One that grows is that of a map torn apart.
+  // A jump that grows indicates a discontinuous map.
   return size + error <= resolution && !(jump.Order < -0.5) ? JumpVerdict::Differentiable
                                                             : JumpVerdict::Undecided;
 }
@@ -184,7 +186,7 @@ public:
   explicit DeviationFromLinear(const RayFan& fan)
     : Rays(fan.Rays.size())
   {
-    // The linear maps' derivatives span a plane in the space of all derivatives; these are
+    // The derivatives of linear maps span a plane in the space of all derivatives. These are
     // orthonormal axes of it.
     for (const RayFan::Ray& ray : fan.Rays)
     {
@@ -192,7 +194,7 @@ public:
       this->Axes[1].push_back(ray.InPlane.y);
     }
     this->Normalize(0);
-    // Twice, as the rays of a narrow sector leave little of the second axis.
+    // Orthogonalize twice, since the rays of a narrow sector leave little of the second axis.
     for (int pass = 0; pass < 2; ++pass)
     {
       double common = 0.0;
@@ -208,7 +210,7 @@ public:
     }
   }
 
-  /// The largest deviation. @a derivativeOf takes the number of a ray.
+  /// The largest deviation. @a derivativeOf takes the index of a ray.
   template <typename DerivativeOf>
   double Largest(DerivativeOf&& derivativeOf) const
   {
@@ -230,7 +232,7 @@ public:
     return largest;
   }
 
-  /// What errors of the derivatives can do to the largest deviation.
+  /// The effect of errors of the derivatives on the largest deviation.
   template <typename ErrorOf>
   double LargestError(ErrorOf&& errorOf) const
   {
@@ -267,7 +269,7 @@ private:
   std::array<std::vector<double>, 2> Axes;
 };
 
-/// The norm of a Jacobian with these derivatives along evenly spread rays.
+/// The norm of a Jacobian with these derivatives along evenly distributed rays.
 template <typename DerivativeOf>
 double NormOfJacobian(std::size_t rays, DerivativeOf&& derivativeOf)
 {

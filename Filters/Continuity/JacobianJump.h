@@ -26,18 +26,18 @@ struct LineCrossing
   Vector3 Tangent;
   /// Length of the rays along the line, both ways.
   double TangentLength;
-  /// Unit vectors away from the line into the two sides, in the planes that the sides lie in.
+  /// Unit vectors away from the line into the two sides, in the planes of the sides.
   std::array<Vector3, 2> Inward;
   /// Lengths of the rays into the two sides, on which the map is evaluated.
   std::array<double, 2> RayLengths;
-  /// For each side, three orthonormal vectors of the image's space in which derivatives are
+  /// For each side, three orthonormal vectors of the space of the image in which derivatives are
   /// compared: along the image of the line, into the image of the side, and the normal. The first
-  /// and the last axes of the sides agree with each other once the sides are unfolded.
+  /// and last axes of both sides agree once the sides are unfolded.
   std::array<std::array<Vector3, 3>, 2> ImageAxes;
 };
 
-/// Fills in the image's axes from the map's values: near the line's image and across it. They are
-/// the same on both sides, as within a plane.
+/// Computes the axes of the image from values of the map near the line and across it. They are the
+/// same on both sides, as within a plane.
 void FindImageAxes(const LocalMap& map, LineCrossing& crossing);
 
 /// A point of the domain, relative to the local origin, and rays on which the map is evaluated.
@@ -47,7 +47,7 @@ struct RayFan
   {
     /// Unit vector.
     Vector3 Direction;
-    /// Its components along orthonormal axes of the plane in which all rays lie.
+    /// Its components along orthonormal axes of the plane of all rays.
     Vector2 InPlane;
     double Length;
   };
@@ -81,24 +81,24 @@ struct JacobianJump
   double Normal = None;
   double Tangential = None;
   /// Angle, in radians, between the images of the direction across the line on the two sides, and
-  /// the ratio of the longer to the shorter, less 1.
+  /// the ratio of the longer to the shorter, minus 1.
   double Angle = None;
   double Stretch = None;
-  /// The exponent with which the difference of the plain quotients on the two sides shrinks with
-  /// the step: about 1 if the map is differentiable, 0 at a crease; NaN where the difference is all
-  /// rounding.
+  /// The exponent with which the difference of the quotients on the two sides decreases with the
+  /// step: about 1 if the map is differentiable, 0 at a crease, NaN where the difference is
+  /// rounding only.
   double Order = None;
   JumpVerdict Verdict = JumpVerdict::Undecided;
 };
 
-/// Estimates the jump of the derivative of order 1 or 2 across the line. Relative jumps up to
-/// @a resolution count as none: the map is differentiable if the jump cannot be larger, given its
-/// error bound, and has a crease if the jump is larger and stands out from its error bound.
+/// Estimates the jump of the derivative of order 1 or 2 across the line. Relative jumps up to @a
+/// resolution are ignored: the map is differentiable if the jump cannot be larger, given its error
+/// bound, and has a crease if the jump is larger and exceeds its error bound.
 JacobianJump EstimateJump(
   const LocalMap& map, const LineCrossing& crossing, int order, double resolution);
 
-/// The same from known derivatives in the directions Inward, and along the line: no error, no
-/// order, no verdict.
+/// The jump from known derivatives in the directions Inward and along the line. There is no error,
+/// order or verdict.
 JacobianJump CompareDerivatives(
   const LineCrossing& crossing, const std::array<Vector3, 2>& inward, const Vector3& along);
 
@@ -106,7 +106,7 @@ JacobianJump CompareDerivatives(
 /// derivatives along its rays are those of one linear map. Verdicts as above.
 JacobianJump EstimateJump(const LocalMap& map, const RayFan& fan, double resolution);
 
-/// The same from known derivatives along the rays: no error, no order, no verdict.
+/// The deviation from known derivatives along the rays. There is no error, order or verdict.
 JacobianJump CompareDerivatives(const RayFan& fan, const std::vector<Vector3>& derivatives);
 
 } // namespace homeomorphism

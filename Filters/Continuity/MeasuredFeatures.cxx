@@ -166,7 +166,7 @@ MeasuredFeatures::Sample MeasuredFeatures::Measure(const MeasuredFeature& featur
   sample.First = EstimateJump(local, crossing, 1, resolution);
   if (secondDerivatives)
   {
-    // Dividing by the step twice leaves a thousandth of the accuracy.
+    // Dividing by the step twice loses three decimal digits.
     sample.Second = EstimateJump(local, crossing, 2, 1e3 * resolution);
   }
   return sample;

@@ -27,9 +27,9 @@ using FeatureSelection = std::array<bool, NumberOfFeatureKinds>;
 struct MeasuredFeature
 {
   FeatureKind Kind;
-  /// The number of the edge, the triangle or the point.
+  /// The index of the edge, triangle or point.
   std::int32_t Item;
-  /// Of a line within a triangle.
+  /// The index of a line within its triangle.
   int Line = 0;
 };
 
@@ -39,7 +39,7 @@ struct MeasuredFeature
 class MeasuredFeatures
 {
 public:
-  /// Refers to the map. @a planar says whether vertices have a tangent plane, in source and image.
+  /// Keeps a reference to the map. @a planar: vertices have tangent planes, in source and image.
   MeasuredFeatures(const Homeomorphism& map, CenterPoint center, const FeatureSelection& selection,
     bool planar, int samples);
 
@@ -73,7 +73,7 @@ public:
     return IsPoint(kind) ? 1 : this->GetNumberOfSamples(kind) + 2;
   }
 
-  /// Cell ids of the triangles on its two sides, in it, or at it; -1 where there is none.
+  /// Cell ids of the triangles on its two sides, around it, or at it; -1 for none.
   std::array<vtkIdType, 2> GetCells(const MeasuredFeature& feature) const;
 
   /// The position of a point that shows the feature.

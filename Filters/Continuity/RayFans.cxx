@@ -13,7 +13,7 @@ namespace homeomorphism
 namespace
 {
 
-/// Fills in the rays' components along two axes of the plane of a triangle.
+/// Computes the components of the rays along two axes of the plane of a triangle.
 void FindComponents(RayFan& fan, const std::array<Vector3, 3>& axes)
 {
   for (RayFan::Ray& ray : fan.Rays)
@@ -131,7 +131,8 @@ RayFan RayFans::GetAroundVertex(std::int32_t point) const
       static_cast<int>(std::find(corners.begin(), corners.end(), point) - corners.begin());
     this->AddRays(fan, triangle, shape.Corner(NextCorner(corner)) - shape.Corner(corner),
       shape.Corner(PreviousCorner(corner)) - shape.Corner(corner), [&](const Vector2& direction) {
-        // Through the opposite edge: rounding must not let a ray along an edge leave through it.
+        // Through the opposite edge, because rounding must not let a ray along an edge leave
+        // through that edge.
         return -1.0 / shape.VectorToBarycentric(direction)[corner];
       });
   }
@@ -151,7 +152,7 @@ JacobianJump RayFans::GetExactJumpAtCenter(TriangleIndex triangle, const RayFan&
   std::vector<Vector3> derivatives;
   for (const RayFan::Ray& ray : fan.Rays)
   {
-    // The contour that starts along the ray: contours are straight near the center.
+    // The contour that starts along the ray. Contours are straight near the center.
     const Vector3 beside = Sum(fan.Point, 0.25 * ray.Length, ray.Direction);
     TriangularCoordinates contour = charts.ToCoordinates(
       triangle, ToFrame(this->Map.GetPair(), Domain::Source, triangle, fan.Near.Origin, beside));

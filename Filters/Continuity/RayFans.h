@@ -21,7 +21,7 @@ namespace homeomorphism
 class RayFans
 {
 public:
-  /// Refers to the map. Its target need not exist. @a center is the center of the Contour system.
+  /// Keeps a reference to the map, whose target is optional. @a center: for the Contour system.
   RayFans(const Homeomorphism& map, CenterPoint center, int raysBetween);
 
   RayFan GetAroundCenter(TriangleIndex triangle) const;
@@ -41,7 +41,7 @@ public:
   /// A triangle at a point, -1 if there is none.
   TriangleIndex GetTriangleAt(std::int32_t point) const;
 
-  /// By the map's closed form.
+  /// From the closed form of the map.
   JacobianJump GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& fan) const;
 
 private:
@@ -56,7 +56,7 @@ private:
   const Homeomorphism& Map;
   CenterPoint Center;
   int RaysBetween;
-  /// The triangles at point i are those numbered from Offsets[i] to Offsets[i + 1].
+  /// The triangles at point i are those with the indices Offsets[i] to Offsets[i + 1] - 1.
   std::vector<std::int32_t> Offsets;
   std::vector<TriangleIndex> Triangles;
 };

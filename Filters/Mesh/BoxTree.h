@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file BoxTree.h
-/// A hierarchy of boxes around triangles, for finding the few that are near a point or a box.
+/// A bounding volume hierarchy of triangles.
 
 #ifndef homeomorphism_BoxTree_h
 #define homeomorphism_BoxTree_h
@@ -23,16 +23,16 @@
 namespace homeomorphism
 {
 
-/// A binary tree of boxes over the triangles in the order of a space-filling curve (Morton's), so
-/// that building takes time linear in their number. Immutable once built; any number of threads may
-/// search it.
+/// A binary tree of boxes over triangles sorted along a Morton curve.
+/// Construction takes linear time. Immutable once built; any number of threads
+/// may search it.
 template <int Dimension>
 class BoxTree
 {
 public:
   using BoxType = Box<Dimension>;
 
-  /// @a boxOf gives the box of a triangle, all of whose coordinates are finite.
+  /// @a boxOf returns the box of a triangle whose coordinates are all finite.
   template <typename BoxOf>
   void Build(std::vector<TriangleIndex> triangles, BoxOf&& boxOf)
   {
@@ -72,8 +72,8 @@ public:
     }
   }
 
-  /// Calls visit(triangle) for every triangle in the leaves whose box meets @a box, until it
-  /// returns false. The box is read anew at each step, so that a visit may shrink it.
+  /// Calls visit(triangle) for every triangle in the leaves whose box intersects @a box, until it
+  /// returns false. The box is read again at each step, so the visitor may shrink it.
   template <typename Visit>
   void Search(const BoxType& box, Visit&& visit) const
   {
@@ -121,7 +121,7 @@ private:
   static constexpr std::size_t LeafSize = 4;
   static constexpr std::size_t MaximumLevels = 32;
 
-  /// A box in half the memory, no smaller than the one it stands for.
+  /// A box in single precision, rounded outward.
   struct Node
   {
     std::array<float, Dimension> Least;
@@ -164,7 +164,7 @@ private:
     }
   };
 
-  /// Places each bit of a number @a Dimension bits from the next.
+  /// Moves the bits of a number @a Dimension positions apart.
   static std::uint64_t SpreadBits(std::uint64_t x)
   {
     if (Dimension == 2)
@@ -218,7 +218,7 @@ private:
       }
       entries[i] = { code, this->Triangles[i] };
     }
-    // Digit by digit, from the least significant one.
+    // Radix sort, from the least significant digit.
     constexpr int digitBits = 11;
     constexpr std::size_t digits = std::size_t(1) << digitBits;
     LargeArray<Entry> sorted(entries.size());
@@ -245,8 +245,8 @@ private:
     }
   }
 
-  // All leaves, then what is above each pair of them, and so on; Levels has where each level
-  // begins.
+  // All leaves, then the parents of pairs of them, and so on. Levels contains the start of each
+  // level.
   std::vector<Node> Nodes;
   std::vector<std::size_t> Levels;
   std::vector<TriangleIndex> Triangles;

@@ -20,7 +20,7 @@ namespace homeomorphism
 namespace
 {
 
-/// As if computed with twice the precision (Ogita, Rump and Oishi 2005).
+/// A cross product as if in doubled precision (Ogita, Rump and Oishi 2005).
 double AccurateDot3(const Vector3& a, const Vector3& b)
 {
   double sum = 0.0;
@@ -71,7 +71,7 @@ EdgeView PlaneView(const Vector2& start, const Vector2& end, const Vector2& oppo
 
 } // namespace
 
-/// The points of a mesh times a power of two, read where they are.
+/// The points of a mesh times a power of two, without a copy.
 class MeshGeometry::MeshPoints
 {
 public:
@@ -120,8 +120,8 @@ MeshGeometry::MeshGeometry(
     (points->GetDataType() == VTK_FLOAT ? static_cast<double>(std::numeric_limits<float>::epsilon())
                                         : std::numeric_limits<double>::epsilon());
 
-  // A point with a coordinate that is not finite counts neither for the scale nor for the plane;
-  // the triangles that use it are found by IsFinite.
+  // Points with non-finite coordinates affect neither the scale nor the plane. IsFinite finds the
+  // triangles that use them.
   MeshPoints positions(points);
   double largest = 0.0;
   Vector3 least{ VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
@@ -177,7 +177,7 @@ MeshGeometry::MeshGeometry(
       }
       else if (!std::isfinite(normalized[2]))
       {
-        // The third coordinate is not kept, but IsFinite must see it.
+        // The third coordinate is not stored, but IsFinite must test it.
         this->PlanePoints[i].x = normalized[2];
       }
     }
@@ -211,20 +211,22 @@ void MeshGeometry::FindPlane(
   const MeshPoints& points, const std::vector<std::uint8_t>& used, const MeshGeometry* companion)
 {
   const auto isTurnedAway = [companion](const Vector3& normal) {
-    // Not for planes that are at right angles to rounding, where either side is as good.
+    // Except for planes that are perpendicular up to rounding, for which either orientation is
+    // equally good.
     return companion && companion->Planar && Dot3(companion->PlaneAxes[2], normal) < -1e-6;
   };
   const auto first = std::find(used.begin(), used.end(), 1);
   if (first == used.end())
   {
-    // Nothing to see: the xy plane is as good as any.
+    // No points: use the xy plane.
     this->Planar = this->AxisParallel = true;
     this->PlaneAxes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
     return;
   }
   const Vector3 origin = points[first - used.begin()];
 
-  // Parallel to two axes? z first, so that a mesh in a line counts as drawn in the xy plane.
+  // Test for planes parallel to two axes, z first, so that a collinear mesh counts as part of the
+  // xy plane.
   for (const int normalAxis : { 2, 1, 0 })
   {
     bool constant = true;
@@ -253,7 +255,7 @@ void MeshGeometry::FindPlane(
     }
   }
 
-  // Otherwise through the first point, the one farthest from it, and the one farthest from their
+  // Otherwise use the first point, the point farthest from it, and the point farthest from their
   // line.
   Vector3 along{};
   double farthest = 0.0;
@@ -278,7 +280,7 @@ void MeshGeometry::FindPlane(
     }
   }
   // Any other point is the first plus at most twice the vector to the second plus at most once the
-  // vector to the third, so that their rounding and its own move it by a few times its rounding.
+  // vector to the third. Their rounding and its own therefore move it by a few times its rounding.
   const double spread = 32.0 * this->CoordinatePrecision * this->LargestCoordinate;
   if (!(widest > spread))
   {
@@ -305,7 +307,7 @@ void MeshGeometry::FindPlane(
   int main = 0;
   for (const int axis : { 1, 2 })
   {
-    // Rounding does not decide which of two equally close axes counts.
+    // Rounding does not decide between two equally close axes.
     main = std::abs(normal[axis]) >= (1.0 - 1e-6) * std::abs(normal[main]) ? axis : main;
   }
   const bool byCompanion =
@@ -416,7 +418,7 @@ bool MeshGeometry::IsDegenerate(const Triangulation& triangulation, TriangleInde
   }
   const Triangulation::Corners& corners = triangulation.GetCorners(triangle);
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * this->LargestCoordinate;
-  // Written so that a view spoilt by an edge of no length counts as no area.
+  // Negated so that NaN, from an edge of zero length, counts as degenerate.
   return !(this->GetView(corners, this->FindApex(corners)).Height > least);
 }
 
@@ -510,7 +512,7 @@ void MeshGeometry::ComputeFrames(const Triangulation& triangulation)
   this->Orientations = {};
 }
 
-/// The frames of some triangles of a plane, EdgeBatchSize at most.
+/// The frames of at most EdgeBatchSize triangles of a plane.
 void MeshGeometry::ComputePlaneFrames(
   const Triangulation& triangulation, TriangleIndex begin, TriangleIndex end)
 {
@@ -537,7 +539,7 @@ void MeshGeometry::ComputePlaneFrames(
       continue;
     }
     const int i = t - begin;
-    // Opposite the longest edge; the first of equals.
+    // Opposite the longest edge, the first of equals.
     int apex = views[1].Length[i] > views[0].Length[i] ? 1 : 0;
     apex = views[2].Length[i] > views[apex].Length[i] ? 2 : apex;
     const TriangleShape shape =

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MeshGeometry.h
-/// The geometric half of a mesh: where the points are, and each triangle's own frame.
+/// The geometry of a mesh: point coordinates, and the frames of its triangles.
 
 #ifndef homeomorphism_MeshGeometry_h
 #define homeomorphism_MeshGeometry_h
@@ -25,15 +25,15 @@ class vtkPoints;
 namespace homeomorphism
 {
 
-/// A point of a triangle's own frame: in its plane, and the distance from the plane.
+/// A point in the frame of a triangle: its position in the plane, and its distance from the plane.
 struct FramePoint
 {
   Vector2 InPlane;
   double Offset = 0.0;
 };
 
-/// Frame and shape of a triangle in the plane: all that locating and mapping a point need to know
-/// of it.
+/// Frame and shape of a triangle in the plane: the data needed to locate and map a
+/// point.
 struct alignas(64) PlaneFrame
 {
   Vector2 Origin;
@@ -62,50 +62,50 @@ struct alignas(64) PlaneFrame
 };
 static_assert(sizeof(PlaneFrame) == 64, "One line of a processor's cache");
 
-/// Positions of a triangulation's points, in a plane or as a surface in 3-space.
+/// Point coordinates of a triangulation, in a plane or as a surface in 3-space.
 ///
-/// Everything is computed in *normalized coordinates*: those of the input times a power of two,
-/// Scale, which brings the largest of them near 1 without rounding, so that meshes the size of an
-/// atom or of a galaxy are the same to the arithmetic. In a plane, any plane, normalized
-/// coordinates are two coordinates within it and the distance from it; if the plane is parallel to
-/// two of the axes they are the input's own coordinates, unrounded.
+/// All computation uses *normalized coordinates*: the coordinates of the input times a power of
+/// two, Scale, which brings the largest of them close to 1 without rounding. Meshes of any size are
+/// therefore equivalent in floating-point arithmetic. In a plane, normalized coordinates are two
+/// coordinates within it and the distance from it. If the plane is parallel to two axes, they are
+/// the scaled coordinates of the input, unrounded.
 class MeshGeometry
 {
 public:
-  /// Reads the points that @a triangulation's triangles use. The triangles' corners must exist. If
-  /// the points are planar, the plane's normal is the one that points along the axis it is closest
-  /// to (the last of equally close ones), or, if @a companion is given and planar, the one that is
-  /// less than a right angle from the companion's.
+  /// Reads the points used by the triangles of @a triangulation, whose corners must exist. If the
+  /// points are planar, the normal of the plane points along the axis closest to it (the last of
+  /// equally close ones) or, if @a companion is given and planar, makes less than a right angle
+  /// with the normal of the companion.
   MeshGeometry(
     vtkPoints* points, const Triangulation& triangulation, const MeshGeometry* companion = nullptr);
 
-  /// Computes the triangles' frames. All triangles that are not masked must have an area.
+  /// Computes the frames of the triangles. No unmasked triangle may be degenerate.
   void ComputeFrames(const Triangulation& triangulation);
 
-  /// Whether the coordinates of all corners are finite, of triangles that are not masked.
+  /// Whether the coordinates of all corners of unmasked triangles are finite.
   bool IsFinite() const { return this->Finite; }
-  /// Whether all points lie in one plane (to the rounding of their coordinates).
+  /// Whether all points lie in one plane, up to the rounding of their coordinates.
   bool IsPlanar() const { return this->Planar; }
-  /// Whether distances from the plane are unlimited and measured along the plane's normal, as in
-  /// both meshes of a planar pair. Otherwise each triangle has its own normal, given by its
+  /// Whether distances from the plane are unlimited and measured along its normal, as in both
+  /// meshes of a planar pair. Otherwise each triangle has a normal of its own, given by its
   /// winding.
   bool IsColumnar() const { return this->Columnar; }
   void SetColumnar(bool columnar) { this->Columnar = columnar; }
 
-  /// Working coordinates over input coordinates, a power of two.
+  /// Normalized coordinates divided by input coordinates, a power of two.
   double GetScale() const { return this->Scale; }
   double GetInverseScale() const { return this->InverseScale; }
   /// Largest absolute normalized coordinate of a point, about 1.
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
-  /// The box around the points of a planar mesh that triangles use, in its plane.
+  /// Bounding box of the points of a planar mesh that are used by triangles, in its plane.
   const Box<2>& GetPlaneBounds() const { return this->PlaneBounds; }
   /// Of a surface whose points lie almost in a plane, within a millionth of its diagonal: the
   /// largest distance of a point from that plane, in normalized coordinates, if the plane is one of
   /// those between the points. 0 for all other meshes.
   double GetThickness() const { return this->Thickness; }
-  /// Length of the diagonal of the box around the points, in normalized coordinates.
+  /// Length of the diagonal of the bounding box of the points, in normalized coordinates.
   double GetDiagonal() const { return this->Diagonal; }
-  /// Relative rounding error of the coordinates as they were stored: half an ulp of float or
+  /// Relative rounding error of the stored coordinates: half an ulp of float or
   /// double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
 
@@ -140,7 +140,7 @@ public:
     return this->Planar ? this->ToTiltedPlane(p) : p;
   }
 
-  /// The same for many points, whose normalized coordinates are in arrays of their own.
+  /// Converts many points, whose normalized coordinates are in separate arrays.
   void FromNormalized(
     const double* x, const double* y, const double* z, int count, double (*points)[3]) const
   {
@@ -152,7 +152,7 @@ public:
       }
       return;
     }
-    // A plane parallel to x and y, not turned over.
+    // A plane parallel to x and y with the normal z.
     const double scale = this->InverseScale;
     const double distance = this->PlaneDistance;
     for (int i = 0; i < count; ++i)
@@ -201,28 +201,28 @@ public:
   /// difference of nearby numbers, so that points close to each other have an accurate one however
   /// far from the origin they are.
   Vector3 GetVector(std::int32_t from, std::int32_t to) const;
-  /// The same for a planar mesh.
+  /// Normalized coordinates of a point of a planar mesh.
   const Vector2& GetPlanePoint(std::int32_t point) const { return this->PlanePoints[point]; }
 
-  /// Orientation of a triangle of a planar mesh with respect to the plane's normal, exactly: 1 if
-  /// its corners run counterclockwise, -1 if clockwise, 0 if it has no area.
+  /// The exact orientation of a triangle of a planar mesh with respect to the normal of the plane:
+  /// 1 if its corners are counterclockwise, -1 if clockwise, 0 if it is degenerate.
   int GetOrientation(const Triangulation::Corners& corners) const;
-  /// The same, looked up, of a triangle that is not masked and whose corners are finite.
+  /// The stored orientation of an unmasked triangle whose corners are finite.
   int GetOrientation(TriangleIndex triangle) const
   {
     return this->Orientations.empty() ? this->PlaneFrames[triangle].Orientation
                                       : this->Orientations[triangle];
   }
-  /// Whether the triangle has no area: exactly none in a plane parallel to two axes, none to the
-  /// rounding of coordinates as doubles otherwise.
+  /// Whether the triangle is degenerate: exactly in a plane parallel to two axes, otherwise up to
+  /// the rounding of coordinates to double.
   bool IsDegenerate(const Triangulation& triangulation, TriangleIndex triangle) const;
   /// Whether the coordinates of all corners are finite.
   bool IsFinite(const Triangulation::Corners& corners) const;
-  /// Whether the triangle is concordant (see IsConcordant), exactly.
+  /// Whether the triangle is concordant (see IsConcordant), decided exactly.
   bool IsConcordant(const Triangulation::Corners& corners) const;
-  /// What each edge sees of the triangle.
+  /// The views of the triangle from its edges.
   EdgeViews GetViews(const Triangulation::Corners& corners) const;
-  /// What the edge opposite one of the corners sees, to the same bits.
+  /// The view from the edge opposite one of the corners, to the same bits.
   EdgeView GetView(const Triangulation::Corners& corners, int edge) const;
 
   TriangleShape GetShape(TriangleIndex triangle) const
@@ -230,7 +230,7 @@ public:
     return this->Planar ? this->PlaneFrames[triangle].Shape() : this->SpaceFrames[triangle].Shape;
   }
 
-  /// The corner opposite a triangle's longest edge.
+  /// The corner opposite the longest edge of a triangle.
   int GetApex(TriangleIndex triangle) const
   {
     return this->Planar ? this->PlaneFrames[triangle].Apex : this->SpaceFrames[triangle].Shape.Apex;
@@ -258,18 +258,18 @@ public:
   FramePoint ToFrame(TriangleIndex triangle, const Vector3& normalized) const;
   Vector3 FromFrame(TriangleIndex triangle, const FramePoint& point) const;
 
-  /// The frame's axes as unit vectors of the input's space: along the triangle's longest edge, from
+  /// The axes of the frame as unit vectors of the space of the input: along the longest edge, from
   /// it towards the apex, and the normal along which offsets are measured.
   std::array<Vector3, 3> GetAxes(TriangleIndex triangle) const;
 
-  /// 1 if the frame's axes are right-handed, -1 if left-handed.
+  /// 1 if the axes of the frame are right-handed, -1 if left-handed.
   double GetHandedness(TriangleIndex triangle) const
   {
     return this->Columnar ? this->PlaneFrames[triangle].Orientation : 1.0;
   }
 
 private:
-  /// Frame of a triangle in 3-space.
+  /// The frame of a triangle in 3-space.
   struct SpaceFrame
   {
     Vector3 Origin;
@@ -281,7 +281,7 @@ private:
 
   Vector3 ToTiltedPlane(const Vector3& scaled) const;
   Vector3 FromTiltedPlane(const Vector3& normalized) const;
-  /// The corner opposite the longest edge; the first of equals.
+  /// The corner opposite the longest edge, the first of equals.
   int FindApex(const Triangulation::Corners& corners) const;
   class MeshPoints;
   void FindPlane(
@@ -296,7 +296,7 @@ private:
   bool Finite = true;
   bool Planar = false;
   bool Columnar = false;
-  /// Whether the plane is parallel to two axes: no rounding on the way to normalized coordinates.
+  /// Whether the plane is parallel to two axes, so that normalized coordinates are not rounded.
   bool AxisParallel = false;
   double Scale = 1.0;
   double InverseScale = 1.0;
@@ -314,10 +314,10 @@ private:
 
   LargeArray<Vector2> PlanePoints;
   Box<2> PlaneBounds;
-  // Of a surface, and of a plane that is not parallel to two axes: the input's coordinates times
-  // Scale.
+  // For a surface, and for a plane that is not parallel to two axes: the coordinates of the input
+  // times Scale.
   LargeArray<Vector3> SpacePoints;
-  // Of a planar mesh, until it has frames.
+  // For a planar mesh, until it has frames.
   LargeArray<std::int8_t> Orientations;
   LargeArray<PlaneFrame> PlaneFrames;
   LargeArray<SpaceFrame> SpaceFrames;

@@ -62,7 +62,7 @@ vtkIdType CountCells(vtkCellArray* cells)
   return cells ? cells->GetNumberOfCells() : 0;
 }
 
-/// The triangles for which a predicate holds, masked ones excepted.
+/// The unmasked triangles for which a predicate holds.
 template <typename Predicate>
 TriangleList FindTriangles(const Triangulation& triangulation, Predicate&& predicate)
 {
@@ -93,9 +93,9 @@ vtkSmartPointer<Int64Array> AsInt64Array(vtkDataArray* ids)
   return copy;
 }
 
-/// Reads polygons from offsets and connectivity, which need not be well formed. The memory itself
-/// is read, and not by the arrays' own methods: so sanitizers of this module's code see what is
-/// read.
+/// Reads polygons from offsets and connectivity, which may be malformed. Reads the memory directly
+/// rather than through the methods of the arrays, so that sanitizers of this module's code observe
+/// the accesses.
 template <typename Id>
 void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
   vtkAOSDataArrayTemplate<Id>* connectivityArray, vtkIdType numberOfPoints, vtkIdType firstCell,
@@ -136,8 +136,8 @@ void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
   }
 }
 
-/// Whether the interiors of two triangles of the plane have a point in common: not if the line
-/// through an edge of one separates them.
+/// Whether the interiors of two triangles of the plane intersect: they do not if the line through
+/// an edge of one separates them.
 bool InteriorsMeet(const MeshGeometry& geometry, const Triangulation::Corners& first,
   const Triangulation::Corners& second)
 {
@@ -160,7 +160,7 @@ bool InteriorsMeet(const MeshGeometry& geometry, const Triangulation::Corners& f
   return !separates(first, second) && !separates(second, first);
 }
 
-/// Whether a triangle and a neighbor across an edge lie on the same side of it.
+/// Whether a triangle and a neighbor lie on the same side of their edge.
 bool HasFold(const Triangulation& triangulation, const MeshGeometry& geometry, TriangleIndex t)
 {
   const int orientation = geometry.GetOrientation(t);
@@ -185,7 +185,8 @@ bool HasFolds(const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   if (!triangulation.HasMixedWinding())
   {
-    // As usual: then all turn the same way unless there are folds or pieces apart.
+    // The usual case: then all have the same orientation unless there are folds or separate
+    // components.
     bool left = false;
     bool right = false;
     for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)

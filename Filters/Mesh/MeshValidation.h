@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MeshValidation.h
-/// Everything for which a mesh or a pair of meshes is refused (or its triangles are masked). Each
-/// function finds one kind of defect and says which triangles have it; TriangulationPair decides
-/// what becomes of them.
+/// The tests for defects of meshes and pairs of meshes. Each function finds one kind of defect
+/// and the triangles that have it. TriangulationPair refuses the meshes or masks the
+/// triangles.
 
 #ifndef homeomorphism_MeshValidation_h
 #define homeomorphism_MeshValidation_h
@@ -23,10 +23,10 @@ class vtkUnsignedCharArray;
 namespace homeomorphism
 {
 
-/// Numbers of triangles, ascending, without repetition.
+/// Triangle indices, ascending and unique.
 using TriangleList = std::vector<TriangleIndex>;
 
-/// Cell id of a mesh's first polygon: vertices and lines are numbered before polygons.
+/// Cell id of the first polygon of a mesh. Vertices and lines have lower ids than polygons.
 vtkIdType FirstPolygon(vtkPolyData* mesh);
 
 /// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
@@ -35,29 +35,29 @@ vtkIdType FirstPolygon(vtkPolyData* mesh);
 LargeArray<Triangulation::Corners> ReadTriangles(
   vtkPolyData* mesh, MeshDiagnostic::Mesh where, MeshDiagnostics& diagnostics);
 
-/// Reports what keeps source and target from being the same mesh: counts, and triangles that do not
-/// have the same three points. The order of the three points is free.
+/// Reports differences between source and target: counts, and triangles that do not have the same
+/// three points. The order of the three points is free.
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
   const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& diagnostics);
 
-/// The array of some attributes that marks what is hidden or belongs to another piece
-/// (vtkGhostType); null if there is none that has one value for each of @a tuples points or cells.
+/// The array that marks hidden elements and elements of other pieces (vtkGhostType), or null if
+/// there is none with one value for each of @a tuples points or cells.
 vtkUnsignedCharArray* GhostsOf(vtkDataSetAttributes* attributes, vtkIdType tuples);
 
-/// Triangles that the mesh itself blanks: hidden cells and cells with hidden points (vtkGhostType).
+/// The blanked triangles of a mesh: hidden cells and cells with hidden points (vtkGhostType).
 TriangleList FindBlanked(vtkPolyData* mesh, const Triangulation& triangulation);
 
-/// Triangles that use a point twice.
+/// Triangles with a repeated corner.
 TriangleList FindRepeatedCorners(const Triangulation& triangulation);
 
 /// Triangles with a coordinate that is not finite.
 TriangleList FindNotFinite(const Triangulation& triangulation, const MeshGeometry& geometry);
 
-/// Triangles without area.
+/// Degenerate triangles.
 TriangleList FindDegenerate(const Triangulation& triangulation, const MeshGeometry& geometry);
 
-/// Of two planar meshes, the triangles that change their orientation if most do not, or keep it if
+/// For two planar meshes, the triangles that change their orientation if most do not, or keep it if
 /// most change it.
 TriangleList FindFlipped(
   const Triangulation& triangulation, const MeshGeometry& source, const MeshGeometry& target);

@@ -17,14 +17,15 @@ double Distance(const Vector2& a, const Vector2& b)
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-/// The point of the closed triangle nearest to @a point: itself if it is inside.
+/// The point of the closed triangle nearest to @a point, which is the point itself if it is inside.
 Vector2 NearestInTriangle(const TriangleShape& shape, const Vector2& point)
 {
   const Barycentric l = shape.ToBarycentric(point);
   return l[0] > 0.0 && l[1] > 0.0 && l[2] > 0.0 ? point : shape.FromBarycentric(l);
 }
 
-/// Whether a point is in a triangle of the plane: 1 inside, 0 on its boundary, -1 outside.
+/// The position of a point relative to a triangle of the plane: 1 inside, 0 on its boundary, -1
+/// outside.
 int Containment(
   const MeshGeometry& geometry, const Triangulation::Corners& corners, const Vector2& point)
 {
@@ -43,7 +44,7 @@ int Containment(
   return ab != 0 && bc != 0 && ca != 0 ? 1 : 0;
 }
 
-/// The best candidate so far among triangles at some distance: the nearest, then the lowest number.
+/// The best candidate so far: the nearest triangle, and the lowest number among equally near ones.
 struct Nearest
 {
   SurfacePoint Found;
@@ -230,7 +231,7 @@ SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3
 TriangleIndex PointLocation::Walk(
   const Vector2& point, TriangleIndex start, SurfacePoint& location) const
 {
-  // Walks in triangulations that are not Delaunay's may go round in circles.
+  // Walks in triangulations that are not Delaunay may cycle.
   constexpr int longest = 64;
   TriangleIndex t = start;
   for (int step = 0; step < longest; ++step)
@@ -247,7 +248,7 @@ TriangleIndex PointLocation::Walk(
       location.Point.InPlane = relation.InPlane;
       return t;
     }
-    // The edge to leave by: the one that the point is farthest beyond.
+    // Leave by the edge that the point is farthest beyond.
     int edge = -1;
     if (relation.IsOutside())
     {
@@ -289,8 +290,9 @@ TriangleIndex PointLocation::Walk(
         {
           return this->IsOverlapping(t) ? -1 : t;
         }
-        // Within an edge of two triangles there is no third. At a vertex or on the boundary there
-        // may be more, also such that share no point of the mesh with this one.
+        // A point in the interior of an interior edge belongs to two triangles only. A point at a
+        // vertex or on the boundary may belong to more, including triangles that do not share a
+        // point of the mesh with this one.
         const TriangleIndex other = edges == 1 ? this->Topology.GetTwin(t, onEdge).Triangle : -1;
         return other >= 0 && !this->IsOverlapping(t) && !this->IsOverlapping(other)
           ? std::min(t, other)
@@ -327,9 +329,9 @@ SurfacePoint PointLocation::FindInPlane(
   const Vector2 point{ normalized[0], normalized[1] };
   SurfacePoint location;
   location.Point.Offset = normalized[2];
-  // From a triangle that is many of its sizes away it is shorter by way of the seed.
+  // From a triangle many times its size away, the way from the seed is shorter.
   constexpr double far = -4.0;
-  // The domain's coordinates are near 1; products of huge ones would overflow.
+  // Coordinates of the domain are close to 1; products of huge coordinates would overflow.
   constexpr double huge = 1e100;
   const bool isHuge = std::abs(point.x) > huge || std::abs(point.y) > huge;
   TriangleIndex start = isHuge || (hint >= 0 && this->Topology.IsMasked(hint)) ? -1 : hint;
@@ -385,7 +387,7 @@ SurfacePoint PointLocation::FindNearest(
   };
   if (hint >= 0 && !this->Topology.IsMasked(hint))
   {
-    // The nearest is no farther than this one.
+    // The nearest triangle is at most this far away.
     offer(hint);
   }
   Box<3> box = Box<3>::Around(normalized, nearest.Distance);

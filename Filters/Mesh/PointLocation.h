@@ -27,13 +27,13 @@ struct SurfacePoint
 {
   /// -1 if the point is outside.
   TriangleIndex Triangle = -1;
-  /// The point in the triangle's frame, taken to the nearest point of the closed triangle.
+  /// The point in the frame of the triangle, moved to the nearest point of the closed triangle.
   FramePoint Point;
-  /// The triangle's corner (0 to 2) that the point is equal to, bit for bit, or -1.
+  /// The corner of the triangle (0 to 2) that equals the point bit for bit, or -1.
   int Corner = -1;
 };
 
-/// How a point of the plane lies to a triangle, as far as rounding lets its frame tell.
+/// The position of a point of the plane relative to a triangle, in floating point.
 struct PlaneRelation
 {
   Vector2 InPlane;
@@ -41,7 +41,7 @@ struct PlaneRelation
   double Apex;
   double First;
   double Second;
-  /// The least of the three, times the triangle's height, and a bound of its error.
+  /// The least of the three times the height of the triangle, and a bound of its error.
   double Least;
   double Margin;
 
@@ -70,21 +70,21 @@ struct PlaneRelation
   bool IsOutside() const { return this->Least < -this->Margin; }
 };
 
-/// Finds the triangle of a point. The answer is a function of the point alone: it depends neither
-/// on the hint nor on earlier points or other threads.
+/// Finds the triangle that contains a point. The result depends on the point alone: neither on the
+/// hint nor on earlier points or other threads.
+/// In a plane, exact predicates find every point of the closed domain, including edges and
+/// vertices. If several triangles contain the point, the one with the lowest number is used. In
+/// 3-space the nearest triangle is used, and the lowest number among equally near ones. A point
+/// outside by no more than the tolerance is replaced by the nearest point of the domain.
 ///
-/// In a plane every point of the closed domain is found, edges and vertices included, by exact
-/// predicates; of several triangles that share the point the one with the lowest number counts. In
-/// 3-space the nearest triangle counts, the lowest number of equally near ones. A point outside by
-/// no more than the tolerance is taken to the nearest point of the domain.
-///
-/// In a plane the search walks from triangle to adjacent triangle, from the hint if that is near,
-/// else from a triangle that a grid has near the point. A walk that comes to the boundary or takes
-/// too long gives way to a search of all boxes, which also answers whether a point is outside.
+/// In a plane the search walks from triangle to adjacent triangle. It starts from the hint if that
+/// is near, otherwise from a triangle that a grid stores for the neighborhood of the point. A walk
+/// that reaches the boundary or takes too long is replaced by a search of the box tree, which also
+/// decides whether a point is outside.
 class PointLocation
 {
 public:
-  /// Refers to the two, which must outlive it. Masked triangles are not found.
+  /// Keeps references to both arguments, which must outlive it. Masked triangles are not found.
   PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry);
 
   /// Sets the triangles of a planar mesh, ascending, that overlap others by the rounding of their
@@ -96,8 +96,8 @@ public:
     return !this->Overlapping.empty() && this->Overlapping[triangle] != 0;
   }
 
-  /// @a normalized is the point in the geometry's normalized coordinates, @a tolerance a distance
-  /// in them, @a hint the triangle where the point probably is, or -1. The geometry must have its
+  /// @a normalized is the point in normalized coordinates, @a tolerance a distance in them, and
+  /// @a hint the triangle that probably contains the point, or -1. The geometry must have its
   /// frames.
   SurfacePoint Find(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
 
@@ -107,7 +107,7 @@ public:
   /// A triangle of a planar mesh that is probably near a point, or -1.
   TriangleIndex GetSeed(const Vector2& point) const
   {
-    // Written so that a coordinate that is not a number has no seed.
+    // Negated so that a NaN coordinate has no seed.
     const double x = (point.x - this->SeedOrigin.x) * this->SeedScale.x;
     const double y = (point.y - this->SeedOrigin.y) * this->SeedScale.y;
     return x >= 0.0 && y >= 0.0 && x < this->SeedColumns && y < this->SeedRows
@@ -116,8 +116,8 @@ public:
       : -1;
   }
 
-  /// Calls visit(triangle) for the triangles of a planar domain whose boxes may meet a box, until
-  /// it returns false.
+  /// Calls visit(triangle) for the triangles of a planar domain whose boxes may intersect a box,
+  /// until it returns false.
   template <typename Visit>
   void VisitNear(const Box<2>& box, Visit&& visit) const
   {
@@ -141,12 +141,12 @@ private:
   BoxTree<3> SpaceTree;
   // For each triangle, or empty if there are none.
   std::vector<std::uint8_t> Overlapping;
-  // Made when it is first needed, by whichever thread does first: often no point is outside or on
-  // an edge, and one of the two directions is not used at all.
+  // Built on first use, by any thread. Often all points are inside and off the edges, or one
+  // direction of the map is not used.
   mutable std::once_flag HasPlaneTree;
   mutable BoxTree<2> PlaneTree;
 
-  // A grid over a planar domain; each cell has a triangle whose middle is in it, or -1.
+  // A grid over a planar domain. Each cell stores a triangle whose center is in it, or -1.
   LargeArray<TriangleIndex> Seeds;
   Vector2 SeedOrigin;
   Vector2 SeedScale;

@@ -18,7 +18,7 @@
 namespace homeomorphism
 {
 
-/// Number of a triangle, from 0; -1 is no triangle.
+/// Index of a triangle, from 0; -1 for none.
 using TriangleIndex = std::int32_t;
 
 /// Prefetches memory to hide its latency, where the compiler can.
@@ -38,20 +38,20 @@ struct Twin
   TriangleIndex Triangle = -1;
   /// The shared edge in that triangle, 0 to 2.
   int Edge = 0;
-  /// Whether that triangle's cyclic order runs through the edge in the same direction as this one's
-  /// (files that mix their winding do so; consistently wound neighbors run against each other).
+  /// Whether both triangles run through the edge in the same direction. This occurs in meshes with
+  /// mixed winding only.
   bool SameDirection = false;
 };
 
 /// Triangles as triples of point ids, and their adjacency. Filled by ReadTriangulation and the
-/// validation, constant afterwards. Corner and edge numbers are 0 to 2, in the order of the cell's
-/// points; edge k is opposite corner k.
+/// validation, constant afterwards. Corners and edges are numbered 0 to 2 in the order of the
+/// points of the cell; edge k is opposite corner k.
 class Triangulation
 {
 public:
   using Corners = std::array<std::int32_t, 3>;
 
-  /// The most triangles that an adjacency entry can number.
+  /// The greatest number of triangles that the adjacency can represent.
   static constexpr vtkIdType MaximumTriangles = vtkIdType(1) << 28;
 
   TriangleIndex GetNumberOfTriangles() const
@@ -61,10 +61,10 @@ public:
 
   const Corners& GetCorners(TriangleIndex triangle) const { return this->Triangles[triangle]; }
 
-  /// The id that the triangle has as a cell of the vtkPolyData it was read from.
+  /// The cell id of the triangle in the vtkPolyData from which it was read.
   vtkIdType GetCellId(TriangleIndex triangle) const { return this->FirstCell + triangle; }
 
-  /// Whether the triangle was left out: nothing is mapped by it and its edges are boundary.
+  /// Whether the triangle is masked: not part of the domain, its edges are boundary.
   bool IsMasked(TriangleIndex triangle) const { return this->Masked[triangle] != 0; }
 
   Twin GetTwin(TriangleIndex triangle, int edge) const
@@ -91,17 +91,17 @@ public:
   /// as boundary.
   std::vector<TriangleIndex> FindAdjacency(vtkIdType numberOfPoints);
 
-  /// Whether there are neighbors whose cyclic orders run through their edge in the same direction.
+  /// Whether there are adjacent triangles that run through their edge in the same direction.
   bool HasMixedWinding() const { return this->MixedWinding; }
 
-  /// Returns, ascending, the triangles whose winding contradicts a neighbor's, however the winding
-  /// of triangles is reversed: none if the surface is orientable.
+  /// Returns, ascending, the triangles whose winding remains inconsistent with a neighbor after
+  /// orienting all triangles as far as possible: none if the surface is orientable.
   std::vector<TriangleIndex> FindNonOrientable() const;
 
 private:
   LargeArray<Corners> Triangles;
   std::vector<std::uint8_t> Masked;
-  // Neighbor, its edge and the direction in one number: triangle * 8 + edge * 2 + same direction.
+  // Twin triangle, its edge and direction: triangle * 8 + edge * 2 + same direction.
   LargeArray<Corners> Adjacency;
   bool MixedWinding = false;
   vtkIdType FirstCell = 0;

@@ -17,7 +17,7 @@
 namespace homeomorphism
 {
 
-/// Builds a pair step by step, each step relying on what the ones before have ruled out.
+/// Builds a pair step by step. Each step relies on the checks of the previous ones.
 class TriangulationPair::Builder
 {
 public:
@@ -35,8 +35,8 @@ public:
   std::shared_ptr<const TriangulationPair> Build()
   {
     this->ReadTopology();
-    // What is masked has no part in where the plane is or how large the domain, so after masking
-    // everything is looked at again.
+    // Masked triangles do not affect the plane or the size of the domain, so after masking all
+    // steps are repeated.
     do
     {
       this->HasMasked = false;
@@ -142,7 +142,7 @@ private:
     topology.SetTriangles(std::move(triangles), FirstPolygon(this->Meshes[0]), std::move(others));
     for (vtkPolyData* mesh : this->Meshes)
     {
-      // What the mesh blanks is not there: no defect, so no message.
+      // Blanked triangles are not part of the mesh and are not reported.
       for (const TriangleIndex t : mesh ? FindBlanked(mesh, topology) : TriangleList())
       {
         topology.Mask(t);
@@ -156,7 +156,7 @@ private:
   {
     const Triangulation& topology = *this->Pair->Topology;
     const vtkNew<vtkPoints> none;
-    // The second is read in view of the first, which must not be one of an earlier pass.
+    // The second geometry depends on the first, which must belong to the same pass.
     this->Pair->Geometries = {};
     for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
@@ -168,7 +168,7 @@ private:
             FindNotFinite(topology, geometry)) &&
         !this->MaskInvalidTriangles)
       {
-        // Areas mean nothing then.
+        // Areas are undefined then.
         continue;
       }
       this->Exclude(MeshDiagnostic::Kind::DegenerateTriangle, domain, this->Names[domain],
@@ -221,7 +221,7 @@ private:
             overlaps.Triangles, overlaps.Depth / geometry.GetScale()) &&
         this->MaskInvalidTriangles)
       {
-        // What has been left out is gone for the other mesh, too, before it is looked at.
+        // Triangles masked so far are removed from the other mesh, too, before it is checked.
         topology.FindAdjacency(this->Meshes[0]->GetNumberOfPoints());
       }
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TriangulationPair.h
-/// Two isomorphic triangulations, read and validated once.
+/// Two isomorphic triangulations, read and validated.
 
 #ifndef homeomorphism_TriangulationPair_h
 #define homeomorphism_TriangulationPair_h
@@ -20,7 +20,7 @@ class vtkPolyData;
 namespace homeomorphism
 {
 
-/// Which of the two meshes.
+/// The two meshes of a pair, and their domains.
 enum class Domain
 {
   Source = 0,
