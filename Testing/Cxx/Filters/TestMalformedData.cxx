@@ -162,7 +162,7 @@ protected:
 //------------------------------------------------------------------------------------------------
 // Hidden cells of meshes that have other vertices and lines.
 
-TEST_F(MalformedData, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
+TEST_F(MalformedData, HiddenCellsOfTheTargetAreFoundByTheirIdsInTheTarget)
 {
   for (const bool onTarget : { true, false })
   {
@@ -192,7 +192,7 @@ TEST_F(MalformedData, ATargetsHiddenCellIsTheOneWithThatIdInTheTarget)
   }
 }
 
-TEST_F(MalformedData, GhostArraysOfAnotherLengthOnTheMeshesHideNothing)
+TEST_F(MalformedData, GhostArraysOfWrongLengthOnTheMeshesAreIgnored)
 {
   for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
   {
@@ -214,7 +214,7 @@ vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
     { { 0, 1, 2 }, { 3, 4, 5 } });
 }
 
-TEST_F(MalformedData, GhostArraysOfAnotherLengthOnTheDataAreReplaced)
+TEST_F(MalformedData, GhostArraysOfWrongLengthOnTheDataAreReplaced)
 {
   for (const vtkIdType points : { 0, 1, 3, 5, 7, 100 })
   {
@@ -255,7 +255,7 @@ TEST_F(MalformedData, GhostArraysThatFitAreKept)
     double(vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
 }
 
-TEST_F(MalformedData, ArraysOfAnotherLengthPassUntouched)
+TEST_F(MalformedData, ArraysOfWrongLengthPassUnchanged)
 {
   for (const vtkIdType tuples : { 0, 1, 2, 5, 7, 5000 })
   {
@@ -293,7 +293,7 @@ TEST_F(MalformedData, ArraysOfAnotherLengthPassUntouched)
   }
 }
 
-TEST_F(MalformedData, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
+TEST_F(MalformedData, ArraysOfWrongLengthDoNotBlockOthers)
 {
   const auto data = MakeDataPartlyOutside();
   const auto tooLong = MakeNumbers("TooLong", 3, 7);
@@ -309,7 +309,7 @@ TEST_F(MalformedData, ArraysOfAnotherLengthDoNotKeepOthersFromBeingCarried)
   EXPECT_NEAR(mapped->GetComponent(2, 2), 23.0, 1e-13);
 }
 
-TEST_F(MalformedData, ArraysOfAnotherLengthOnImagesPassUntouched)
+TEST_F(MalformedData, ArraysOfWrongLengthOnImagesPass)
 {
   const vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 1);
@@ -347,7 +347,7 @@ void ExpectCorruptCellHandled(vtkPointSet* output)
   EXPECT_TRUE(std::isnan(vectors->GetComponent(2, 0)));
 }
 
-TEST_F(MalformedData, CellsOfAGridWithPointsThatDoNotExist)
+TEST_F(MalformedData, CellsOfAGridWithInvalidPointIds)
 {
   for (const vtkIdType noPoint : NoPoints)
   {
@@ -368,7 +368,7 @@ TEST_F(MalformedData, CellsOfAGridWithPointsThatDoNotExist)
   }
 }
 
-TEST_F(MalformedData, CellsOfPolyDataWithPointsThatDoNotExist)
+TEST_F(MalformedData, CellsOfPolyDataWithInvalidPointIds)
 {
   for (const vtkIdType noPoint : NoPoints)
   {
@@ -386,7 +386,7 @@ TEST_F(MalformedData, CellsOfPolyDataWithPointsThatDoNotExist)
   }
 }
 
-TEST_F(MalformedData, CoordinatesOfDataWithPointsThatDoNotExist)
+TEST_F(MalformedData, CoordinatesOfDataWithInvalidPointIds)
 {
   // Coordinates belong to points; the filter does not read the cells.
   for (const vtkIdType noPoint : NoPoints)
@@ -402,7 +402,7 @@ TEST_F(MalformedData, CoordinatesOfDataWithPointsThatDoNotExist)
   }
 }
 
-TEST_F(MalformedData, MeshesWithPointsThatDoNotExistAreRefused)
+TEST_F(MalformedData, MeshesWithInvalidPointIdsAreRefused)
 {
   for (const vtkIdType noPoint : { vtkIdType(9), vtkIdType(-1), vtkIdType(1) << 44 })
   {
@@ -424,7 +424,7 @@ TEST_F(MalformedData, MeshesWithPointsThatDoNotExistAreRefused)
 //------------------------------------------------------------------------------------------------
 // Arrays without a name.
 
-TEST_F(MalformedData, UnnamedAttributesAreReplacedNotDoubled)
+TEST_F(MalformedData, UnnamedAttributesAreReplaced)
 {
   for (const bool onCells : { false, true })
   {
@@ -479,7 +479,7 @@ TEST_F(MalformedData, UnnamedAttributesAreReplacedNotDoubled)
   }
 }
 
-TEST_F(MalformedData, UnnamedArraysWithoutARoleAreReplacedToo)
+TEST_F(MalformedData, UnnamedArraysWithoutARoleAreReplaced)
 {
   const auto data = MakeDataPartlyOutside();
   const auto vectors = MakeNumbers(nullptr, 3, 6);
@@ -595,7 +595,7 @@ TEST_F(MalformedData, PiecesOfAllOutputsTogether)
   EXPECT_EQ(sums, whole);
 }
 
-TEST_F(MalformedData, PiecesAskedOfTheFirstOutputSettleTheOthers)
+TEST_F(MalformedData, PiecesRequestedOfTheFirstOutputApplyToAll)
 {
   // UpdatePiece requests a piece of output 0. The other outputs of the same execution are marked as
   // the same piece, and must be that piece.
@@ -631,12 +631,12 @@ TEST_F(MalformedData, PiecesAskedOfTheFirstOutputSettleTheOthers)
 
 /// The messages for a pair whose source has 1 vertex and whose target has 2 vertices and 3 lines.
 std::string Message(
-  const std::function<void(const MeshPair&)>& spoil, int system = Linear, bool mask = false)
+  const std::function<void(const MeshPair&)>& damage, int system = Linear, bool mask = false)
 {
   const MeshPair pair = MakeDoublingPair(2);
   AddVertsAndLines(pair.Source, 1, 0);
   AddVertsAndLines(pair.Target, 2, 3);
-  spoil(pair);
+  damage(pair);
   const vtkNew<vtkDifferentiableHomeomorphism> filter;
   Messages told(filter);
   filter->SetSourceData(pair.Source);
@@ -648,7 +648,7 @@ std::string Message(
   return mask ? told.Warning() : told.Error();
 }
 
-TEST(CellIdsInMessages, TrianglesWithoutArea)
+TEST(CellIdsInMessages, DegenerateTriangles)
 {
   const auto flatten = [](vtkPolyData* mesh) {
     // Move point 2, which only triangle 2 (points 1, 2, 5) uses, onto the opposite edge.
@@ -669,18 +669,18 @@ TEST(CellIdsInMessages, TrianglesWithoutArea)
   }
 }
 
-TEST(CellIdsInMessages, TrianglesThatAreNotFinite)
+TEST(CellIdsInMessages, NonFiniteTriangles)
 {
-  const auto spoil = [](vtkPolyData* mesh) {
+  const auto damage = [](vtkPolyData* mesh) {
     mesh->GetPoints()->SetPoint(2, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
   };
   // Point 2 is a corner of triangle 2 only.
   EXPECT_NE(Message([&](const MeshPair& pair) {
-    spoil(pair.Source);
+    damage(pair.Source);
   }).find("1 triangle of the source (cell 3) has a coordinate that is not finite"),
     std::string::npos);
   EXPECT_NE(Message([&](const MeshPair& pair) {
-    spoil(pair.Target);
+    damage(pair.Target);
   }).find("1 triangle of the target (cell 7) has a coordinate that is not finite"),
     std::string::npos);
 }
@@ -709,7 +709,7 @@ std::string OverlapMessage(bool inTarget)
   return told.Error();
 }
 
-TEST(CellIdsInMessages, TrianglesThatOverlap)
+TEST(CellIdsInMessages, OverlappingTriangles)
 {
   EXPECT_NE(
     OverlapMessage(false).find("2 triangles of the source (cells 2, 3) overlap"), std::string::npos)
@@ -737,7 +737,7 @@ TEST(CellIdsInMessages, DiscordantTriangles)
     << target;
 }
 
-TEST(CellIdsInMessages, CellsThatAreNotTriangles)
+TEST(CellIdsInMessages, NonTriangles)
 {
   const auto add = [](vtkPolyData* mesh) {
     const vtkIdType square[] = { 0, 1, 4, 3 };

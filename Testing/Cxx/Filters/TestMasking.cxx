@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// MaskInvalidTriangles: the offenders, and only they, are left out with a warning, and the rest is
-// mapped as if they had been removed from the meshes by hand.
+// With MaskInvalidTriangles, exactly the offending triangles are masked with a warning, and the
+// rest is mapped as if they had been removed from the meshes.
 
 #include "MappedPoints.h"
 
@@ -25,11 +25,11 @@ using namespace test_meshes;
 struct Expectation
 {
   std::set<std::size_t> Masked;
-  /// What the warning says, each to be followed by the outcome.
+  /// The expected phrases of the warning, each followed by the outcome.
   std::vector<std::string> Warnings;
 };
 
-/// Whether points can be inside a triangle and in no other that shares only an edge with it.
+/// Whether points can be inside a triangle and not in a neighbor across an edge.
 bool HasInterior(const std::vector<Point>& points, const Triangle& triangle)
 {
   Point normal;
@@ -41,7 +41,7 @@ bool HasInterior(const std::vector<Point>& points, const Triangle& triangle)
     };
     normal[axis] = component(1, 1) * component(2, 2) - component(1, 2) * component(2, 1);
   }
-  // Not so if a coordinate is not finite.
+  // Not if a coordinate is not finite.
   const double area = std::hypot(normal[0], normal[1], normal[2]);
   return std::isfinite(area) && area > 1e-6;
 }
@@ -111,7 +111,7 @@ void ExpectMasked(
     }
   }
 
-  // The transform says the same, in so many words.
+  // The transform gives the same message.
   vtkNew<vtkHomeomorphismTransform> transform;
   Messages messages(static_cast<vtkObject*>(transform.Get()));
   transform->SetSource(pair.Source);
@@ -189,7 +189,7 @@ TEST(Masking, DegenerateTriangle)
   }
 }
 
-TEST(Masking, NoAreaOnASurface)
+TEST(Masking, DegenerateTriangleOnASurface)
 {
   const MeshPair pair{ MakeSheet(4, 5, 0.3), MakeSheet(4, 6, 0.4) };
   const std::vector<Point> points = PointsOf(pair.Target);
@@ -199,8 +199,8 @@ TEST(Masking, NoAreaOnASurface)
     middle[axis] = 0.6 * points[18][axis] + 0.4 * points[23][axis];
   }
   MovePoint(pair.Target, 24, middle);
-  // The collapsed triangle lies on its neighbors' edge, where the inverse map would find it: those
-  // points are in the neighbors. Only the forward map is compared.
+  // The collapsed triangle lies on the edge of its neighbors, where the inverse map finds the
+  // neighbors. Only the forward map is compared.
   const std::vector<Point> samples = SamplePoints(pair.Source, GridTriangles(4), 4, 5);
   MapOptions options;
   options.Mask = true;
@@ -213,9 +213,9 @@ TEST(Masking, NoAreaOnASurface)
   }
 }
 
-TEST(Masking, EdgeWithThreeTriangles)
+TEST(Masking, NonManifoldEdge)
 {
-  // A fin on the edge of triangles 0 and 1; a second one on that of the last two.
+  // A fin on the edge of triangles 0 and 1, and a second one on the edge of the last two.
   std::vector<Triangle> triangles = GridTriangles(3);
   triangles.push_back({ 0, 5, 16 });
   triangles.push_back({ 10, 15, 16 });
@@ -246,7 +246,7 @@ TEST(Masking, FlippedAlone)
 
 TEST(Masking, FlippedAndThereforeOverlapping)
 {
-  // Cell 31 turned over in the target; its neighbor across the edge to the moved point, cell 30,
+  // Cell 31 is flipped in the target. Its neighbor across the edge to the moved point, cell 30,
   // then lies on cell 28.
   const MeshPair pair = MakePlanarPair(4, 9, 0.0);
   MovePoint(pair.Target, 24, { 2.9, 3.5, 0.0 });
@@ -257,7 +257,7 @@ TEST(Masking, FlippedAndThereforeOverlapping)
         "2 triangles of the target (cells 28, 30) overlap other triangles" } });
 }
 
-/// Adds a copy of some grid squares, as a piece of its own, to points and triangles.
+/// Adds a copy of some grid squares, as a separate component, to points and triangles.
 void AddSquares(std::vector<Point>& points, std::vector<Triangle>& triangles, int n,
   const Point& corner, bool frameOnly)
 {
@@ -283,10 +283,10 @@ void AddSquares(std::vector<Point>& points, std::vector<Triangle>& triangles, in
   }
 }
 
-TEST(Masking, TwoSheets)
+TEST(Masking, OverlappingSheets)
 {
-  // They share the square from (2.5, 2.5) to (4, 4): the four squares of the first sheet's corner
-  // and of the second's.
+  // They share the square from (2.5, 2.5) to (4, 4): the four squares in the corner of the first
+  // sheet and of the second.
   std::vector<Point> overlapping;
   std::vector<Triangle> triangles;
   AddSquares(overlapping, triangles, 4, { 0, 0, 0 }, false);
@@ -316,16 +316,16 @@ TEST(Masking, TwoSheets)
     { masked, { "16 triangles of the source" + fault } });
   ExpectMasked({ MakeMesh(apart, triangles), MakeMesh(overlapping, triangles) }, triangles,
     { masked, { "16 triangles of the target" + fault } });
-  // Once they are masked on account of the source, nothing is left to overlap in the target.
+  // After masking them because of the source, the target has no overlap.
   ExpectMasked({ MakeMesh(overlapping, triangles), MakeMesh(overlapping, triangles) }, triangles,
     { masked, { "16 triangles of the source" + fault } });
 }
 
 TEST(Masking, OverlapInTheTargetBehindOneInTheSource)
 {
-  // Sheets A and B lie on each other in the target. In the source two frames cover the outermost
-  // triangles of A and of B, so that those are masked already when the target is looked at: what is
-  // left of A and B has a boundary only because they are.
+  // Sheets A and B coincide in the target. In the source two frames cover the outermost triangles
+  // of A and B, so these are already masked when the target is checked. Only therefore do the rests
+  // of A and B have a boundary.
   std::vector<Point> source;
   std::vector<Point> target;
   std::vector<Triangle> triangles;
@@ -352,10 +352,10 @@ TEST(Masking, OverlapInTheTargetBehindOneInTheSource)
         "triangles" } });
 }
 
-TEST(Masking, AMaskedTriangleDoesNotBendThePlane)
+TEST(Masking, MaskedTrianglesDoNotAffectPlanarity)
 {
-  // A fin that stands out of a flat sheet. Without it and the two triangles beside it, the sheet is
-  // planar: heights pass, and the transform takes it.
+  // A fin perpendicular to a flat sheet. Without it and the two triangles beside it, the sheet is
+  // planar: heights are kept, and the transform accepts it.
   std::vector<Triangle> triangles = GridTriangles(3);
   triangles.push_back({ 0, 5, 16 });
   std::vector<Point> source = GridPoints(3, 10, 0.2);
@@ -379,10 +379,10 @@ TEST(Masking, AMaskedTriangleDoesNotBendThePlane)
   EXPECT_EQ("", messages.Error());
 }
 
-TEST(Masking, AMaskedTriangleDoesNotStretchTheDomain)
+TEST(Masking, MaskedTrianglesDoNotAffectTheTolerance)
 {
-  // Tolerance is a proportion of the domain's diagonal; a collapsed triangle far away has no part
-  // in the domain.
+  // Tolerance is relative to the diagonal of the domain. A collapsed triangle far away is not part
+  // of the domain.
   std::vector<Point> points = GridPoints(3, 12, 0.2);
   points.push_back({ 1000.0, 0.0, 0.0 });
   std::vector<Triangle> triangles = GridTriangles(3);
@@ -398,7 +398,7 @@ TEST(Masking, AMaskedTriangleDoesNotStretchTheDomain)
   EXPECT_FALSE(mapped.IsInside(1));
 }
 
-TEST(Masking, OneSidedSurfacesAreRefusedAllTheSame)
+TEST(Masking, NonOrientableSurfacesAreRefused)
 {
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 3, 2 }, { 2, 3, 4 }, { 3, 0, 4 },
     { 4, 0, 1 } };
@@ -414,7 +414,7 @@ TEST(Masking, OneSidedSurfacesAreRefusedAllTheSame)
   EXPECT_TRUE(mapped.Images.empty());
 }
 
-TEST(Masking, WhatIsNotTheFaultOfTrianglesIsRefusedAllTheSame)
+TEST(Masking, DefectsOfTheWholeMeshAreRefused)
 {
   const MeshPair pair = MakePlanarPair(4, 13);
   std::vector<Triangle> triangles = GridTriangles(4);
@@ -430,7 +430,7 @@ TEST(Masking, WhatIsNotTheFaultOfTrianglesIsRefusedAllTheSame)
     "", MapPoints({ pair.Source, MakePlanarPair(3, 1).Source }, { { 1, 1, 0 } }, options).Error);
 }
 
-TEST(Masking, ASoundMeshGivesNoWarning)
+TEST(Masking, AValidMeshGivesNoWarning)
 {
   MapOptions options;
   options.Mask = true;
@@ -467,7 +467,7 @@ TEST(Masking, CoordinatesFilter)
   {
     EXPECT_EQ(t < 2 ? -1 : static_cast<int>(vtkTriangularCoordinates::SMOOTH), used->GetTuple1(t));
   }
-  // No line is drawn in them.
+  // They contain no lines.
   vtkDataArray* ids = filter->GetLines()->GetCellData()->GetArray("TriangleId");
   for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
   {

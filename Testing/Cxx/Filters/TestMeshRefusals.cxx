@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Every reason for which meshes are refused, seen through the VTK classes: the message names the
-// kind, the number of offenders and the first of them, and nothing comes out that could be taken
-// for a result. And what looks like a defect but is none.
+// All reasons for refusing meshes, tested through the VTK classes: the message contains the kind of
+// defect, the number of offenders and the first of them, and the output is empty. Also valid meshes
+// that resemble invalid ones.
 
 #include "MappedPoints.h"
 
@@ -54,7 +54,7 @@ void ExpectTexts(const std::string& message, const Texts& texts)
   }
 }
 
-/// The filter says why, and has no output, not even that of an earlier execution.
+/// The filter reports the defect and has no output, not even that of a previous execution.
 void ExpectFilterRefuses(const MeshPair& pair, const Texts& texts, const MapOptions& options)
 {
   const MeshPair valid = MakePlanarPair(2, 1);
@@ -79,7 +79,7 @@ void ExpectFilterRefuses(const MeshPair& pair, const Texts& texts, const MapOpti
   EXPECT_EQ(0, filter->GetOutput()->GetNumberOfElements(vtkDataObject::POINT));
   EXPECT_EQ(0, filter->GetOutput()->GetNumberOfElements(vtkDataObject::CELL));
 
-  // Without data of its own as well: then the bad mesh itself would be the data.
+  // Also without separate data, when the invalid mesh itself is the data.
   filter->SetInputData(2, nullptr);
   messages.Clear();
   filter->Modified();
@@ -88,7 +88,7 @@ void ExpectFilterRefuses(const MeshPair& pair, const Texts& texts, const MapOpti
   EXPECT_EQ(0, filter->GetOutput()->GetNumberOfElements(vtkDataObject::POINT));
 }
 
-/// The transform says why, and every point is outside.
+/// The transform reports the defect, and every point is outside.
 void ExpectTransformRefuses(const MeshPair& pair, const Texts& texts, const MapOptions& options)
 {
   const MeshPair valid = MakePlanarPair(2, 1);
@@ -131,7 +131,7 @@ void ExpectPairRefused(const MeshPair& pair, const Texts& texts, MapOptions opti
   ExpectFilterRefuses(pair, texts, options);
 }
 
-/// The same of one mesh alone: vtkTriangularCoordinates calls it the triangulation.
+/// The defect in a single mesh, which vtkTriangularCoordinates calls the triangulation.
 void ExpectAloneRefused(vtkPolyData* mesh, const Texts& texts, const MapOptions& options = {})
 {
   vtkNew<vtkTriangularCoordinates> filter;
@@ -154,8 +154,8 @@ void ExpectAloneRefused(vtkPolyData* mesh, const Texts& texts, const MapOptions&
   EXPECT_EQ(0, filter->GetTriangulation()->GetCellData()->GetNumberOfArrays());
 }
 
-/// A defect that each of the two meshes can have for itself: in the source, in the target, alone.
-void ExpectRefusedOnEachSide(const MeshPair& valid, const std::function<void(vtkPolyData*)>& spoil,
+/// A defect that either mesh can have: tests it in the source, in the target, and in a single mesh.
+void ExpectRefusedOnEachSide(const MeshPair& valid, const std::function<void(vtkPolyData*)>& damage,
   const std::string& offenders, const std::string& cells, const Texts& texts)
 {
   for (const bool inSource : { true, false })
@@ -163,14 +163,14 @@ void ExpectRefusedOnEachSide(const MeshPair& valid, const std::function<void(vtk
     MeshPair pair{ vtkSmartPointer<vtkPolyData>::New(), vtkSmartPointer<vtkPolyData>::New() };
     pair.Source->DeepCopy(valid.Source);
     pair.Target->DeepCopy(valid.Target);
-    vtkPolyData* spoilt = inSource ? pair.Source : pair.Target;
-    spoil(spoilt);
+    vtkPolyData* damaged = inSource ? pair.Source : pair.Target;
+    damage(damaged);
     Texts expected = texts;
     expected.push_back(offenders + " of the " + (inSource ? "source" : "target") + " " + cells);
     SCOPED_TRACE(expected.back());
     ExpectPairRefused(pair, expected);
     expected.back() = offenders + " of the triangulation " + cells;
-    ExpectAloneRefused(spoilt, expected);
+    ExpectAloneRefused(damaged, expected);
   }
 }
 
@@ -236,7 +236,7 @@ vtkSmartPointer<ArrayType> MakeArray(const std::vector<int>& values)
 }
 
 //------------------------------------------------------------------------------------------------
-// The two meshes are not the same mesh.
+// The two meshes are not isomorphic.
 
 TEST(MeshRefusals, PointCountsDiffer)
 {
@@ -258,7 +258,7 @@ TEST(MeshRefusals, TriangleCountsDiffer)
       "Source and target must be the same mesh with different point coordinates." });
 }
 
-TEST(MeshRefusals, BothCountsDifferAreBothTold)
+TEST(MeshRefusals, BothDifferingCountsAreReported)
 {
   ExpectPairRefused({ MakePlanarPair(4, 12).Source, MakePlanarPair(3, 12).Source },
     { "The source has 25 points, the target 16", "The source has 32 triangles, the target 18" });
@@ -276,7 +276,7 @@ TEST(MeshRefusals, ConnectivityDiffers)
       "Give the target the source's cells, with its own point coordinates in the same order." });
 }
 
-TEST(MeshRefusals, OneTriangleIsToldInTheSingular)
+TEST(MeshRefusals, OneTriangleIsReportedInTheSingular)
 {
   const MeshPair pair = MakePlanarPair(4, 13);
   std::vector<Triangle> triangles = GridTriangles(4);
@@ -290,14 +290,14 @@ TEST(MeshRefusals, SameTrianglesInAnotherOrderDiffer)
   const MeshPair pair = MakePlanarPair(4, 13);
   std::vector<Triangle> triangles = GridTriangles(4);
   std::rotate(triangles.begin(), triangles.begin() + 1, triangles.end());
-  // More than ten: ten are named.
+  // More than ten: ten are listed.
   ExpectPairRefused({ pair.Source, WithTriangles(pair.Target, triangles) },
     { "32 triangles of the pair (cells 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, ...) have different points" });
 }
 
-TEST(MeshRefusals, ARepeatedCornerOnOneSideDiffers)
+TEST(MeshRefusals, ARepeatedCornerInOneMeshDiffers)
 {
-  // {0, 1, 6} and {0, 0, 6} have the same points only as sets.
+  // {0, 1, 6} and {0, 0, 6} are equal as sets of points only.
   const MeshPair pair = MakePlanarPair(4, 13);
   std::vector<Triangle> triangles = GridTriangles(4);
   triangles[0] = { 0, 0, 6 };
@@ -307,7 +307,7 @@ TEST(MeshRefusals, ARepeatedCornerOnOneSideDiffers)
     { WithTriangles(pair.Source, triangles), pair.Target }, { "1 triangle of the pair (cell 0)" });
 }
 
-TEST(MeshRefusals, TheOrderOfATrianglesPointsInTheTargetIsFree)
+TEST(MeshRefusals, TheOrderOfPointsOfATriangleInTheTargetIsFree)
 {
   const MeshPair pair = MakePlanarPair(5, 14);
   std::vector<Triangle> triangles = GridTriangles(5);
@@ -316,15 +316,15 @@ TEST(MeshRefusals, TheOrderOfATrianglesPointsInTheTargetIsFree)
   {
     std::shuffle(triangle.begin(), triangle.end(), generator);
   }
-  // The order counts only in the source, so this is the same to the bit.
+  // Only the order in the source matters, so the results are identical.
   ExpectSameMap(
     pair, { pair.Source, WithTriangles(pair.Target, triangles) }, GridTriangles(5), 0.0);
 }
 
 //------------------------------------------------------------------------------------------------
-// Cells that are no triangles.
+// Cells that are not triangles.
 
-TEST(MeshRefusals, PolygonsThatAreNotTriangles)
+TEST(MeshRefusals, PolygonsWithOtherNumbersOfCorners)
 {
   const std::vector<Point> points = GridPoints(2, 15, 0.2);
   const std::vector<std::vector<vtkIdType>> polygons{ { 0, 1, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 },
@@ -337,13 +337,13 @@ TEST(MeshRefusals, PolygonsThatAreNotTriangles)
     { advice[0], "5 cells of the source " + fault, "5 cells of the target " + fault });
   ExpectAloneRefused(mesh, { advice[0], "5 cells of the triangulation " + fault });
 
-  // Only in the target, where the source has been triangulated for itself.
+  // Only in the target, if the source was triangulated separately.
   const MeshPair pair{ MakeMesh(points, GridTriangles(2)),
     MakePolygons(points, { { 0, 1, 4, 3 }, { 1, 2, 5, 4 }, { 3, 4, 7, 6 }, { 4, 5, 8, 7 } }) };
   ExpectPairRefused(pair, { advice[0], "4 cells of the target (cells 0, 1, 2, 3)" });
 }
 
-TEST(MeshRefusals, OneQuadIsToldInTheSingular)
+TEST(MeshRefusals, OneQuadIsReportedInTheSingular)
 {
   const auto mesh = MakePolygons(GridPoints(1, 0, 0.0), { { 0, 1, 3, 2 } });
   ExpectAloneRefused(mesh, { "1 cell of the triangulation (cell 0) is not a triangle" });
@@ -360,7 +360,7 @@ TEST(MeshRefusals, Strips)
     strips->InsertNextCell(4, ids.data());
     mesh->SetStrips(strips);
   }
-  // Strips come after the eight polygons.
+  // Strips follow the eight polygons.
   const Texts texts{ "(cells 8, 9) are triangle strips",
     "Triangulate the source (vtkTriangleFilter)" };
   ExpectPairRefused(pair, texts);
@@ -372,7 +372,7 @@ TEST(MeshRefusals, Strips)
 //------------------------------------------------------------------------------------------------
 // Corrupt cells.
 
-TEST(MeshRefusals, PointsThatDoNotExist)
+TEST(MeshRefusals, InvalidPointIds)
 {
   for (const vtkIdType wrong :
     { vtkIdType(-1), vtkIdType(25), vtkIdType(1) << 31, (vtkIdType(1) << 32) + 1,
@@ -385,13 +385,13 @@ TEST(MeshRefusals, PointsThatDoNotExist)
       std::vector<Triangle> triangles = GridTriangles(4);
       triangles[7][corner] = wrong;
       triangles[31][corner] = wrong;
-      const MeshPair spoilt = WithTriangles(pair, triangles);
+      const MeshPair damaged = WithTriangles(pair, triangles);
       const std::string fault = "(cells 7, 31) refer to points that do not exist. The mesh is "
                                 "corrupt: read or make it again.";
       ExpectPairRefused(
-        spoilt, { "2 triangles of the source " + fault, "2 triangles of the target " + fault });
-      ExpectPairRefused({ pair.Source, spoilt.Target }, { "2 triangles of the target " + fault });
-      ExpectAloneRefused(spoilt.Source, { "2 triangles of the triangulation " + fault });
+        damaged, { "2 triangles of the source " + fault, "2 triangles of the target " + fault });
+      ExpectPairRefused({ pair.Source, damaged.Target }, { "2 triangles of the target " + fault });
+      ExpectAloneRefused(damaged.Source, { "2 triangles of the triangulation " + fault });
     }
   }
 }
@@ -557,7 +557,7 @@ TEST(MeshRefusals, SurfacesOfContourFiltersAreRead)
 }
 
 //------------------------------------------------------------------------------------------------
-// Triangles that are defective by themselves.
+// Triangles with defects of their own.
 
 TEST(MeshRefusals, RepeatedCorner)
 {
@@ -567,11 +567,11 @@ TEST(MeshRefusals, RepeatedCorner)
     std::vector<Triangle> triangles = GridTriangles(4);
     triangles[9][corner] = triangles[9][(corner + 1) % 3];
     triangles[10] = { 7, 7, 7 };
-    const MeshPair spoilt = WithTriangles(pair, triangles);
+    const MeshPair damaged = WithTriangles(pair, triangles);
     const std::string fault = "(cells 9, 10) use the same point twice";
-    ExpectPairRefused(spoilt, { "2 triangles of the source " + fault, RepairOrMask });
+    ExpectPairRefused(damaged, { "2 triangles of the source " + fault, RepairOrMask });
     ExpectAloneRefused(
-      spoilt.Target, { "2 triangles of the triangulation " + fault, RepairOrMask });
+      damaged.Target, { "2 triangles of the triangulation " + fault, RepairOrMask });
   }
 }
 
@@ -623,7 +623,7 @@ TEST(MeshRefusals, NoPointFinite)
   ExpectPairRefused({ mesh, mesh }, { "2 triangles of the source (cells 0, 1)" });
 }
 
-TEST(MeshRefusals, APointThatNoTriangleUsesMayBeAnything)
+TEST(MeshRefusals, UnusedPointsMayBeInvalid)
 {
   const MeshPair pair = MakePlanarPair(4, 23);
   for (const Point& odd : { Point{ NotANumber, 1.0, 0.0 }, Point{ 1.0, Infinity, 0.0 },
@@ -641,19 +641,19 @@ TEST(MeshRefusals, APointThatNoTriangleUsesMayBeAnything)
   }
 }
 
-TEST(MeshRefusals, NoAreaInThePlane)
+TEST(MeshRefusals, DegenerateTrianglesInThePlane)
 {
-  // Exactly on a line, the middle not being the midpoint.
-  const auto spoil = [](vtkPolyData* mesh) {
+  // Exactly collinear, with a middle point that is not the midpoint.
+  const auto damage = [](vtkPolyData* mesh) {
     MovePoint(mesh, 0, { 0.0, 0.0, 0.0 });
     MovePoint(mesh, 1, { 0.5, 0.125, 0.0 });
     MovePoint(mesh, 6, { 1.0, 0.25, 0.0 });
   };
   ExpectRefusedOnEachSide(
-    MakePlanarPair(4, 24, 0.0), spoil, "1 triangle", "(cell 0) is degenerate", { RepairOrMask });
+    MakePlanarPair(4, 24, 0.0), damage, "1 triangle", "(cell 0) is degenerate", { RepairOrMask });
 }
 
-TEST(MeshRefusals, NoAreaWithCoincidingPoints)
+TEST(MeshRefusals, DegenerateTrianglesWithCoincidentPoints)
 {
   ExpectRefusedOnEachSide(MakePlanarPair(4, 24, 0.0),
     [](vtkPolyData* mesh) {
@@ -662,7 +662,7 @@ TEST(MeshRefusals, NoAreaWithCoincidingPoints)
     "2 triangles", "(cells 0, 1) are degenerate", { RepairOrMask });
 }
 
-TEST(MeshRefusals, TheAreaOfOneUlpIsAnArea)
+TEST(MeshRefusals, AHeightOfOneUlpIsNotDegenerate)
 {
   // In a plane parallel to two axes this is decided exactly.
   const double above = std::nextafter(0.5, 1.0);
@@ -680,9 +680,9 @@ TEST(MeshRefusals, TheAreaOfOneUlpIsAnArea)
   }
 }
 
-TEST(MeshRefusals, NoAreaInSpace)
+TEST(MeshRefusals, DegenerateTrianglesInSpace)
 {
-  // Collinear but for the rounding of the coordinates.
+  // Collinear up to the rounding of the coordinates.
   const MeshPair pair{ MakeSheet(4, 25, 0.3), MakeSheet(4, 26, 0.4) };
   ExpectRefusedOnEachSide(pair,
     [](vtkPolyData* mesh) {
@@ -697,7 +697,7 @@ TEST(MeshRefusals, NoAreaInSpace)
     "1 triangle", "(cell 31) is degenerate", { RepairOrMask });
 }
 
-TEST(MeshRefusals, NoAreaInSpaceInFloat)
+TEST(MeshRefusals, DegenerateTrianglesInSpaceInFloat)
 {
   MeshPair pair{ MakeSheet(4, 25, 0.3), MakeSheet(4, 26, 0.4) };
   for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
@@ -708,7 +708,7 @@ TEST(MeshRefusals, NoAreaInSpaceInFloat)
       rounded->InsertNextPoint(p.data());
     }
     ASSERT_EQ(VTK_FLOAT, rounded->GetDataType());
-    // Collinear to the last bit, as midpoints of short numbers are.
+    // Exactly collinear, as midpoints of short numbers are.
     rounded->SetPoint(18, 3.0, 3.0, 0.25);
     rounded->SetPoint(23, 3.0, 4.0, 0.75);
     rounded->SetPoint(24, 3.0, 3.5, 0.5);
@@ -729,7 +729,7 @@ TEST(MeshRefusals, AllPointsInALine)
   ExpectAloneRefused(origin, { "1 triangle of the triangulation (cell 0) is degenerate" });
 }
 
-TEST(MeshRefusals, DefectsOfBothMeshesAreTold)
+TEST(MeshRefusals, DefectsOfBothMeshesAreReported)
 {
   const MeshPair pair = MakePlanarPair(4, 27, 0.0);
   MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
@@ -739,9 +739,10 @@ TEST(MeshRefusals, DefectsOfBothMeshesAreTold)
       "2 triangles of the target (cells 30, 31) are degenerate" });
 }
 
-TEST(MeshRefusals, ExactlyTenAreNamedInFull)
+TEST(MeshRefusals, TenIdsAreListedInFull)
 {
-  // Points 0 to 5 of the lowest row of squares put onto the row above: all its triangles collapse.
+  // Points 0 to 5 of the lowest row of squares are moved to the row above: all its triangles
+  // collapse.
   for (const int n : { 5, 6 })
   {
     const MeshPair pair = MakePlanarPair(n, 28, 0.0);
@@ -759,7 +760,7 @@ TEST(MeshRefusals, ExactlyTenAreNamedInFull)
 //------------------------------------------------------------------------------------------------
 // Non-manifold and non-orientable surfaces.
 
-TEST(MeshRefusals, EdgeWithThreeTriangles)
+TEST(MeshRefusals, NonManifoldEdge)
 {
   // A fin on the edge of triangles 0 and 1.
   MeshPair pair{ MakeSheet(3, 29, 0.3), MakeSheet(3, 30, 0.4) };
@@ -776,7 +777,7 @@ TEST(MeshRefusals, EdgeWithThreeTriangles)
   ExpectAloneRefused(pair.Target, { "3 triangles of the triangulation " + fault, RepairOrMask });
 }
 
-/// A ring of n squares with n half turns, each square cut into two triangles.
+/// A ring of n squares with n half turns, each square divided into two triangles.
 vtkSmartPointer<vtkPolyData> MakeTwistedRing(int n, int halfTurns, double width)
 {
   const double pi = std::acos(-1.0);
@@ -816,7 +817,7 @@ TEST(MeshRefusals, NonOrientableSurface)
   ExpectPairRefused(threeTurns, texts);
 }
 
-TEST(MeshRefusals, RingsWithTwoSidesAreTaken)
+TEST(MeshRefusals, OrientableRingsAreAccepted)
 {
   for (const int halfTurns : { 0, 2 })
   {
@@ -833,7 +834,7 @@ TEST(MeshRefusals, RingsWithTwoSidesAreTaken)
 
 TEST(MeshRefusals, OneFlippedTriangle)
 {
-  // Cells 30 and 31 share point 24. Moved across the edge from 18 to 23, it flips only cell 31.
+  // Cells 30 and 31 share point 24. Moving it across the edge from 18 to 23 flips only cell 31.
   const MeshPair pair = MakePlanarPair(4, 31, 0.0);
   MovePoint(pair.Target, 24, { 2.9, 3.5, 0.0 });
   const Texts texts{ "1 triangle of the pair (cell 31) is flipped between source and target "
@@ -847,7 +848,7 @@ TEST(MeshRefusals, OneFlippedTriangle)
 TEST(MeshRefusals, SeveralFlippedTriangles)
 {
   const MeshPair pair = MakePlanarPair(4, 32, 0.0);
-  // A vertex inside drawn far across the grid.
+  // An interior vertex is moved far across the grid.
   MovePoint(pair.Target, 6, { 3.6, 3.7, 0.0 });
   ExpectPairRefused(pair, { "2 triangles of the pair (cells 10, 11) are flipped" });
 }
@@ -865,7 +866,7 @@ TEST(MeshRefusals, FlippedRelativeToTheRestOfAMirroredMesh)
     { "1 triangle of the pair (cell 31) is flipped" });
 }
 
-TEST(MeshRefusals, AllMirroredIsFine)
+TEST(MeshRefusals, MirroredPairsAreAccepted)
 {
   const MeshPair pair = MakePlanarPair(4, 33);
   std::vector<Point> mirrored = PointsOf(pair.Target);
@@ -885,7 +886,7 @@ TEST(MeshRefusals, AllMirroredIsFine)
   }
 }
 
-TEST(MeshRefusals, MixedWindingIsFine)
+TEST(MeshRefusals, MixedWindingIsAccepted)
 {
   std::vector<Triangle> mixed = GridTriangles(5);
   std::mt19937_64 generator(34);
@@ -899,7 +900,7 @@ TEST(MeshRefusals, MixedWindingIsFine)
   ExpectSameMap(sheets, WithTriangles(sheets, mixed), GridTriangles(5), 2e-14);
 }
 
-TEST(MeshRefusals, ReversedInTheSourceAloneIsFine)
+TEST(MeshRefusals, ReversedWindingInTheSourceIsAccepted)
 {
   std::vector<Triangle> reversed = GridTriangles(5);
   for (Triangle& triangle : reversed)
@@ -916,7 +917,8 @@ TEST(MeshRefusals, ReversedInTheSourceAloneIsFine)
 
 TEST(MeshRefusals, FoldInBothMeshes)
 {
-  // The corner's triangle folded over its neighbor in both meshes: nothing flips between them.
+  // The triangle at the corner is folded over its neighbor in both meshes, so no triangle is
+  // flipped between them.
   const MeshPair pair = MakePlanarPair(4, 38, 0.0);
   for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
   {
@@ -930,7 +932,7 @@ TEST(MeshRefusals, FoldInBothMeshes)
 
 TEST(MeshRefusals, TwoPiecesOverlap)
 {
-  // Two single triangles; they may touch.
+  // Two single triangles, which may touch.
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 3, 4, 5 } };
   const auto apart = MakeMesh(
     { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }, triangles);
@@ -945,7 +947,7 @@ TEST(MeshRefusals, TwoPiecesOverlap)
   ExpectAloneRefused(overlapping, { "2 triangles of the triangulation " + fault });
 }
 
-TEST(MeshRefusals, TheSameTriangleTwice)
+TEST(MeshRefusals, DuplicateTriangle)
 {
   const auto mesh =
     MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 }, { 2, 0, 1 } });
@@ -953,10 +955,10 @@ TEST(MeshRefusals, TheSameTriangleTwice)
     mesh, { "2 triangles of the triangulation (cells 0, 1) overlap other triangles" });
 }
 
-TEST(MeshRefusals, FanThatGoesRoundTwice)
+TEST(MeshRefusals, FanWithTwoTurns)
 {
-  // Ten triangles around a vertex, each of a fifth of a turn: no fold and no boundary inside, and
-  // yet every triangle covers another.
+  // Ten triangles around a vertex, each covering a fifth of a turn: there is no fold and no
+  // interior boundary, but every triangle covers another one.
   const double pi = std::acos(-1.0);
   std::vector<Point> points{ { 0, 0, 0 } };
   std::vector<Triangle> triangles;
@@ -973,9 +975,9 @@ TEST(MeshRefusals, FanThatGoesRoundTwice)
   ExpectAloneRefused(mesh, { "10 triangles of the triangulation " + fault });
 }
 
-TEST(MeshRefusals, AStripThatRunsOverItself)
+TEST(MeshRefusals, SelfOverlappingStrip)
 {
-  // Locally a perfect mesh; only its two ends lie on each other.
+  // Locally the mesh is valid; only its two ends overlap.
   const double pi = std::acos(-1.0);
   const auto spiral = [pi](double turns) {
     std::vector<Point> points;
@@ -1006,7 +1008,7 @@ TEST(MeshRefusals, AStripThatRunsOverItself)
 
 TEST(MeshRefusals, SurfacesMayPassThroughThemselves)
 {
-  // In 3-space only the triangles have to be sound.
+  // In 3-space only single triangles are checked.
   const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 3, 4, 5 } };
   const auto mesh = MakeMesh(
     { { -1, -1, 0 }, { 1, -1, 0 }, { 0, 1, 0 }, { 0, 0, -1 }, { 0, 0.5, 1 }, { 0, -0.5, 1 } },
@@ -1019,8 +1021,8 @@ TEST(MeshRefusals, SurfacesMayPassThroughThemselves)
 //------------------------------------------------------------------------------------------------
 // The Contour system.
 
-/// Draws the target's corner so close to its neighbor on the diagonal that the triangles between
-/// them, cells 0 and 1, have a wide angle beside a short edge.
+/// Moves the corner of the target so close to its neighbor on the diagonal that cells 0 and 1
+/// between them have an obtuse angle beside a short edge.
 void MakeCornerDiscordant(const MeshPair& pair)
 {
   MovePoint(pair.Source, 6, { 1.0, 1.0, 0.0 });
@@ -1044,7 +1046,7 @@ TEST(MeshRefusals, DiscordantTriangles)
   ExpectAloneRefused(
     pair.Target, { "2 triangles of the triangulation (cells 0, 1) " + fault, advice }, options);
 
-  // Carried by the Linear system, if the user asks for it: so without a warning.
+  // Mapping by the Linear system was requested, so there is no warning.
   const std::vector<Point> points = SamplePoints(pair.Source, GridTriangles(4), 5, 39);
   options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
   const MappedPoints mapped = MapPoints(pair, points, options);
@@ -1095,9 +1097,9 @@ TEST(MeshRefusals, DiscordantTriangles)
 
 TEST(MeshRefusals, DiscordantAtTheLimit)
 {
-  // a^2 = b^2 + 3 c^2 exactly, with the long edge from (0, 0) to (6, 0) and the apex at (x, y):
-  // 36 = (6 - x)^2 + y^2 + 3 (x^2 + y^2) where x^2 + y^2 = 3 x, as at (1.5, 1.5). On the limit it
-  // is discordant, an ulp away it depends on the side.
+  // a^2 = b^2 + 3 c^2 exactly, with the long edge from (0, 0) to (6, 0) and the apex at (x, y): 36
+  // = (6 - x)^2 + y^2 + 3 (x^2 + y^2) where x^2 + y^2 = 3 x, as at (1.5, 1.5). At the limit the
+  // triangle is discordant; an ulp away it depends on the direction.
   MapOptions options;
   options.CoordinateSystem = vtkDifferentiableHomeomorphism::CONTOUR;
   for (const double y : { std::nextafter(1.5, 0.0), 1.5, std::nextafter(1.5, 2.0) })
@@ -1123,7 +1125,7 @@ TEST(MeshRefusals, DiscordantAtTheLimit)
   }
 }
 
-TEST(MeshRefusals, NoTriangleIsDiscordantSeenFromTheIncenter)
+TEST(MeshRefusals, NoTriangleIsDiscordantWithTheIncenter)
 {
   const MeshPair pair = MakePlanarPair(4, 39, 0.05);
   MakeCornerDiscordant(pair);
@@ -1162,7 +1164,7 @@ TEST(MeshRefusals, TransformWithoutMeshes)
 }
 
 //------------------------------------------------------------------------------------------------
-// Cells beside the triangles, and cells that the mesh itself takes away.
+// Cells other than triangles, and blanked cells.
 
 /// Adds vertex cells and lines, which vtkPolyData numbers before polygons.
 void AddVerticesAndLines(vtkPolyData* mesh, int vertices, int lines)
@@ -1208,7 +1210,7 @@ TEST(MeshRefusals, VerticesAndLinesShiftTheCellIds)
   ExpectAloneRefused(pair.Source, { "2 triangles of the triangulation (cells 5, 6)" });
 }
 
-TEST(MeshRefusals, VerticesAndLinesShiftTheIdsOfCellsThatAreNoTriangles)
+TEST(MeshRefusals, VerticesAndLinesShiftTheIdsOfNonTriangles)
 {
   const MeshPair pair = MakePlanarPair(4, 42);
   std::vector<Triangle> triangles = GridTriangles(4);
@@ -1242,9 +1244,9 @@ TEST(MeshRefusals, VerticesAndLinesOfOneMeshAlone)
   ExpectSameMap(plain, pair, GridTriangles(4), 0.0);
 }
 
-TEST(MeshRefusals, TheTargetsOwnCellIdsAreNamed)
+TEST(MeshRefusals, CellIdsOfTheTargetAreReported)
 {
-  // Cell ids of the target's defects are those that the user sees in the target.
+  // Cell ids of defects of the target are those of the target.
   const MeshPair pair = MakePlanarPair(4, 44, 0.0);
   AddVerticesAndLines(pair.Source, 3, 2);
   AddVerticesAndLines(pair.Target, 1, 0);
@@ -1267,8 +1269,8 @@ void Blank(vtkDataSetAttributes* attributes, vtkIdType tuples, const std::vector
   attributes->AddArray(ghosts);
 }
 
-/// Maps points in every triangle of a pair; those in the triangles named must be outside, the
-/// others where the map of the mesh without those triangles takes them.
+/// Maps points in every triangle of a pair. Those in the given triangles must be outside, and the
+/// others must have the same images as without these triangles.
 void ExpectHoles(const MeshPair& pair, const std::vector<Triangle>& triangles,
   const std::vector<std::size_t>& holes)
 {
@@ -1318,7 +1320,7 @@ TEST(MeshRefusals, BlankedPointsAreHoles)
   }
 }
 
-TEST(MeshRefusals, DuplicateCellsAndPointsAreNoHoles)
+TEST(MeshRefusals, DuplicateCellsAndPointsAreNotHoles)
 {
   const MeshPair pair = MakePlanarPair(4, 46);
   Blank(pair.Source->GetCellData(), 32, { 3 }, vtkDataSetAttributes::DUPLICATECELL);
@@ -1328,8 +1330,8 @@ TEST(MeshRefusals, DuplicateCellsAndPointsAreNoHoles)
 
 TEST(MeshRefusals, BlankedCellsBesideVerticesAndLines)
 {
-  // The ghost array runs over all cells; the triangles are numbered after vertices and lines, of
-  // which each mesh has its own.
+  // The ghost array covers all cells. Triangles are numbered after vertices and lines, which may
+  // differ between the meshes.
   struct Counts
   {
     int SourceVertices;
@@ -1356,7 +1358,7 @@ TEST(MeshRefusals, BlankedCellsBesideVerticesAndLines)
   }
 }
 
-TEST(MeshRefusals, BlankedDefectsAreNoDefects)
+TEST(MeshRefusals, BlankedDefectsAreIgnored)
 {
   MeshPair pair = MakePlanarPair(4, 48, 0.0);
   MovePoint(pair.Source, 0, { NotANumber, 0.0, 7.0 });
@@ -1369,7 +1371,7 @@ TEST(MeshRefusals, BlankedDefectsAreNoDefects)
   EXPECT_EQ((std::vector<vtkIdType>{ 10, -1, -1 }), mapped.Triangles);
 }
 
-TEST(MeshRefusals, ABlankedTriangleDoesNotBendThePlane)
+TEST(MeshRefusals, BlankedTrianglesDoNotAffectPlanarity)
 {
   const MeshPair pair = MakePlanarPair(4, 49);
   MovePoint(pair.Source, 0, { 0.0, 0.0, 7.0 });
