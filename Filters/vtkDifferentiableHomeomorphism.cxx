@@ -53,12 +53,12 @@ class vtkDifferentiableHomeomorphism::Internals
 public:
   std::map<std::string, TransformationRule> Transformations;
 
-  /// Measures the map that @a self uses, unless that was done before.
+  /// Measures the map used by @a self, unless the result is up to date.
   void Measure(vtkDifferentiableHomeomorphism* self,
     const std::shared_ptr<const Homeomorphism>& map, vtkPolyData* mesh, vtkPolyData* output);
 
   vtkNew<vtkJacobianContinuity> Continuity;
-  /// The last result, and what it depends on.
+  /// The last result and its inputs.
   vtkNew<vtkPolyData> Measured;
   std::weak_ptr<const Homeomorphism> MeasuredMap;
   bool MeasuredInverse = false;
@@ -68,7 +68,7 @@ public:
 namespace
 {
 
-/// Extent of a data set whose points form a grid without coordinates of their own; null otherwise.
+/// The extent of a data set whose points form a grid with implicit coordinates; null otherwise.
 const int* GridExtent(vtkDataSet* data)
 {
   if (auto* image = vtkImageData::SafeDownCast(data))
@@ -221,7 +221,7 @@ private:
             }
           }
         });
-    // Aborted: what was not reached stays where it is, marked as outside.
+    // Aborted: points that were not reached keep their coordinates and are marked as outside.
     for (vtkIdType i = done; i < this->NumberOfPoints; ++i)
     {
       outPoints->SetPoint(i, this->Input->GetPoint(i));
@@ -256,7 +256,7 @@ private:
     }
   }
 
-  /// The Jacobian at the mean of each cell's points.
+  /// The Jacobian at the mean of the points of each cell.
   vtkSmartPointer<vtkDoubleArray> ComputeCellJacobians()
   {
     const vtkIdType cells = this->Input->GetNumberOfCells();
@@ -288,7 +288,7 @@ private:
         double tolerance = pointTolerance;
         for (vtkIdType k = 0; k < count && !geometry.IsColumnar(); ++k)
         {
-          // The mean of points on a surface lies off it, but no farther than they do from each
+          // The mean of points of a surface lies off it, but not farther than they are from each
           // other.
           double point[3];
           this->Input->GetPoint(ids->GetId(k), point);
@@ -308,7 +308,7 @@ private:
     return jacobians;
   }
 
-  /// Whether a point id, which may come from a corrupt cell, is one.
+  /// Whether a point id, which may come from a corrupt cell, is valid.
   bool IsPoint(vtkIdType point) const { return point >= 0 && point < this->NumberOfPoints; }
 
   TransformationRule GetRule(vtkDataSetAttributes* attributes, vtkDataArray* array) const
@@ -332,7 +332,7 @@ private:
       return TransformationRule::Tangent;
     }
     const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-    // An earlier map's derivative is no tensor of this one's domain.
+    // The derivative of a previous map is not a tensor of the domain of this map.
     const bool derivative = array->GetName() && std::string(array->GetName()) == "Jacobian";
     return this->Self->TransformAllInputVectors && real && !derivative &&
         array != attributes->GetTCoords() && array != attributes->GetScalars()
@@ -474,7 +474,7 @@ void vtkDifferentiableHomeomorphism::Internals::Measure(vtkDifferentiableHomeomo
     const vtkNew<vtkPolyData> colored;
     const bool complete = this->Continuity->Measure(
       self, self->Inverse ? map->Inverted() : map, nullptr, mesh, this->Measured, colored);
-    // The result of an aborted run must not be taken for complete.
+    // The result of an aborted run must not be mistaken for a complete one.
     this->MeasuredMap = complete ? map : nullptr;
     this->MeasuredInverse = self->Inverse;
     this->MeasuredTime = time;

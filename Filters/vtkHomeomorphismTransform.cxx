@@ -25,7 +25,7 @@ vtkStandardNewMacro(vtkHomeomorphismTransform);
 class vtkHomeomorphismTransform::Internals
 {
 public:
-  /// Where a point is whose coordinates were stored with a relative error.
+  /// The surface point of a point whose coordinates were stored with a relative error.
   SurfacePoint Locate(
     Domain from, const double point[3], double precision, TriangleIndex hint) const
   {
@@ -44,13 +44,13 @@ public:
     this->Map->MapPoint(from, surfacePoint, image);
   }
 
-  /// Maps a point; returns where it was found.
+  /// Maps a point; returns its surface point.
   template <typename Real>
   SurfacePoint MapPoint(Domain from, const Real in[3], Real out[3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
-    // Callers that go from point to point, as vtkImageReslice does, mostly stay in a triangle. Each
-    // thread remembers its last one; that it may be one of another mesh or side only costs time.
+    // Callers that map point by point, such as vtkImageReslice, usually stay in a triangle. Each
+    // thread remembers its last one. A hint from another mesh or domain only costs time.
     thread_local TriangleIndex last = -1;
     const bool isHint = this->Map && last >= 0 &&
       last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
@@ -65,7 +65,7 @@ public:
     return surfacePoint;
   }
 
-  /// The derivative of the map from @a from at a place; NaN outside.
+  /// The derivative of the map from @a from at a surface point; NaN outside.
   void GetDerivative(Domain from, const SurfacePoint& surfacePoint, double derivative[3][3]) const
   {
     if (surfacePoint.Triangle < 0)
@@ -77,7 +77,7 @@ public:
     std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), &derivative[0][0]);
   }
 
-  /// A point's image and the derivative there of the forward map, also if it goes backward.
+  /// The image of a point and the derivative of the forward map there, also for the inverse.
   template <typename Real>
   void MapWithForwardDerivative(
     Domain from, const Real in[3], Real out[3], Real derivative[3][3]) const
@@ -209,7 +209,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
   int nOptionalVectors, vtkDataArray** inVrsArr, vtkDataArray** outVrsArr)
 {
   this->Update();
-  // VTK appends the results to what the outputs hold already.
+  // VTK appends the results to the contents of the outputs.
   const vtkIdType count = inPts->GetNumberOfPoints();
   const vtkIdType firstPoint = outPts->GetNumberOfPoints();
   outPts->Resize(firstPoint + count);
@@ -241,7 +241,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
 
   const Internals& internals = *this->Internal;
   const Domain from = this->InverseFlag ? Domain::Target : Domain::Source;
-  // Coordinates stored as float are rounded as such, and count as inside accordingly.
+  // Coordinates stored as float count as inside within their own rounding.
   const double tolerance = internals.Map
     ? internals.Map->GetAbsoluteTolerance(
         from, internals.Tolerance, PrecisionOfType(inPts->GetDataType()))

@@ -32,7 +32,7 @@ vtkStandardNewMacro(vtkInBetweenTriangulation);
 namespace
 {
 
-/// The two axes of the planes that both meshes lie in, if their planes are parallel to the same
+/// The two axes of the planes of both meshes if they are parallel to the same
 /// two.
 std::optional<std::array<int, 2>> FindPlaneAxes(vtkPolyData* source, vtkPolyData* target)
 {
@@ -52,11 +52,11 @@ std::optional<std::array<int, 2>> FindPlaneAxes(vtkPolyData* source, vtkPolyData
   return std::nullopt;
 }
 
-/// A planar pair in the coordinates of its plane, and its triangles that are not masked.
+/// A planar pair in coordinates of its plane, and its unmasked triangles.
 struct PlanePair
 {
   std::array<std::vector<Vector2>, 2> Points;
-  /// What the coordinates were divided by, a power of two: areas do not underflow.
+  /// The scale of the coordinates, a power of two, so that areas do not underflow.
   double Scale = 1.0;
   std::vector<std::array<std::int64_t, 3>> Triangles;
   std::vector<TriangleIndex> Numbers;
@@ -107,7 +107,7 @@ struct PlanePair
     this->Used = std::move(used);
   }
 
-  /// The path that fits the points of triangles.
+  /// The path fitted to the points of triangles.
   InBetweenPath MakePath(bool rotating) const
   {
     std::array<std::vector<Vector2>, 2> used;

@@ -90,7 +90,7 @@ public:
   };
 
   ///@{
-  /// The map to be measured, if it is not the homeomorphism onto the target.
+  /// The map to be measured, if it is not the homeomorphism to the target.
   virtual void SetTransform(vtkAbstractTransform* transform);
   vtkGetObjectMacro(Transform, vtkAbstractTransform);
   ///@}
@@ -129,7 +129,7 @@ public:
   ///@}
 
   ///@{
-  /// The lines and points measured, and the triangulation (output ports 0 and 1).
+  /// The measured lines and points, and the triangulation (output ports 0 and 1).
   vtkPolyData* GetOutput() { return this->GetOutput(0); }
   vtkPolyData* GetOutput(int port);
   ///@}
@@ -154,9 +154,9 @@ private:
   void operator=(const vtkJacobianContinuity&) = delete;
 
   friend class vtkDifferentiableHomeomorphism;
-  /// Measures a transform, or without one @a map, at the features of @a map's source, which was
-  /// read from @a mesh. Progress and requests to abort are those of @a algorithm. Returns false,
-  /// and leaves the outputs as they are, if aborted.
+  /// Measures a transform, or @a map if it is null, at the features of the source of @a map, which
+  /// was read from @a mesh. Progress and abort requests are those of @a algorithm. Returns false
+  /// and leaves the outputs unchanged if aborted.
   bool Measure(vtkAlgorithm* algorithm,
     const std::shared_ptr<const homeomorphism::Homeomorphism>& map, vtkAbstractTransform* transform,
     vtkPolyData* mesh, vtkPolyData* lines, vtkPolyData* colored);

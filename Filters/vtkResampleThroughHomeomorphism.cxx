@@ -56,7 +56,7 @@ namespace
 
 constexpr const char* maskName = "vtkValidPointMask";
 
-/// Passes the marks of what is hidden or belongs to another piece.
+/// Passes the ghost arrays.
 void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 {
   if (vtkAbstractArray* ghosts = from->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()))
@@ -65,7 +65,7 @@ void PassGhosts(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
   }
 }
 
-/// The data's values at points, with a mask that tells where there are any.
+/// The values of the data at points, with a mask of the points that have values.
 vtkSmartPointer<vtkPointSet> FindValues(vtkPoints* points, vtkDataObject* data)
 {
   vtkNew<vtkPolyData> wanted;
@@ -78,7 +78,7 @@ vtkSmartPointer<vtkPointSet> FindValues(vtkPoints* points, vtkDataObject* data)
   return vtkPointSet::SafeDownCast(probe->GetOutputDataObject(0));
 }
 
-/// Looks again for the points that have no values, where move(i, point) moves them.
+/// Searches again for points without values, after move(i, point) has moved them.
 template <typename Move>
 void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
 {
@@ -114,7 +114,7 @@ void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
   }
 }
 
-/// Collects ids for a message: how many there are, and the first of them.
+/// Collects ids for a message: their number, and the first of them.
 class Offenders
 {
 public:
@@ -132,8 +132,8 @@ private:
   std::vector<vtkIdType> Ids;
 };
 
-/// The first array of some attributes that does not have a value for each point or cell; empty if
-/// all have.
+/// The first array of some attributes that does not have one value for each point or cell; empty if
+/// there is none.
 std::string DescribeArrays(
   vtkDataSetAttributes* attributes, const std::string& what, vtkIdType count)
 {
@@ -151,11 +151,11 @@ std::string DescribeArrays(
   return "";
 }
 
-/// What would make VTK's locators and interpolation read memory that is not theirs; empty if
-/// nothing would.
+/// A defect that would make VTK's locators and interpolation read out of bounds; empty if there is
+/// none.
 std::string DescribeDefects(vtkDataSet* data)
 {
-  // With the least number of points that such a cell has.
+  // With the least number of points of such a cell.
   std::vector<std::pair<vtkCellArray*, vtkIdType>> arrays;
   if (auto* mesh = vtkPolyData::SafeDownCast(data))
   {
@@ -224,7 +224,7 @@ std::string DescribeDefects(vtkDataSet* data)
                        : DescribeArrays(data->GetCellData(), "cell", data->GetNumberOfCells());
 }
 
-/// The same of a data set or a tree of them: the first defect found.
+/// The first defect of a data set or a tree of data sets.
 std::string DescribeDefects(vtkDataObject* data)
 {
   if (auto* dataSet = vtkDataSet::SafeDownCast(data))
@@ -258,8 +258,8 @@ vtkSmartPointer<vtkPoints> CopyPoints(vtkPointSet* data)
   return points;
 }
 
-/// The data without what VTK has computed for searching in it: VTK 9.1 uses the lists of each
-/// point's cells even after cells were replaced in place, and then reads beyond them.
+/// The data without VTK's search structures: VTK 9.1 uses the lists of the cells of each point even
+/// after cells were replaced in place, and then reads out of bounds.
 vtkSmartPointer<vtkDataObject> WithoutCaches(vtkDataObject* data)
 {
   if (auto* mesh = vtkPolyData::SafeDownCast(data))
@@ -305,8 +305,8 @@ bool HasVectors(vtkPointData* pointData)
   return pointData->GetVectors() || pointData->GetNormals() || pointData->GetTensors();
 }
 
-/// The bounds of a mesh as GetBounds gives them, which would store them in the mesh: another thread
-/// may use it at the same time.
+/// The bounds of a mesh. GetBounds would store them in the mesh, which another thread may use at
+/// the same time.
 std::array<double, 6> FindBounds(vtkPolyData* mesh)
 {
   const vtkNew<vtkPolyData> copy;
@@ -505,7 +505,7 @@ int vtkResampleThroughHomeomorphism::Execute(
   return 1;
 }
 
-/// Resamples data that is an image, which takes no search and no intermediate data.
+/// Resamples an image, which needs neither a search nor intermediate data.
 void vtkResampleThroughHomeomorphism::SampleImage(const Homeomorphism& map, vtkImageData* image,
   vtkDataSet* grid, vtkDataSet* output, vtkUnsignedCharArray* mask)
 {
@@ -527,11 +527,11 @@ void vtkResampleThroughHomeomorphism::SampleImage(const Homeomorphism& map, vtkI
     });
 }
 
-/// Resamples any other data, by VTK's cells. Returns false if it was refused.
+/// Resamples any other data by VTK's cells. Returns false if it was refused.
 bool vtkResampleThroughHomeomorphism::Probe(const Homeomorphism& map, vtkPolyData* mesh,
   vtkDataObject* data, vtkDataSet* output, vtkUnsignedCharArray* mask)
 {
-  // Where the grid's points come from.
+  // The preimages of the points of the grid.
   const Domain from = this->Inverse ? Domain::Source : Domain::Target;
   const Domain to = Opposite(from);
   const vtkIdType count = output->GetNumberOfPoints();
@@ -563,8 +563,8 @@ bool vtkResampleThroughHomeomorphism::Probe(const Homeomorphism& map, vtkPolyDat
     return true;
   }
 
-  // What the data has there. A point on the data's border may be outside by rounding: it is looked
-  // for again, a rounding error closer to the middle of its triangle.
+  // The values of the data there. A point on the border of the data may be outside by rounding. It
+  // is searched again after moving it by a rounding error towards the center of its triangle.
   const vtkSmartPointer<vtkDataObject> probed = WithoutCaches(data);
   const std::string defects = DescribeDefects(probed);
   if (!defects.empty())

@@ -84,7 +84,7 @@ private:
   vtkResampleThroughHomeomorphism(const vtkResampleThroughHomeomorphism&) = delete;
   void operator=(const vtkResampleThroughHomeomorphism&) = delete;
 
-  /// Makes the image on which values are wanted if there is no grid.
+  /// Makes the image if there is no grid.
   bool MakeImage(vtkPolyData* mesh, const int extent[6], vtkImageData* image);
   void SampleImage(const homeomorphism::Homeomorphism& map, vtkImageData* image, vtkDataSet* grid,
     vtkDataSet* output, vtkUnsignedCharArray* mask);

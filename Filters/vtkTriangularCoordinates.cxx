@@ -44,7 +44,7 @@ vtkSmartPointer<ArrayType> NewArray(const char* name, vtkIdType tuples, int comp
   return array;
 }
 
-/// Point arrays of the coordinates of a data set's points.
+/// Point arrays of the coordinates of the points of a data set.
 class PointCoordinates
 {
 public:
@@ -98,13 +98,14 @@ double SmallestAngle(const EdgeViews& views)
   {
     shortest = views[k].Length < views[shortest].Length ? k : shortest;
   }
-  // Seen from another edge: its opposite corner's height over the foot's distance.
+  // From another edge: the height of its opposite corner over the distance of the foot.
   const EdgeView& beside = views[PreviousCorner(shortest)];
-  // That edge runs from the corner after it, which is the one opposite the shortest edge.
+  // That edge starts at the corner after it, which is opposite the shortest edge.
   return vtkMath::DegreesFromRadians(std::atan2(beside.Height, beside.Foot * beside.Length));
 }
 
-/// The least distance of a foot of the centroid from an end of its edge, over the edge's length.
+/// The least distance of a foot of the centroid from an end of its edge, over the length of the
+/// edge.
 double ConcordanceMargin(const EdgeViews& views)
 {
   double margin = 1.0;
@@ -116,7 +117,7 @@ double ConcordanceMargin(const EdgeViews& views)
   return margin;
 }
 
-/// Cell arrays that tell about each triangle. Returns the number of discordant ones.
+/// Cell arrays that describe each triangle. Returns the number of discordant ones.
 vtkIdType DescribeTriangles(const Homeomorphism& map, vtkPolyData* triangulation)
 {
   const vtkIdType cells = triangulation->GetNumberOfCells();
@@ -257,7 +258,7 @@ int vtkTriangularCoordinates::Execute(
   }
   else
   {
-    // Without data of its own, the triangulation gets the coordinates on top of its cell arrays.
+    // Without separate data, the triangulation gets the coordinates in addition to its cell arrays.
     addCoordinates(triangles, vtkDataSet::SafeDownCast(output));
   }
   return 1;

@@ -60,7 +60,7 @@ public:
   vtkTypeMacro(vtkTriangularCoordinates, vtkHomeomorphismAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// What a line of output 1 is.
+  /// The kinds of lines of output 1.
   enum LineTypes
   {
     CENTER_SEGMENT = 0,

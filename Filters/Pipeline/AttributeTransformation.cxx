@@ -29,7 +29,7 @@ void Conjugate(const double a[3][3], double tensor[9])
   std::copy(&t[0][0], &t[0][0] + 9, tensor);
 }
 
-/// Where VTK keeps the entries of a symmetric tensor.
+/// The positions of the entries of a symmetric tensor in VTK's order.
 constexpr int SymmetricEntry[9] = { 0, 3, 5, 3, 1, 4, 5, 4, 2 };
 
 } // namespace
@@ -80,7 +80,7 @@ vtkSmartPointer<vtkDataArray> TransformArray(
     return nullptr;
   }
   const vtkIdType count = array->GetNumberOfTuples();
-  // A transformed integer vector is no integer any more.
+  // A transformed integer vector is not integral.
   const int type = array->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE;
   const auto result = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   result->SetName(array->GetName());
@@ -149,7 +149,7 @@ void TransformAttributes(vtkDataSetAttributes* input, vtkDataSetAttributes* outp
     {
       continue;
     }
-    // Takes the place of the array passed, and its roles.
+    // Replaces the passed array and keeps its roles.
     std::vector<int> roles;
     for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
     {

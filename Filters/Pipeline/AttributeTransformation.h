@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file AttributeTransformation.h
-/// How vectors, normals and tensors are carried along by a map's Jacobian.
+/// Transformation of vectors, normals and tensors by the Jacobian of a map.
 
 #ifndef homeomorphism_AttributeTransformation_h
 #define homeomorphism_AttributeTransformation_h
@@ -18,8 +18,8 @@ class vtkDoubleArray;
 namespace homeomorphism
 {
 
-/// Carries values at one point, where the map's Jacobian is J (row-major, invertible). Where J is
-/// NaN, outside the domain, so are all results.
+/// Transforms values at one point, where the Jacobian is J (row-major, invertible). Outside the
+/// domain J is NaN, and so are all results.
 class TensorTransformation
 {
 public:
@@ -27,13 +27,13 @@ public:
 
   /// A tangent vector, such as a velocity or a displacement: J v.
   void TransformTangent(double vector[3]) const;
-  /// A gradient: J^-T g, so that its product with a tangent vector stays what it is.
+  /// A gradient: J^-T g, which preserves its product with tangent vectors.
   void TransformGradient(double vector[3]) const;
-  /// A unit normal: J^-T n, made a unit vector again. A zero vector stays zero.
+  /// A unit normal: J^-T n, normalized. A zero vector stays zero.
   void TransformNormal(double vector[3]) const;
-  /// A tensor that is linear in two tangent vectors, such as a diffusion tensor: J T J^T.
+  /// A contravariant tensor, such as a diffusion tensor: J T J^T.
   void TransformTangentTensor(double tensor[9]) const;
-  /// A tensor made of two gradients, such as a metric or a Hessian's leading part: J^-T T J^-1.
+  /// A covariant tensor, such as a metric or the leading part of a Hessian: J^-T T J^-1.
   void TransformGradientTensor(double tensor[9]) const;
 
 private:
@@ -41,7 +41,7 @@ private:
   double InverseTransposed[3][3];
 };
 
-/// What an array holds, and so how it is carried.
+/// The transformation rules of arrays.
 enum class TransformationRule
 {
   None,
@@ -50,7 +50,7 @@ enum class TransformationRule
   Normal
 };
 
-/// A copy of @a array carried tuple by tuple by the Jacobians of @a jacobians (9 components).
+/// A copy of @a array, transformed tuple by tuple by the Jacobians of @a jacobians (9 components).
 /// Arrays of 3 components are vectors, of 9 tensors (row-major), of 6 symmetric tensors in VTK's
 /// order XX, YY, ZZ, XY, YZ, XZ. Integers become doubles. Null if the rule does not apply to the
 /// array, or if it has another number of tuples.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CellPoints.h
-/// Reads the points of cells, whatever state the cells are in.
+/// Safe access to the points of cells that may be malformed.
 
 #ifndef homeomorphism_CellPoints_h
 #define homeomorphism_CellPoints_h
@@ -19,9 +19,9 @@
 namespace homeomorphism
 {
 
-/// The ids of the points of a data set's cells, as they are stored. vtkPolyData's own GetCellPoints
-/// reads from a null pointer if one of its cells has fewer points than a line or polygon needs, or
-/// if offsets do not fit.
+/// The point ids of the cells of a data set, as stored. vtkPolyData::GetCellPoints reads from a
+/// null pointer if a cell has fewer points than a line or polygon needs, or if offsets are
+/// invalid.
 class CellPoints
 {
 public:
@@ -40,19 +40,19 @@ public:
     }
     else if (data->GetNumberOfCells() > 0)
     {
-      // Builds what it needs before several threads ask.
+      // Builds all internal structures before it is used by several threads.
       vtkNew<vtkIdList> ids;
       data->GetCellPoints(0, ids);
     }
     for (vtkCellArray*& array : this->Arrays)
     {
-      // The numbers of the others' cells count all the same.
+      // Cells of other kinds are numbered too.
       this->Counts[&array - this->Arrays.data()] = array ? array->GetNumberOfCells() : 0;
       array = array && array->IsValid() ? array : nullptr;
     }
   }
 
-  /// No points for a cell of an array that is corrupt. May be called from several threads.
+  /// Returns no points for a cell of a corrupt array. May be called from several threads.
   void Get(vtkIdType cell, vtkIdList* ids) const
   {
     if (!this->IsExplicit)

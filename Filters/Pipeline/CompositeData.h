@@ -21,7 +21,7 @@ namespace homeomorphism
 {
 
 /// Fills @a output, a tree of the same structure, with convert(leaf) for each data set of @a input.
-/// Each conversion's progress counts as a part of the whole.
+/// The progress of each conversion is a part of the total progress.
 template <typename Convert>
 void ConvertLeaves(
   vtkAlgorithm* self, vtkCompositeDataSet* input, vtkCompositeDataSet* output, Convert&& convert)

@@ -29,7 +29,7 @@ namespace
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Collects polylines with the arrays that tell what each is.
+/// Collects polylines with the arrays that describe them.
 class LineCollector
 {
 public:
@@ -45,7 +45,7 @@ public:
     this->ContourParameter->SetName("ContourParameter");
   }
 
-  /// A polyline through points of a triangle's frame.
+  /// A polyline through points of the frame of a triangle.
   void Add(TriangleIndex triangle, const std::vector<Vector2>& line, int type, int edge,
     double edgeParameter, double contourParameter)
   {
@@ -86,7 +86,7 @@ private:
   vtkNew<vtkDoubleArray> ContourParameter;
 };
 
-/// The polyline through images of evenly spaced points of [0, 1].
+/// A polyline through the images of evenly spaced points of [0, 1].
 template <typename PointAt>
 std::vector<Vector2> Sample(int pieces, PointAt&& pointAt)
 {
@@ -99,8 +99,8 @@ std::vector<Vector2> Sample(int pieces, PointAt&& pointAt)
   return line;
 }
 
-/// Center and wing segments. @a construction is the chart on whose triangle they are straight,
-/// @a carry takes that triangle's points to the triangle shown.
+/// Center and wing segments. @a construction is the chart on whose triangle they are straight, @a
+/// carry maps that triangle to the triangle shown.
 template <typename Carry>
 void AddGuides(LineCollector& lines, TriangleIndex triangle, const ContourChart& construction,
   const TriangleShape& shape, int pieces, Carry&& carry)
@@ -156,7 +156,7 @@ void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
       }
       else
       {
-        // The equilateral triangle's guides, carried over by the barycentric reference.
+        // The guides of the equilateral triangle, mapped by the barycentric reference.
         AddGuides(lines, t, ContourChart::Equilateral(), ContourChart::EquilateralShape(),
           options.Resolution, [&chart](const Vector2& point) {
             return chart.ToPoint(ContourChart::EquilateralShape().ToBarycentric(point));
@@ -165,7 +165,7 @@ void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
     });
     for (int edge = 1; edge <= 3; ++edge)
     {
-      // p = 1 is p = 0 of the next edge.
+      // p = 1 equals p = 0 of the next edge.
       for (int i = 0; i < options.NumberOfContours; ++i)
       {
         const double p = static_cast<double>(i) / options.NumberOfContours;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CoordinateLines.h
-/// The lines that show a triangulation's coordinates: guides, contours and rings.
+/// Polylines of triangular coordinates: guides, contours and rings.
 
 #ifndef homeomorphism_CoordinateLines_h
 #define homeomorphism_CoordinateLines_h
@@ -15,7 +15,7 @@ class vtkPolyData;
 namespace homeomorphism
 {
 
-/// How many lines of what resolution; see vtkTriangularCoordinates.
+/// The numbers and the resolution of lines, see vtkTriangularCoordinates.
 struct CoordinateLineOptions
 {
   int NumberOfContours;
@@ -23,9 +23,9 @@ struct CoordinateLineOptions
   int Resolution;
 };
 
-/// Fills @a output with the lines of all triangles of the source, as output 1 of
-/// vtkTriangularCoordinates describes. On behalf of @a self, whose request to abort leaves the
-/// lines of the triangles done by then.
+/// Fills @a output with the lines of all triangles of the source, see output 1 of
+/// vtkTriangularCoordinates. If @a self is aborted, the output contains the lines of the triangles
+/// processed so far.
 void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
   const CoordinateLineOptions& options, vtkPolyData* output);
 

@@ -16,16 +16,16 @@ class vtkUnsignedCharArray;
 namespace homeomorphism
 {
 
-/// Replaces the ghost array of some attributes, if it fits them, by a copy, else by a new one.
+/// Replaces the ghost array of some attributes by a copy, or by a new one if its length is wrong.
 vtkUnsignedCharArray* RenewGhosts(vtkDataSetAttributes* attributes, vtkIdType tuples);
 
-/// Number of points that @a mask leaves out, those of @a data that belong to another piece
-/// excepted.
+/// Number of points that @a mask excludes, without points of @a data that belong to another
+/// piece.
 vtkIdType CountOutside(vtkDataSet* data, vtkUnsignedCharArray* mask);
 
-/// Hides (vtkGhostType) the points of @a output that @a mask leaves out, and the cells that use
-/// them or points that do not exist; nothing if it leaves none out. @a cells has the output's
-/// cells.
+/// Hides (vtkGhostType) the points of @a output that @a mask excludes, and the cells that use them
+/// or have invalid point ids. Does nothing if the mask excludes no points. @a cells has the cells
+/// of the output.
 void HidePoints(vtkDataSet* cells, vtkUnsignedCharArray* mask, vtkDataSet* output);
 
 } // namespace homeomorphism

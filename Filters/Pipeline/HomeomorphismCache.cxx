@@ -97,7 +97,7 @@ void AddStamps(vtkPolyData* mesh, std::vector<std::pair<const void*, vtkMTimeTyp
     add(nullptr);
     return;
   }
-  // An object changed in place may keep its arrays' times, but hardly its size.
+  // An object changed in place may keep the modification times of its arrays, but rarely its size.
   const auto addSize = [&stamps](vtkIdType size) {
     stamps.emplace_back(nullptr, static_cast<vtkMTimeType>(size));
   };
@@ -115,7 +115,8 @@ void AddStamps(vtkPolyData* mesh, std::vector<std::pair<const void*, vtkMTimeTyp
   add(mesh->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
 }
 
-/// The time of the object itself, which changes with Modified() but not with the mesh's data.
+/// The modification time of the object itself, which changes with Modified() but not with the data
+/// of the mesh.
 vtkMTimeType GetOwnTime(vtkPolyData* mesh)
 {
   return mesh ? mesh->vtkObject::GetMTime() : 0;
@@ -134,8 +135,8 @@ bool HomeomorphismCache::HasChanged(vtkPolyData* source, vtkPolyData* target)
   {
     return false;
   }
-  // A new shallow copy of a mesh is as good as the old one, and coordinates may have been
-  // overwritten in place: only the contents can tell.
+  // A new shallow copy of a mesh is equivalent to the old one, and coordinates may have been
+  // overwritten in place, so compare the contents.
   state.Contents = HashContents(source, target);
   const bool changed =
     this->NumberOfBuilds == 0 || !sameParts || state.Contents != this->State.Contents;

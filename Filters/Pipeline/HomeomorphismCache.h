@@ -22,33 +22,33 @@ class vtkPolyData;
 namespace homeomorphism
 {
 
-/// The homeomorphism made last, with what it was made from. Not thread-safe itself; several caches
-/// may use the same meshes in several threads, since a cache neither references nor changes them.
+/// The last homeomorphism, with the state of its inputs. Not thread-safe, but several caches may
+/// use the same meshes in several threads, because a cache neither references nor changes them.
 class HomeomorphismCache
 {
 public:
-  /// The homeomorphism of these meshes. It is made anew only if their points or cells (not their
-  /// other arrays) or the options have changed. Coordinates that were overwritten in place count as
-  /// changed once Modified() was called on the points or on the mesh. Null if the meshes are
-  /// refused; see GetProblems.
+  /// The homeomorphism of these meshes. It is rebuilt only if their points or cells (not other
+  /// arrays) or the options have changed. Coordinates overwritten in place count as changed after
+  /// Modified() was called on the points or on the mesh. Null if the meshes are refused; see
+  /// GetProblems.
   std::shared_ptr<const Homeomorphism> Get(
     vtkPolyData* source, vtkPolyData* target, const HomeomorphismOptions& options);
 
-  /// What was found wrong when the homeomorphism was made.
+  /// The defects found when the homeomorphism was built.
   const MeshDiagnostics& GetProblems() const { return this->Problems; }
 
-  /// How often a homeomorphism was made (or refused).
+  /// The number of times a homeomorphism was built or refused.
   vtkIdType GetNumberOfBuilds() const { return this->NumberOfBuilds; }
 
 private:
-  /// Address and modification time of an object, or null and a size. VTK gives out each time once,
-  /// so a new object at an old address is not mistaken for the old one.
+  /// Address and modification time of an object, or null and a size. Modification times are unique
+  /// in VTK, so a new object at an old address is not mistaken for the old one.
   using Stamp = std::pair<const void*, vtkMTimeType>;
 
   struct MeshState
   {
     std::vector<Stamp> Parts;
-    /// The modification times of the meshes themselves, their parts not included.
+    /// The modification times of the meshes themselves, without their parts.
     std::array<vtkMTimeType, 2> Times{};
     /// Hash of all coordinates and point ids.
     std::uint64_t Contents = 0;

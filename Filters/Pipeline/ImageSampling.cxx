@@ -22,13 +22,13 @@ namespace homeomorphism
 namespace
 {
 
-/// To the type of an array, to the nearest number if that is a type of integers.
+/// Converts to the type of an array, to the nearest number if that is an integer type.
 template <typename Value>
 Value FromDouble(double value)
 {
   if constexpr (std::is_integral<Value>::value)
   {
-    // A mean of numbers of the type is within its range.
+    // A mean of values is within the range of their type.
     return static_cast<Value>(value + (value < 0.0 ? -0.5 : 0.5));
   }
   else
@@ -84,7 +84,7 @@ ImageSampling::ImageSampling(vtkImageData* image, vtkDataSetAttributes* output, 
       vtkDataArray* array = attributes->GetArray(i);
       if (ofCells && output->GetArray(array->GetName()))
       {
-        // The points' array of this name is the one that is kept.
+        // A point array takes precedence over a cell array of the same name.
         continue;
       }
       const vtkSmartPointer<vtkDataArray> result = NewEmptyLike(array, count);
@@ -121,7 +121,7 @@ ImageSampling::ImageSampling(vtkImageData* image, vtkDataSetAttributes* output, 
       scale = std::max(scale, column < 3 ? std::abs(matrix->GetElement(axis, column)) : 0.0);
     }
     this->ToIndex[4 * axis + 3] -= extent[2 * axis];
-    // A few roundings of coordinates as large as the image's.
+    // A few rounding errors of the largest coordinate of the image.
     this->Tolerance[axis] =
       64.0 * std::numeric_limits<double>::epsilon() * (scale * largest + this->Dimensions[axis]);
     this->StencilSize *= this->Dimensions[axis] > 1 ? 2 : 1;
@@ -137,7 +137,7 @@ bool ImageSampling::MakeStencil(const double point[3], Stencil& stencil) const
     const double* row = &this->ToIndex[4 * axis];
     const double index = row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3];
     const int last = this->Dimensions[axis] - 1;
-    // Written so that what is not a number is outside.
+    // Negated so that NaN is outside.
     if (!(index >= -this->Tolerance[axis] && index <= last + this->Tolerance[axis]))
     {
       return false;

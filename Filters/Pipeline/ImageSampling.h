@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ImageSampling.h
-/// What an image has at points that are not its own.
+/// Interpolation of image data at arbitrary points.
 
 #ifndef homeomorphism_ImageSampling_h
 #define homeomorphism_ImageSampling_h
@@ -21,34 +21,34 @@ class vtkUnsignedCharArray;
 namespace homeomorphism
 {
 
-/// Array of the same type and name with @a tuples tuples, all NaN or 0.
+/// An array of the same type and name with @a tuples tuples, all NaN or 0.
 vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples);
 
-/// Fills arrays with the values of an image: of its point arrays interpolated linearly in each
-/// direction (rounded to the nearest number in arrays of integers), of its cell arrays those of the
-/// cell that a point is in. A point outside by rounding counts as on the border. Different ranges
+/// Fills arrays with the values of an image. Point arrays are interpolated linearly in each
+/// direction (rounded to the nearest number in integer arrays); cell arrays take the value of the
+/// cell that contains a point. A point outside by rounding is moved to the border. Different ranges
 /// may be sampled in parallel.
 class ImageSampling
 {
 public:
-  /// How many points are dealt with at a time.
+  /// The number of points processed at a time.
   static constexpr int Capacity = 256;
 
-  /// Whether the image has a value everywhere: nothing is hidden, and all arrays are of numbers and
-  /// have names and the right size.
+  /// Whether the image has a value everywhere: no element is hidden, and all arrays are numeric,
+  /// named and of the correct size.
   static bool CanSample(vtkImageData* image);
 
-  /// Adds an array for each of the image's to @a output, NaN or 0, in the same roles.
+  /// Adds an array of NaN or 0 for each array of the image to @a output, in the same roles.
   ImageSampling(vtkImageData* image, vtkDataSetAttributes* output, vtkIdType count);
 
-  /// Sets tuples @a first to @a first + @a count of the arrays, at most Capacity, from what the
-  /// image has at
-  /// @a points where @a wanted says so and there is something; @a mask tells where.
+  /// Sets tuples @a first to @a first + @a count - 1 of the arrays, at most Capacity, to the
+  /// values of the image at those @a points that are @a wanted and inside it. @a mask marks these
+  /// points.
   void Sample(const double (*points)[3], const bool* wanted, int count, vtkIdType first,
     vtkUnsignedCharArray* mask) const;
 
 private:
-  /// The image's points around a place, with weights, and the cell that it is in.
+  /// The points of the image around a position with their weights, and the cell that contains it.
   struct Stencil
   {
     vtkIdType Tuple;
@@ -70,7 +70,7 @@ private:
   std::array<double, 12> ToIndex;
   std::array<int, 3> Dimensions;
   std::array<double, 3> Tolerance;
-  /// Number of points of a stencil: 2 for each direction in which there is more than one.
+  /// Number of points of a stencil: 2 for each direction with more than one point.
   int StencilSize = 1;
 };
 

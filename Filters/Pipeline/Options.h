@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Options.h
-/// The options of a filter or transform, as the mesh floor has them, and as text.
+/// Conversion and printing of the options of filters and transforms.
 
 #ifndef homeomorphism_Options_h
 #define homeomorphism_Options_h

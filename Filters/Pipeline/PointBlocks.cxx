@@ -61,7 +61,7 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
   }
   if (auto* image = vtkImageData::SafeDownCast(data))
   {
-    // As GetPoint, without finding the row anew for each point.
+    // Equivalent to GetPoint, but finds each row only once.
     const int* extent = image->GetExtent();
     const int* dimensions = image->GetDimensions();
     const vtkIdType row = first / dimensions[0];

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PointBlocks.h
-/// Points of VTK objects, read, written and processed in blocks.
+/// Reading, writing and processing points of VTK objects in blocks.
 
 #ifndef homeomorphism_PointBlocks_h
 #define homeomorphism_PointBlocks_h
@@ -26,10 +26,10 @@ namespace homeomorphism
 /// The relative rounding error of coordinates of a VTK type.
 double PrecisionOfType(int dataType);
 
-/// The same of a data set's points; that of doubles for implicit points.
+/// The relative rounding error of the points of a data set; that of doubles for implicit points.
 double PrecisionOfPoints(vtkDataSet* data);
 
-/// Reads the points of a block, of which the first is tuple @a first of an array of 3 components.
+/// Reads the points of a block, the first of which is tuple @a first of an array of 3 components.
 void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block);
 
 /// Reads the points of a block from a data set.
@@ -39,8 +39,8 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block);
 void WritePoints(const double (*points)[3], int count, vtkIdType first, vtkDataArray* array);
 
 /// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
-/// and a request to abort is honored; a block should take a fraction of a second. Returns the
-/// number of items done: less than count only if aborted.
+/// and abort requests are checked. A block should take a fraction of a second. Returns the number
+/// of items processed, which is less than count only after an abort.
 template <typename Work>
 vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin, double progressEnd,
   Work&& work, vtkIdType blockSize = 1 << 17)

@@ -30,7 +30,7 @@ ProcessStatistics Total(
     sum = std::max(sum, 0.0);
   }
   ProcessStatistics total = sent;
-  // Both calls are made even if one fails: the other processes make them.
+  // Make both calls even if one fails, because the other processes make them.
   const int added = controller->AllReduce(sent.Sums.data(), total.Sums.data(),
     static_cast<vtkIdType>(sent.Sums.size()), vtkCommunicator::SUM_OP);
   const int compared = controller->AllReduce(sent.Largest.data(), total.Largest.data(),

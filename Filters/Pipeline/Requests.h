@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Requests.h
-/// What filters request from their inputs and announce of their outputs.
+/// Pipeline requests of the filters.
 
 #ifndef homeomorphism_Requests_h
 #define homeomorphism_Requests_h
@@ -20,42 +20,42 @@ class vtkInformationIntegerKey;
 namespace homeomorphism
 {
 
-/// Whether the algorithm's input may be a data set or a tree of them. The type of trees comes
-/// first: executives that iterate over composite inputs on behalf of simple filters look only at
-/// it.
+/// Declares that the input of a port may be a data set or a tree of data sets. The type of trees
+/// comes first, because executives that iterate over composite inputs for simple filters check only
+/// the first type.
 void AcceptDataSetsAndTrees(vtkInformation* info);
 
 /// Whether the information of an input port allows data of this type. So it does if there is none,
 /// and if the data is composite and the executive goes through its blocks.
 bool IsAcceptedType(vtkInformation* portInformation, vtkDataObject* data);
 
-/// Tells that an output may change whenever one of the first @a ports inputs does: its time steps
-/// and time range are all of theirs. By default they are those of port 0, and at other times the
-/// executive takes what was made before for good.
+/// Announces that an output changes with the time steps of the first @a ports inputs: its time
+/// steps and time range are the union of theirs. By default they are those of port 0, and for other
+/// times the executive reuses the previous output.
 void DescribeTimesInOutput(vtkInformationVector** inputs, int ports, vtkInformation* outInfo);
 
-/// Of a filter whose other inputs are meshes: lets the information of the data's port, if there is
-/// data, describe the output's extent, which by default comes from port 0.
+/// For a filter whose other inputs are meshes: copies the information of the data's port, if there
+/// is data, so that it describes the extent of the output. By default that comes from port 0.
 void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outInfo);
 
-/// Asks for an input as a whole, whatever piece of the output is asked for.
+/// Requests an input as a whole, whatever piece of the output is requested.
 void RequestWhole(vtkInformation* info);
 
-/// In the information of an input port: it is always asked for whole.
+/// In the information of an input port: the input is always requested whole.
 vtkInformationIntegerKey* RequestedWhole();
 
-/// Adds the algorithms that the ones connected to a port depend on, themselves included; @a
-/// inPieces: only if the same piece is asked from them.
+/// Adds the algorithms upstream of a port, including those connected to it. @a inPieces: only if
+/// the same piece is requested from them.
 void CollectUpstream(
   vtkAlgorithm* algorithm, int port, bool inPieces, std::set<vtkAlgorithm*>& found);
 
-/// Whether what comes in at a port and what comes in at the ports before it, which are asked for
-/// whole, are made from the same things. Those cannot be asked for both whole and in pieces at the
-/// same time: then this port must be asked for whole, too, and what becomes of it is part of piece
+/// Whether a port and the ports before it, which are requested whole, depend
+/// on the same algorithms. Those cannot be requested both whole and in pieces,
+/// so this port must be requested whole too, and its results are part of piece
 /// 0.
 bool SharesUpstreamWithPortsBefore(vtkAlgorithm* algorithm, int port);
 
-/// Puts a new object of a type into an output, unless one of that type is there.
+/// Puts a new object of a type into an output unless it has one of that type.
 template <typename Type>
 void MakeOutput(vtkInformation* outInfo)
 {
@@ -65,11 +65,11 @@ void MakeOutput(vtkInformation* outInfo)
   }
 }
 
-/// Puts a new object of the type of @a data into an output, unless it has one of that type.
+/// Puts a new object of the type of @a data into an output unless it has one of that type.
 void MakeOutputLike(vtkDataObject* data, vtkInformation* outInfo);
 
-/// Whether what is made from the meshes alone belongs to a request: they are read whole for every
-/// piece, and only the first piece gets what they make.
+/// Whether a request includes the results of the meshes alone. The meshes are read whole for every
+/// piece, and only the first piece contains these results.
 bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 
 } // namespace homeomorphism

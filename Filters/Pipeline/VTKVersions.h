@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file VTKVersions.h
-/// What VTK's versions name differently. The compiler looks for a method instead of comparing
-/// version numbers, because ParaView's VTK has numbers of its own.
+/// Differences between versions of VTK. They are detected by the presence of methods rather than by
+/// version numbers, because ParaView's VTK has version numbers of its own.
 
 #ifndef homeomorphism_VTKVersions_h
 #define homeomorphism_VTKVersions_h
@@ -52,15 +52,15 @@ auto CopyCells(Grid* from, Grid* to, long) -> decltype(from->GetFaceLocations(),
 
 } // namespace versions
 
-/// Whether an algorithm has been asked to abort. Since VTK 9.3, a request to an algorithm upstream
-/// counts, too.
+/// Whether an algorithm has been asked to abort. Since VTK 9.3, requests to upstream algorithms
+/// count too.
 inline bool ShouldAbort(vtkAlgorithm* self)
 {
   return versions::ShouldAbort(self, 0);
 }
 
-/// Gives one grid the cells of another, polyhedra included. VTK 9.4 has renamed the lists of faces,
-/// VTK 9.6 that of types.
+/// Copies the cells of one grid to another, including polyhedra. VTK 9.4 renamed the lists of
+/// faces, VTK 9.6 that of types.
 inline void CopyCells(vtkUnstructuredGrid* from, vtkUnstructuredGrid* to)
 {
   versions::CopyCells(from, to, 0);
