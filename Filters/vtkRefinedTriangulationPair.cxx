@@ -6,6 +6,7 @@
 #include "Construction/PairRefinement.h"
 #include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/Requests.h"
+#include "Pipeline/VTKVersions.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -135,7 +136,7 @@ int vtkRefinedTriangulationPair::Execute(
     ? this->MaximumError
     : 1e-4 * targetGeometry.GetDiagonal() * targetGeometry.GetInverseScale();
   const RefinedPair refined = Refine(*map, source, target, maximumError,
-    this->MaximumNumberOfTriangles, [this] { return this->GetAbortExecute() != 0; });
+    this->MaximumNumberOfTriangles, [this] { return homeomorphism::ShouldAbort(this); });
   this->LargestError = refined.LargestError;
   this->NumberOfSamples = refined.Samples;
   switch (refined.Result)

@@ -7,6 +7,7 @@
 #include "Construction/PairStatistics.h"
 #include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/Requests.h"
+#include "Pipeline/VTKVersions.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -284,7 +285,7 @@ int vtkTriangulationPairReport::Execute(
   ignore->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
   for (int system = LINEAR; system <= SMOOTH; ++system)
   {
-    if (this->GetAbortExecute())
+    if (homeomorphism::ShouldAbort(this))
     {
       return 1;
     }

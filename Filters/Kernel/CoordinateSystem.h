@@ -39,8 +39,8 @@ enum class CoordinateSystem
   /// The contours of the equilateral triangle, mapped by a chart that is twice continuously
   /// differentiable across edges.
   Smooth = 2,
-  /// A piecewise cubic map that is continuously differentiable, vertices included, and bends little.
-  /// Planar pairs only. It is a map, not a chart: its triangular coordinates are Linear's.
+  /// A piecewise cubic map that is continuously differentiable, vertices included, and bends
+  /// little. Planar pairs only. It is a map, not a chart: its triangular coordinates are Linear's.
   Cubic = 3
 };
 

@@ -16,8 +16,7 @@ vtkSMHomeomorphismProxy::~vtkSMHomeomorphismProxy() = default;
 
 void vtkSMHomeomorphismProxy::UpdatePropertyInformationInternal(vtkSMProperty* property)
 {
-  if (this->ObjectsCreated && this->Location != 0 &&
-    (!property || property->GetInformationOnly()))
+  if (this->ObjectsCreated && this->Location != 0 && (!property || property->GetInformationOnly()))
   {
     // The null object as an id, since pointers cannot be sent to other processes.
     vtkClientServerStream stream;
