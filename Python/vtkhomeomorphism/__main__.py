@@ -81,6 +81,8 @@ def main():
     capture_messages()
     # GDAL's errors are raised and need not be printed.
     os.environ.setdefault("CPL_LOG", os.devnull)
+    # Libraries that cannot write tell so when their objects are deleted, too.
+    sys.unraisablehook = lambda what: None
     try:
         dhm.main(prog_name="dhm", standalone_mode=False)
         sys.stdout.flush()

@@ -164,6 +164,9 @@ class Output:
         self.name = "standard output" if self.standard else name
         self.format = stdout_format if self.standard else format_of(name)
         self.force = force
+        if not self.format and os.path.exists(name) and not os.path.isfile(name):
+            # A pipe or a device.
+            self.format = stdout_format
         if formats and self.format not in formats:
             found = f"has the extension .{self.format}" if self.format else "has no extension"
             raise Failure(
@@ -223,7 +226,7 @@ class Output:
                     shutil.copyfileobj(file, sys.stdout.buffer)
                     sys.stdout.buffer.flush()
                 else:
-                    with open(self.target, "wb") as device:
+                    with open(self.name, "wb") as device:
                         shutil.copyfileobj(file, device)
             return
         if not os.path.exists(self.path):

@@ -6,6 +6,7 @@ with its texture coordinates)."""
 import contextlib
 import io
 import os
+import re
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -120,6 +121,10 @@ def _read_meshio(input):
                 # Both names of the list are common.
                 data = data.replace(b" vertex_index\n", b" vertex_indices\n", 1)
                 mesh = meshio.ply._ply.read_buffer(io.BytesIO(data))
+                # Binary files that have been cut off are read without an error.
+                counts = [int(n) for n in re.findall(rb"element (?:vertex|face) (\d+)", data[:10000])]
+                if counts != [len(mesh.points), sum(len(block.data) for block in mesh.cells)]:
+                    raise ValueError("points or faces are missing")
             else:
                 mesh = meshio.read(path)
     except (Exception, SystemExit) as error:

@@ -75,7 +75,7 @@ class Report:
         for defect in self.defects:
             first = f", the first is cell {defect['first_cell']}" if defect["first_cell"] >= 0 else ""
             text = WORDS.get(defect["kind"], defect["kind"]).format(f"{defect['count']}{first}")
-            yield text if defect["mesh"] == "pair" else f"in the {defect['mesh']} {text}"
+            yield text if defect["mesh"] not in ("source", "target") else f"in the {defect['mesh']} {text}"
 
 
 def refuse(pair, can_mask=True):

@@ -30,11 +30,26 @@ def write(layers, output):
     """Writes layers to one file; only GeoPackage holds several."""
     if len(layers) > 1 and output.format != "gpkg":
         raise Failure(f"{output.name} can hold one layer, not {len(layers)} ({', '.join(layers)}): write a .gpkg.")
-    try:
+    from fiona.io import MemoryFile
+
+    def put(path):
         for name, layer in layers.items():
             options = {"layer": name} if output.format == "gpkg" else {}
-            layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
-    except OSError:
+            layer.to_file(path, driver=DRIVERS[output.format], index=False, **options)
+
+    try:
+        if output.format == "shp":
+            # Several files, and fixed sizes of records.
+            put(output.path)
+            if sum(len(layer) for layer in read(output).values()) != sum(map(len, layers.values())):
+                raise Failure(f"Cannot write {output.name}: features are missing in what was written.", FILE)
+        else:
+            # Via memory, because GDAL does not tell when a disk is full at the end.
+            with MemoryFile(ext="." + output.format) as file:
+                put(file.name)
+                file.seek(0)
+                output.write_bytes(file.read())
+    except (OSError, Failure):
         raise
     except Exception as error:
         raise Failure(f"Cannot write {output.name}: {replace_path(error, output)}", FILE) from None
