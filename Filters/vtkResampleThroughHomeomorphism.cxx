@@ -253,6 +253,7 @@ vtkSmartPointer<vtkPoints> CopyPoints(vtkPointSet* data)
   auto points = vtkSmartPointer<vtkPoints>::New();
   if (data->GetPoints())
   {
+    points->SetDataType(data->GetPoints()->GetDataType());
     points->DeepCopy(data->GetPoints());
   }
   return points;
