@@ -56,6 +56,7 @@ FigureProblem::Remedy FigureProblem::GetRemedy() const
     case Kind::CellsDiffer:
       return Remedy::CorrectCells;
     case Kind::NotFinite:
+    case Kind::NotPlanar:
     case Kind::OutlineAgainstHole:
     case Kind::LoopSense:
     case Kind::Precision:
@@ -105,6 +106,9 @@ std::string FigureProblem::Message() const
       break;
     case Kind::NotFinite:
       text = "Coordinates are not finite or too large" + where + ": points " + points + ".";
+      break;
+    case Kind::NotPlanar:
+      text = "The figure does not lie in a plane" + where + ": the farthest point is " + points + ".";
       break;
     case Kind::Collinear:
       text = "All points lie on one line" + where + ".";

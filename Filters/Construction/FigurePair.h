@@ -45,6 +45,8 @@ struct FigureProblem
     CellsDiffer,
     /// A coordinate is NaN, infinite, or beyond 1e150.
     NotFinite,
+    /// A figure in space does not lie in a plane.
+    NotPlanar,
     /// All points lie on one line, and neither loops nor frames were given.
     Collinear,
     /// Points have the same position.
