@@ -26,6 +26,25 @@ std::vector<Vector2> WithBox(const std::vector<Vector2>& points)
   return all;
 }
 
+/// Lines pass vertices at this angle at least: less could be lost in rounding.
+constexpr double GrazingAngle = 1e-9;
+
+double Length(const Vector2& v)
+{
+  return std::sqrt(Dot(v, v));
+}
+
+/// Edges shorter than this leave no room for a bend: a million units in the last place.
+double LeastPortal(const std::vector<Vector2>& points)
+{
+  double largest = 0.0;
+  for (const Vector2& p : points)
+  {
+    largest = std::max({ largest, std::abs(p.x), std::abs(p.y) });
+  }
+  return 1e6 * std::numeric_limits<double>::epsilon() * largest;
+}
+
 /// Root mean square distance from the center.
 double Spread(const std::vector<Vector2>& points)
 {
@@ -50,6 +69,7 @@ CommonMap::CommonMap(const std::array<std::vector<Vector2>, 2>& points)
   , Drawings{ { ConstrainedTriangulation(this->Points[0]),
       ConstrainedTriangulation(this->Points[1]) } }
   , Scales{ { Spread(points[0]), Spread(points[1]) } }
+  , LeastPortals{ { LeastPortal(points[0]), LeastPortal(points[1]) } }
   , Parents(this->Points[0].size())
   , Degrees(this->Points[0].size(), 0)
   , NumberOfComponents(static_cast<int>(points[0].size()))
@@ -521,7 +541,9 @@ std::vector<Vector2> CommonMap::Shorten(
       if (i + 1 == n)
       {
         const Vector2 end = points[to];
-        seesEnd = Cross(left - at, end - at) < 0.0 && Cross(right - at, end - at) > 0.0;
+        seesEnd =
+          Cross(left - at, end - at) < -GrazingAngle * Length(left - at) * Length(end - at) &&
+          Cross(right - at, end - at) > GrazingAngle * Length(right - at) * Length(end - at);
       }
     }
     if (seesEnd)
@@ -535,7 +557,7 @@ std::vector<Vector2> CommonMap::Shorten(
   return bends;
 }
 
-std::vector<std::vector<Vector2>> CommonMap::FindWays(
+std::vector<CommonMap::Way> CommonMap::FindWays(
   int domain, int from, int before, const std::vector<std::array<int, 2>>& goals) const
 {
   // Breadth first through the triangles of the face, from all of the corner's.
@@ -551,7 +573,10 @@ std::vector<std::vector<Vector2>> CommonMap::FindWays(
     const auto& t = drawing.GetTriangles()[queue[i]];
     for (int k = 0; k < 3; ++k)
     {
-      if (!t.Constrained[k] && cameFrom.emplace(t.Neighbors[k], queue[i]).second)
+      const Vector2 edge = drawing.GetPoint(t.Vertices[NextCorner(k)]) -
+        drawing.GetPoint(t.Vertices[PreviousCorner(k)]);
+      if (!t.Constrained[k] && Length(edge) > this->LeastPortals[domain] &&
+        cameFrom.emplace(t.Neighbors[k], queue[i]).second)
       {
         queue.push_back(t.Neighbors[k]);
       }
@@ -562,16 +587,22 @@ std::vector<std::vector<Vector2>> CommonMap::FindWays(
   {
     rank[queue[i]] = static_cast<int>(i);
   }
-  std::vector<std::vector<Vector2>> ways;
+  std::vector<Way> ways;
   for (const auto& goal : goals)
   {
     int best = -1;
     for (const int t : this->Fan(domain, goal[0], goal[1]))
     {
-      if (best < 0 || rank[t] < rank[best])
+      const auto reached = rank.find(t);
+      if (reached != rank.end() && (best < 0 || reached->second < rank[best]))
       {
         best = t;
       }
+    }
+    if (best < 0)
+    {
+      ways.push_back({ false, {} });
+      continue;
     }
     std::vector<std::array<int, 2>> portals;
     for (int t = best; cameFrom[t] >= 0; t = cameFrom[t])
@@ -586,7 +617,7 @@ std::vector<std::vector<Vector2>> CommonMap::FindWays(
       portals.push_back({ triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
     }
     std::reverse(portals.begin(), portals.end());
-    ways.push_back(this->Shorten(domain, from, goal[0], portals));
+    ways.push_back({ true, this->Shorten(domain, from, goal[0], portals) });
   }
   return ways;
 }
@@ -674,12 +705,14 @@ CommonMap::Drawn CommonMap::Split(const Face& face)
     const auto ways1 = this->FindWays(1, walk[i], walk[(i + 1) % m], goals);
     for (std::size_t k = 0; k < goals.size(); ++k)
     {
-      // Bends for each corner that is cut off.
-      const double bends = static_cast<double>(std::max(ways0[k].size(), ways1[k].size()));
+      // Bends for each corner that is cut off; with too many, the parts would be larger than the
+      // whole.
+      const double bends =
+        static_cast<double>(std::max(ways0[k].Bends.size(), ways1[k].Bends.size()));
       const double cost = bends / cut[k];
-      if (bends > 0.0 && cost < best.Cost)
+      if (ways0[k].Exists && ways1[k].Exists && bends > 0.0 && cost < 0.4 && cost < best.Cost)
       {
-        best = { walk[i], goals[k][0], { { ways0[k], ways1[k] } }, cost };
+        best = { walk[i], goals[k][0], { { ways0[k].Bends, ways1[k].Bends } }, cost };
       }
     }
   }
@@ -727,9 +760,12 @@ CommonMap::Drawn CommonMap::Bridge(const Face& face)
       const auto ways = this->FindWays(1 - d, from, before, goals);
       for (std::size_t k = 0; k < goals.size(); ++k)
       {
-        Route route{ from, goals[k][0], {}, static_cast<double>(ways[k].size()) };
-        route.Bends[1 - d] = ways[k];
-        routes.push_back(std::move(route));
+        if (ways[k].Exists)
+        {
+          Route route{ from, goals[k][0], {}, static_cast<double>(ways[k].Bends.size()) };
+          route.Bends[1 - d] = ways[k].Bends;
+          routes.push_back(std::move(route));
+        }
       }
     }
   }

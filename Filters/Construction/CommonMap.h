@@ -105,6 +105,13 @@ public:
 private:
   using Triangulation = ConstrainedTriangulation;
 
+  /// The bends of a line in one domain, if there is room for one.
+  struct Way
+  {
+    bool Exists = false;
+    std::vector<Vector2> Bends;
+  };
+
   /// A polygonal line between two corners: its bends in each domain.
   struct Route
   {
@@ -118,7 +125,7 @@ private:
   bool Flood(int domain, int start, std::size_t limit, std::vector<int>& region);
   std::vector<std::array<int, 2>> Signature(int domain, const std::vector<int>& region) const;
   std::vector<int> Fan(int domain, int vertex, int before) const;
-  std::vector<std::vector<Vector2>> FindWays(
+  std::vector<Way> FindWays(
     int domain, int from, int before, const std::vector<std::array<int, 2>>& goals) const;
   Drawn Draw(Route& route);
   std::vector<Vector2> Shorten(
@@ -128,6 +135,7 @@ private:
   std::array<std::vector<Vector2>, 2> Points;
   std::array<ConstrainedTriangulation, 2> Drawings;
   std::array<double, 2> Scales{ { 1.0, 1.0 } };
+  std::array<double, 2> LeastPortals{ { 0.0, 0.0 } };
   int Order = 0;
   mutable std::vector<int> Parents;
   std::vector<int> Degrees;

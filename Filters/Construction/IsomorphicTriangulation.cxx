@@ -1017,9 +1017,9 @@ private:
           }
         }
       }
-      this->FillFaces();
-      this->AddDiagonals();
     }
+    this->FillFaces();
+    this->AddDiagonals();
     return !this->Stopped;
   }
 
