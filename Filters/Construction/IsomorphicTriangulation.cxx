@@ -25,7 +25,7 @@ namespace
 using Kind = FigureProblem::Kind;
 
 /// Corners of a face up to which all diagonals are tried, and are weighed against each other.
-constexpr std::size_t AllPairs = 1200;
+constexpr std::size_t AllPairs = 700;
 constexpr std::size_t ExactFill = 400;
 /// Corners up to which a face is filled by an overlay; larger ones are divided.
 constexpr std::size_t LargestOverlay = 300;
@@ -36,6 +36,8 @@ constexpr int Orders = 12;
 constexpr int FewPoints = 4;
 /// Added points beyond which another order would take long and change little.
 constexpr int ManyPoints = 200;
+/// Components that common edges leave, from which on points are taken to be unrelated.
+constexpr int Unrelated = 100;
 /// How many ids a problem lists.
 constexpr std::size_t ListedIds = 10;
 
@@ -767,13 +769,12 @@ private:
     this->Map->SetOrder(order);
     this->FillFaces();
     this->AddCommonEdges();
-    if (!this->Proceed(0.3) || !this->BridgeComponents() || !this->Proceed(0.4))
-    {
-      return nullptr;
-    }
     std::array<std::vector<Vector2>, 2> points;
     std::vector<std::array<int, 3>> triangles;
-    if (!this->Triangulate(points, triangles) || !this->Proceed(0.5))
+    if (!this->Proceed(0.3) ||
+      (!(this->Map->GetNumberOfComponents() > Unrelated && this->FillByGrid(points, triangles)) &&
+        (!this->BridgeComponents() || !this->Triangulate(points, triangles))) ||
+      !this->Proceed(0.5))
     {
       return nullptr;
     }
@@ -925,8 +926,6 @@ private:
     {
       this->Map->Add(edge[0], edge[1]);
     }
-    this->FillFaces();
-    this->AddDiagonals();
   }
 
   /// Tries all pairs of corners of the open faces.
@@ -967,6 +966,8 @@ private:
 
   bool BridgeComponents()
   {
+    this->FillFaces();
+    this->AddDiagonals();
     for (bool bridged = true; bridged;)
     {
       bridged = false;
@@ -1021,6 +1022,165 @@ private:
     this->FillFaces();
     this->AddDiagonals();
     return !this->Stopped;
+  }
+
+  /// For points in frames whose positions have little to do with each other. A line runs through
+  /// each point in both domains: in the first along one direction of the frame, in the order of the
+  /// points along the other; in the second these lines pass each other point on the right side of
+  /// it. With the lines that are straight in the second domain they make a grid of (n + 2)^2 points
+  /// whose cells are convex in both domains. False if the figure has other parts, or rounding does
+  /// not allow it.
+  bool FillByGrid(
+    std::array<std::vector<Vector2>, 2>& points, std::vector<std::array<int, 3>>& triangles)
+  {
+    if (this->Loops.size() != 1 || this->Loops[0].size() != 4 || !this->Segments.empty() ||
+      this->Result.NumberOfFrameCorners != 4)
+    {
+      return false;
+    }
+    constexpr int box = ConstrainedTriangulation::BoxCorners;
+    points = { { this->Map->GetPoints(0), this->Map->GetPoints(1) } };
+    for (auto& p : points)
+    {
+      p.resize(this->Order.size() + box);
+    }
+    std::array<int, 4> corners;
+    for (int k = 0; k < 4; ++k)
+    {
+      corners[k] = this->Vertex[this->Loops[0][k]];
+    }
+    if (Orientation(points[0][corners[0]], points[0][corners[1]], points[0][corners[2]]) < 0)
+    {
+      std::swap(corners[1], corners[3]);
+    }
+    std::vector<int> landmarks;
+    for (int v = box; v < static_cast<int>(points[0].size()); ++v)
+    {
+      if (std::find(corners.begin(), corners.end(), v) == corners.end())
+      {
+        landmarks.push_back(v);
+      }
+    }
+    // Coordinates in the parallelogram of three corners, from 0 to 1.
+    const std::size_t n = landmarks.size();
+    std::array<std::vector<Vector2>, 2> unit;
+    double margin = 0.5;
+    for (int d = 0; d < 2; ++d)
+    {
+      const Vector2 origin = points[d][corners[0]];
+      const Vector2 x = points[d][corners[1]] - origin;
+      const Vector2 y = points[d][corners[3]] - origin;
+      for (const int v : landmarks)
+      {
+        const Vector2 p = points[d][v] - origin;
+        const Vector2 u{ Cross(p, y) / Cross(x, y), Cross(x, p) / Cross(x, y) };
+        unit[d].push_back(u);
+        margin = std::min({ margin, u.x, u.y, 1.0 - u.x, 1.0 - u.y });
+      }
+    }
+    if (!(margin > 1e-6))
+    {
+      return false;
+    }
+    // Slightly inclined, so that no two points are on one line. The second domain's axes are
+    // exchanged, so that in both the lines are those of constant x.
+    const double slope = 0.31 * margin;
+    std::array<std::vector<int>, 2> order;
+    std::array<std::vector<int>, 2> rank;
+    for (int d = 0; d < 2; ++d)
+    {
+      for (Vector2& u : unit[d])
+      {
+        u = d == 0 ? u : Vector2{ u.y, u.x };
+        u.x += slope * u.y;
+      }
+      order[d].resize(n);
+      rank[d].resize(n);
+      std::iota(order[d].begin(), order[d].end(), 0);
+      std::sort(order[d].begin(), order[d].end(),
+        [&](int a, int b) { return unit[d][a].x < unit[d][b].x; });
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        rank[d][order[d][i]] = static_cast<int>(i) + 1;
+      }
+    }
+    const int side = static_cast<int>(n) + 2;
+    const int first = static_cast<int>(points[0].size());
+    std::vector<int> node(static_cast<std::size_t>(side) * side, -1);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      node[static_cast<std::size_t>(rank[0][i]) * side + rank[1][i]] = landmarks[i];
+    }
+    int count = first;
+    for (int& v : node)
+    {
+      v = v < 0 ? count++ : v;
+    }
+    const double low = 0.5 * margin;
+    for (int d = 0; d < 2; ++d)
+    {
+      points[d].resize(static_cast<std::size_t>(count));
+      const Vector2 origin = points[d][corners[0]];
+      const Vector2 x = points[d][corners[1]] - origin;
+      const Vector2 y = points[d][corners[3]] - origin;
+      for (int line = 0; line < side; ++line)
+      {
+        const bool inside = line > 0 && line + 1 < side;
+        const int landmark = inside ? order[d][line - 1] : -1;
+        const double at = inside ? unit[d][landmark].x : (line == 0 ? low : 1.0 - low + slope);
+        const int middle = inside ? rank[1 - d][landmark] : side - 1;
+        const double height = inside ? unit[d][landmark].y : 1.0 - low;
+        for (int k = 0; k < side; ++k)
+        {
+          const double along = k <= middle
+            ? low + (height - low) * k / middle
+            : height + (1.0 - low - height) * (k - middle) / (side - 1 - middle);
+          const int v = d == 0 ? node[static_cast<std::size_t>(line) * side + k]
+                               : node[static_cast<std::size_t>(k) * side + line];
+          if (v >= first)
+          {
+            const double across = at - slope * along;
+            points[d][v] =
+              d == 0 ? origin + across * x + along * y : origin + along * x + across * y;
+          }
+        }
+      }
+    }
+    const auto at = [&](int line, int level) {
+      return node[static_cast<std::size_t>(line) * side + level];
+    };
+    const auto quality = [&](const std::array<int, 3>& t) {
+      return QualityOf(PairQuality::MinimumAngle,
+        { points[0][t[0]], points[0][t[1]], points[0][t[2]] },
+        { points[1][t[0]], points[1][t[1]], points[1][t[2]] });
+    };
+    const auto add = [&](int a, int b, int c) {
+      triangles.push_back({ a, b, c });
+      return quality(triangles.back()) >= 0.0;
+    };
+    const int last = side - 1;
+    bool good = add(corners[0], corners[1], at(last, 0)) &&
+      add(corners[1], corners[2], at(last, last)) && add(corners[2], corners[3], at(0, last)) &&
+      add(corners[3], corners[0], at(0, 0));
+    for (int a = 0; a < last && good; ++a)
+    {
+      good = add(corners[0], at(a + 1, 0), at(a, 0)) &&
+        add(corners[1], at(last, a + 1), at(last, a)) &&
+        add(corners[2], at(a, last), at(a + 1, last)) && add(corners[3], at(0, a), at(0, a + 1));
+      for (int b = 0; b < last && good; ++b)
+      {
+        const std::array<int, 4> q{ { at(a, b), at(a + 1, b), at(a + 1, b + 1), at(a, b + 1) } };
+        const bool rising = std::min(quality({ q[0], q[1], q[2] }), quality({ q[0], q[2], q[3] })) >
+          std::min(quality({ q[0], q[1], q[3] }), quality({ q[1], q[2], q[3] }));
+        good = rising ? add(q[0], q[1], q[2]) && add(q[0], q[2], q[3])
+                      : add(q[0], q[1], q[3]) && add(q[1], q[2], q[3]);
+      }
+    }
+    if (!good)
+    {
+      triangles.clear();
+    }
+    return good;
   }
 
   /// Fills the faces that are still open, with added points where they are necessary.

@@ -21,6 +21,9 @@ namespace
 constexpr int LargestOutline = 40;
 /// Points that are moved together; in larger meshes only those near a change are.
 constexpr std::size_t MovedTogether = 40;
+/// More points than this are not moved, and not merged: it would take too long.
+constexpr int MovedAtAll = 5000;
+constexpr int MergedAtAll = 20000;
 /// Points without gain after which adding more is given up.
 constexpr int IdlePoints = 7;
 
@@ -392,7 +395,7 @@ void JointOptimization::Round(const std::vector<int>& vertices, bool finish)
 void JointOptimization::Improve(int rounds)
 {
   const std::vector<int> vertices = this->Mesh.FreeVertices();
-  if (vertices.empty())
+  if (vertices.empty() || static_cast<int>(vertices.size()) > MovedAtAll)
   {
     return;
   }
@@ -507,6 +510,7 @@ void JointOptimization::RemovePoints()
   for (int pass = 0; pass < 6; ++pass)
   {
     const int before = this->Mesh.CountAdded();
+    const bool merge = before <= MergedAtAll;
     std::vector<char> waiting(static_cast<std::size_t>(this->Mesh.GetNumberOfPoints()), 0);
     std::priority_queue<std::pair<int, int>, std::vector<std::pair<int, int>>, std::greater<>>
       queue;
@@ -534,7 +538,7 @@ void JointOptimization::RemovePoints()
       const std::vector<int> around = neighbors(vertex);
       bool changed = this->RemovePoint(vertex);
       std::vector<int> further;
-      for (std::size_t i = 0; i < around.size() && !changed; ++i)
+      for (std::size_t i = 0; i < around.size() && merge && !changed; ++i)
       {
         if (this->Mesh.IsFree(around[i]))
         {
@@ -544,6 +548,7 @@ void JointOptimization::RemovePoints()
       }
       if (changed)
       {
+        this->Mesh.Commit();
         wake(vertex);
         for (const int v : around)
         {
@@ -556,7 +561,11 @@ void JointOptimization::RemovePoints()
       }
     }
     this->Mesh.Commit();
-    if (this->Mesh.CountAdded() == 0 || (pass > 1 && this->Mesh.CountAdded() == before))
+    if (!merge && this->Mesh.CountAdded() < MergedAtAll)
+    {
+      continue;
+    }
+    if (!merge || this->Mesh.CountAdded() == 0 || (pass > 1 && this->Mesh.CountAdded() == before))
     {
       return;
     }
