@@ -28,6 +28,8 @@ for name, outputs in (("DifferentiableHomeomorphism", ["Mapped data", "Continuit
                       ("ResampleThroughHomeomorphism", ["Resampled data"]),
                       ("TriangularCoordinates", ["Points", "Lines", "Triangulation"]),
                       ("InBetweenTriangulation", ["Triangulation"]),
+                      ("IsomorphicTriangulation",
+                       ["Source", "Target", "Source segments", "Target segments"]),
                       ("RefinedTriangulationPair", ["Source", "Target"]),
                       ("TriangulationPairReport", ["Source", "Target", "Statistics", "Defects"])):
     arguments = {"Source": source} if name == "TriangularCoordinates" else \

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 from .vtkFiltersHomeomorphism import (
     vtkDifferentiableHomeomorphism,
     vtkHomeomorphismTransform,
+    vtkIsomorphicTriangulation,
     vtkJacobianContinuity,
     vtkResampleThroughHomeomorphism,
     vtkTriangularCoordinates,
@@ -30,12 +31,15 @@ from .vtkFiltersHomeomorphism import (
 
 if TYPE_CHECKING:
     from .arrays import Homeomorphism
+    from .isomorphic import isomorphic_triangulation
 
 __version__ = "1.0.0"
 __all__ = [
     "Homeomorphism",
+    "isomorphic_triangulation",
     "vtkDifferentiableHomeomorphism",
     "vtkHomeomorphismTransform",
+    "vtkIsomorphicTriangulation",
     "vtkJacobianContinuity",
     "vtkResampleThroughHomeomorphism",
     "vtkTriangularCoordinates",
@@ -48,4 +52,8 @@ def __getattr__(name):
         from .arrays import Homeomorphism
 
         return Homeomorphism
+    if name == "isomorphic_triangulation":
+        from .isomorphic import isomorphic_triangulation
+
+        return isomorphic_triangulation
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -202,6 +202,20 @@ class Homeomorphism:
         # Report invalid meshes at once.
         self._run(numpy.empty((0, 3)), False)
 
+    @classmethod
+    def from_landmarks(cls, source, target, system: str = "smooth", **options):
+        """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made
+        for them. Options of `isomorphic_triangulation` and of this class are understood."""
+        from .isomorphic import isomorphic_triangulation
+
+        own = {
+            name: options.pop(name)
+            for name in ("center", "discordant_by_linear", "tolerance")
+            if name in options
+        }
+        pair = isomorphic_triangulation(source, target, **options)
+        return cls(pair.source, pair.target, pair.triangles, system, **own)
+
     def _set_up(self, algorithm):
         algorithm.SetSourceData(self._meshes[0])
         algorithm.SetTargetData(self._meshes[1])

@@ -58,7 +58,8 @@ struct Cells
   std::vector<std::vector<vtkIdType>> Polygons;
 };
 
-vtkSmartPointer<vtkPolyData> Figure(const std::vector<Point>& positions, const Cells& cells, int type)
+vtkSmartPointer<vtkPolyData> Figure(
+  const std::vector<Point>& positions, const Cells& cells, int type)
 {
   auto figure = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
@@ -84,17 +85,17 @@ vtkSmartPointer<vtkPolyData> Figure(const std::vector<Point>& positions, const C
 }
 
 /// A filter with its inputs that keeps its messages to itself.
-struct Run
+struct PairRun
 {
-  Run(const std::vector<Point>& source, const std::vector<Point>& target, const Cells& cells = {},
-    const Cells* targetCells = nullptr, int type = VTK_DOUBLE)
+  PairRun(const std::vector<Point>& source, const std::vector<Point>& target,
+    const Cells& cells = {}, const Cells* targetCells = nullptr, int type = VTK_DOUBLE)
     : Source(Figure(source, cells, type))
     , Target(Figure(target, targetCells ? *targetCells : cells, type))
   {
     this->Pair->SetSourceData(this->Source);
     this->Pair->SetTargetData(this->Target);
-    this->Pair->AddObserver(vtkCommand::ErrorEvent, this, &Run::Count);
-    this->Pair->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &Run::Ignore);
+    this->Pair->AddObserver(vtkCommand::ErrorEvent, this, &PairRun::Count);
+    this->Pair->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this, &PairRun::Ignore);
   }
 
   void Count(vtkObject*, unsigned long, void*) { ++this->Errors; }
@@ -141,7 +142,7 @@ using Ids = std::vector<vtkIdType>;
 
 TEST(IsomorphicTriangulationFilter, MakesPairsThatOtherFiltersTake)
 {
-  Run run(Lattice([](double x, double y) {
+  PairRun run(Lattice([](double x, double y) {
     return Point{ x, y, 0.0 };
   }),
     Lattice(Bent), {}, nullptr, VTK_FLOAT);
@@ -184,7 +185,7 @@ TEST(IsomorphicTriangulationFilter, MakesPairsThatOtherFiltersTake)
 TEST(IsomorphicTriangulationFilter, FiguresInAnyPlanes)
 {
   // The source stands upright, the target is tilted.
-  Run run(Lattice([](double x, double y) {
+  PairRun run(Lattice([](double x, double y) {
     return Point{ 7.0, x, y };
   }),
     Lattice([](double x, double y) {
@@ -204,7 +205,7 @@ TEST(IsomorphicTriangulationFilter, SegmentsOfLoopsAndLines)
 {
   // The outline as single line cells; one line is a constraint.
   const Cells cells{ { { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }, { 4, 6 } }, {} };
-  Run run(Square, Square, cells);
+  PairRun run(Square, Square, cells);
   run.Pair->Update();
   EXPECT_EQ(0, run.Errors);
   EXPECT_EQ(7, run.Pair->GetOutput()->GetNumberOfPoints());
@@ -216,7 +217,7 @@ TEST(IsomorphicTriangulationFilter, SuspiciousLandmarksAreListed)
 {
   std::vector<Point> target = Lattice(Bent);
   target[12][0] += 0.7;
-  Run run(Lattice([](double x, double y) { return Point{ x, y, 0.0 }; }), target);
+  PairRun run(Lattice([](double x, double y) { return Point{ x, y, 0.0 }; }), target);
   run.Pair->Update();
   vtkNew<vtkIdList> worst;
   run.Pair->GetSuspiciousLandmarks(worst);
@@ -226,7 +227,7 @@ TEST(IsomorphicTriangulationFilter, SuspiciousLandmarksAreListed)
 
 TEST(IsomorphicTriangulationFilter, FramesOfImages)
 {
-  Run run(Lattice([](double x, double y) { return Point{ x, 10.0 - y, 0.0 }; }), Lattice(Bent));
+  PairRun run(Lattice([](double x, double y) { return Point{ x, 10.0 - y, 0.0 }; }), Lattice(Bent));
   run.Pair->SetSourceFrame(-2, 8, 0, 20);
   run.Pair->SetTargetFrame(-3, 9, -9, 11);
   run.Pair->Update();
@@ -239,27 +240,27 @@ TEST(IsomorphicTriangulationFilter, FramesOfImages)
 
 TEST(IsomorphicTriangulationRefusals, Empty)
 {
-  EXPECT_EQ(Filter::EMPTY, Run({}, {}).Refusal());
+  EXPECT_EQ(Filter::EMPTY, PairRun({}, {}).Refusal());
 }
 
 TEST(IsomorphicTriangulationRefusals, DifferentPoints)
 {
   std::vector<Point> target = Square;
   target.pop_back();
-  EXPECT_EQ(Filter::POINT_COUNTS_DIFFER, Run(Square, target).Refusal());
+  EXPECT_EQ(Filter::POINT_COUNTS_DIFFER, PairRun(Square, target).Refusal());
 }
 
 TEST(IsomorphicTriangulationRefusals, DifferentCells)
 {
   const Cells other = With({ { 4, 6 } });
-  EXPECT_EQ(Filter::CELLS_DIFFER, Run(Square, Square, Outline, &other).Refusal());
+  EXPECT_EQ(Filter::CELLS_DIFFER, PairRun(Square, Square, Outline, &other).Refusal());
 }
 
 TEST(IsomorphicTriangulationRefusals, NotFinite)
 {
   std::vector<Point> target = Square;
   target[5][1] = std::numeric_limits<double>::quiet_NaN();
-  Run run(Square, target, Outline);
+  PairRun run(Square, target, Outline);
   EXPECT_EQ(Filter::NOT_FINITE, run.Refusal());
   EXPECT_EQ(1, run.Pair->GetProblemDomain(0));
   EXPECT_EQ(Ids{ 5 }, run.Points());
@@ -270,7 +271,7 @@ TEST(IsomorphicTriangulationRefusals, NotPlanar)
   std::vector<Point> source = Square;
   source[6][2] = 1.0;
   source[4][2] = -1.0;
-  Run run(source, Square, Outline);
+  PairRun run(source, Square, Outline);
   EXPECT_EQ(Filter::NOT_PLANAR, run.Refusal());
   EXPECT_EQ(0, run.Pair->GetProblemDomain(0));
 }
@@ -279,7 +280,7 @@ TEST(IsomorphicTriangulationRefusals, Coincident)
 {
   std::vector<Point> target = Square;
   target[6] = target[4];
-  Run run(Square, target, Outline);
+  PairRun run(Square, target, Outline);
   EXPECT_EQ(Filter::COINCIDENT, run.Refusal());
   EXPECT_EQ(1, run.Pair->GetProblemDomain(0));
   EXPECT_EQ((Ids{ 4, 6 }), run.Points());
@@ -291,7 +292,7 @@ TEST(IsomorphicTriangulationRefusals, CrossingAndLeftOut)
   target[6] = { 3, 2.5, 0 };
   std::vector<Point> source = Square;
   source[6] = { 0.5, 3, 0 };
-  Run run(source, target, With({ { 4, 5 }, { 6, 0 } }));
+  PairRun run(source, target, With({ { 4, 5 }, { 6, 0 } }));
   EXPECT_EQ(Filter::CROSSING, run.Refusal());
   EXPECT_EQ(1, run.Pair->GetProblemDomain(0));
   EXPECT_EQ((Ids{ 0, 6, 4, 5 }), run.Points());
@@ -308,7 +309,7 @@ TEST(IsomorphicTriangulationRefusals, PointOnSegment)
 {
   std::vector<Point> target = Square;
   target[6] = { 2, 1, 0 };
-  Run run(Square, target, With({ { 4, 5 } }));
+  PairRun run(Square, target, With({ { 4, 5 } }));
   EXPECT_EQ(Filter::POINT_ON_SEGMENT, run.Refusal());
   EXPECT_EQ(1, run.Pair->GetProblemDomain(0));
   EXPECT_EQ((Ids{ 6, 4, 5 }), run.Points());
@@ -320,7 +321,7 @@ TEST(IsomorphicTriangulationRefusals, CyclicOrder)
   source.push_back({ 2, 1.5, 0 });
   std::vector<Point> target = source;
   std::swap(target[4], target[5]);
-  Run run(source, target, With({ { 7, 4 }, { 7, 5 }, { 7, 6 } }));
+  PairRun run(source, target, With({ { 7, 4 }, { 7, 5 }, { 7, 6 } }));
   EXPECT_EQ(Filter::CYCLIC_ORDER, run.Refusal());
   EXPECT_EQ(Ids{ 7 }, run.Points());
 }
@@ -332,7 +333,7 @@ TEST(IsomorphicTriangulationRefusals, OtherFace)
   source.push_back({ 2, 2, 0 });
   std::vector<Point> target = Square;
   target.push_back({ 0.5, 3, 0 });
-  Run run(source, target, With({ { 4, 5 }, { 5, 6 }, { 6, 4 }, { 4, 0 } }));
+  PairRun run(source, target, With({ { 4, 5 }, { 5, 6 }, { 6, 4 }, { 4, 0 } }));
   EXPECT_EQ(Filter::OTHER_FACE, run.Refusal());
   EXPECT_EQ(-1, run.Pair->GetProblemDomain(0));
 }
@@ -344,7 +345,7 @@ TEST(IsomorphicTriangulationRefusals, OutlineAgainstHole)
   {
     target[i][0] += 10.0;
   }
-  Run run(Square, target, { {}, { { 0, 1, 2, 3 }, { 4, 5, 6 } } });
+  PairRun run(Square, target, { {}, { { 0, 1, 2, 3 }, { 4, 5, 6 } } });
   EXPECT_EQ(Filter::OUTLINE_AGAINST_HOLE, run.Refusal());
   EXPECT_LE(0, run.Pair->GetProblemCell(0));
 }
@@ -353,7 +354,7 @@ TEST(IsomorphicTriangulationRefusals, LoopSense)
 {
   std::vector<Point> target = Square;
   std::swap(target[4], target[5]);
-  Run run(Square, target, { {}, { { 0, 1, 2, 3 }, { 4, 5, 6 } } });
+  PairRun run(Square, target, { {}, { { 0, 1, 2, 3 }, { 4, 5, 6 } } });
   EXPECT_EQ(Filter::LOOP_SENSE, run.Refusal());
   EXPECT_EQ(1, run.Pair->GetProblemCell(0));
 }
@@ -362,7 +363,7 @@ TEST(IsomorphicTriangulationRefusals, OutsideDomain)
 {
   std::vector<Point> points = Square;
   points.push_back({ 9, 9, 0 });
-  Run run(points, points, Outline);
+  PairRun run(points, points, Outline);
   EXPECT_EQ(Filter::OUTSIDE_DOMAIN, run.Refusal());
   EXPECT_EQ(Ids{ 7 }, run.Points());
 }
@@ -370,14 +371,14 @@ TEST(IsomorphicTriangulationRefusals, OutsideDomain)
 TEST(IsomorphicTriangulationRefusals, Collinear)
 {
   const std::vector<Point> line{ { 0, 0, 0 }, { 1, 1, 0 }, { 3, 3, 0 } };
-  Run run(line, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } });
+  PairRun run(line, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } });
   EXPECT_EQ(Filter::COLLINEAR, run.Refusal());
   EXPECT_EQ(0, run.Pair->GetProblemDomain(0));
 }
 
 TEST(IsomorphicTriangulationRefusals, OneFrameOnly)
 {
-  Run run(Square, Square);
+  PairRun run(Square, Square);
   run.Pair->SetSourceFrame(-1, 9, -1, 9);
   EXPECT_EQ(Filter::BAD_FRAME, run.Refusal());
   EXPECT_EQ(1, run.Pair->GetProblemDomain(0));
@@ -387,7 +388,7 @@ TEST(IsomorphicTriangulationRefusals, HullsDiffer)
 {
   std::vector<Point> target = Square;
   target[6] = { 2, 5, 0 };
-  Run run(Square, target);
+  PairRun run(Square, target);
   run.Pair->SetDomain(Filter::CONVEX_HULL);
   EXPECT_EQ(Filter::HULLS_DIFFER, run.Refusal());
   EXPECT_EQ(Ids{ 6 }, run.Points());
@@ -400,7 +401,7 @@ TEST(IsomorphicTriangulationRefusals, PointLimit)
     { 0, 1, 0 } };
   std::vector<Point> right = left;
   std::rotate(right.begin(), right.begin() + 3, right.end());
-  Run run(left, right, { {}, { { 0, 1, 2, 3, 4, 5 } } });
+  PairRun run(left, right, { {}, { { 0, 1, 2, 3, 4, 5 } } });
   run.Pair->SetMaximumNumberOfAddedPoints(0);
   EXPECT_EQ(Filter::POINT_LIMIT, run.Refusal());
   EXPECT_LT(0, run.Pair->GetProblemCount(0));

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Makes pairs of difficult figures, checks each, and prints a table in Markdown:
+//   StressPairs [--large]
+// or, as CSV, the smallest angle and the shares of obtuse and discordant triangles that are reached
+// with a number of added points:
+//   StressPairs --curve NAME MAXIMUM
+//
+// Times are those of the processor, in one thread.
+
+#include "Figures.h"
+
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <iostream>
+
+using namespace figures;
+using homeomorphism::MakeIsomorphicTriangulation;
+using homeomorphism::MeasurePair;
+using homeomorphism::PairQuality;
+
+namespace
+{
+
+double Seconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+int Failures = 0;
+
+void Row(const std::string& name, const FigurePair& figure,
+  const IsomorphicTriangulationOptions& options = {})
+{
+  const double start = Seconds();
+  const IsomorphicTriangulationResult result = MakeIsomorphicTriangulation(figure, options);
+  const double seconds = Seconds() - start;
+  const std::string wrong = Check(figure, result);
+  Failures += wrong.empty() ? 0 : 1;
+  const auto statistics = MeasurePair(result.Points, result.Triangles);
+  char text[200];
+  std::snprintf(text, sizeof(text), " | %zu | %d | %.2g | %.2f | ", figure.Points[0].size(),
+    result.NumberOfAddedPoints,
+    result.IsComplete() ? std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]) : 0.0,
+    seconds);
+  std::cout << "| " << name << text << (wrong.empty() ? "valid" : wrong) << " |" << std::endl;
+}
+
+/// A square with many square holes, bent in the target.
+FigurePair Holes(int side, int landmarksInBays)
+{
+  FigurePair figure;
+  const auto add = [&](double x, double y) {
+    Add(figure, { x, y }, { x + 0.3 * std::sin(0.5 * y), y + 0.3 * std::sin(0.4 * x) });
+    return static_cast<int>(figure.Points[0].size()) - 1;
+  };
+  const double size = 2.0 * side;
+  figure.Loops.push_back({ add(-1, -1), add(size, -1), add(size, size), add(-1, size) });
+  for (int i = 0; i < side; ++i)
+  {
+    for (int k = 0; k < side; ++k)
+    {
+      const double x = 2.0 * i;
+      const double y = 2.0 * k;
+      figure.Loops.push_back(
+        { add(x, y), add(x + 1, y), add(x + 1, y + 1), add(x + 0.8, y + 0.2), add(x, y + 1) });
+      if (i * side + k < landmarksInBays)
+      {
+        add(x + 0.6, y + 0.6);
+      }
+    }
+  }
+  return figure;
+}
+
+FigurePair Annulus(int corners, double turn, bool island)
+{
+  FigurePair figure;
+  for (int d = 0; d < 2; ++d)
+  {
+    figure.Points[d] = Circle(corners, 4.0);
+    for (const double radius : { 2.0, 1.0 })
+    {
+      for (const Vector2& p : Circle(corners, radius))
+      {
+        const double a = d * turn;
+        figure.Points[d].push_back(
+          { std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y });
+      }
+    }
+    if (!island)
+    {
+      figure.Points[d].resize(static_cast<std::size_t>(2 * corners));
+    }
+  }
+  figure.Loops = { Range(0, corners), Range(corners, 2 * corners) };
+  if (island)
+  {
+    figure.Loops.push_back(Range(2 * corners, 3 * corners));
+  }
+  return figure;
+}
+
+FigurePair Scaled(FigurePair figure, double x, double y, double scale, bool toFloat)
+{
+  for (auto& points : figure.Points)
+  {
+    for (Vector2& p : points)
+    {
+      p = { x + scale * p.x, y + scale * p.y };
+      if (toFloat)
+      {
+        p = { static_cast<float>(p.x), static_cast<float>(p.y) };
+      }
+    }
+  }
+  return figure;
+}
+
+void Table(bool large)
+{
+  std::cout << "| figure | points | added | smallest angle | seconds | result |\n"
+               "| --- | ---: | ---: | ---: | ---: | --- |\n";
+  for (const char* name : { "nobeoka", "nobeoka-inset", "fushimi-castle", "tatebayashi-town",
+         "uno-bus", "uno-bus-bent", "letters-U-S", "outlines-37" })
+  {
+    FigurePair figure;
+    if (Read(name, figure, true))
+    {
+      IsomorphicTriangulationOptions options;
+      options.LeaveOutConflictingSegments = true;
+      if (figure.Points[0].size() < 40)
+      {
+        figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
+      }
+      Row(name, figure, options);
+    }
+  }
+  for (const double spacings : { 0.1, 0.25, 0.5, 1.0, 2.0 })
+  {
+    char name[40];
+    std::snprintf(name, sizeof(name), "noise of %g spacings", spacings);
+    Row(name, Noise(1000, spacings, 1));
+  }
+  for (const int n : { 10, 30, 100, 300, 1000 })
+  {
+    Row("unrelated positions", Unrelated(n, 2));
+  }
+  for (const int n : { 10, 40, 100, 500 })
+  {
+    Row("spiral against circle", Outline(Spiral(n, 2.0), Circle(n)));
+    Row("comb against shifted comb", Outline(Comb(n, 0), Comb(n, n / 4)));
+  }
+  for (const int n : { 16, 32, 64, 128, 256 })
+  {
+    Row("snake against shifted snake", Outline(Snake(n, false), Snake(n, true)));
+  }
+  Row("annulus, turned by a third", Annulus(24, 2.1, false));
+  Row("island in a hole, turned", Annulus(24, 2.1, true));
+  Row("1024 holes, landmarks in their bays", Holes(32, 1024));
+  Row("Web Mercator coordinates", Scaled(Noise(500, 0.3, 3), 1.5e7, 4e6, 1e3, false));
+  Row("national grid, float", Scaled(Noise(500, 0.3, 3), 3.5e6, 6.7e6, 1e5, true));
+  Row("smooth", Smooth(10000, 4));
+  Row("smooth", Smooth(100000, 4));
+  if (large)
+  {
+    Row("smooth", Smooth(1000000, 4));
+  }
+}
+
+int Curve(const std::string& name, int maximum)
+{
+  std::cout << "name,quality,points,source_angle,target_angle,obtuse,discordant\n";
+  for (const PairQuality quality :
+    { PairQuality::MinimumAngle, PairQuality::Concordance, PairQuality::NonObtuse })
+  {
+    for (int count = 0; count <= maximum; ++count)
+    {
+      FigurePair figure;
+      if (!Read(name, figure, false))
+      {
+        std::cerr << "There is no " << name << "\n";
+        return 1;
+      }
+      figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
+      IsomorphicTriangulationOptions options;
+      options.MaximumNumberOfAddedPoints = count;
+      options.TargetQuality = 90.0;
+      options.Quality = quality;
+      const auto result = MakeIsomorphicTriangulation(figure, options);
+      if (!result.IsComplete())
+      {
+        continue;
+      }
+      if (!Check(figure, result).empty())
+      {
+        return 1;
+      }
+      const auto s = MeasurePair(result.Points, result.Triangles);
+      std::cout << name << "," << static_cast<int>(quality) << "," << count << ","
+                << s.MinimumAngle[0] << "," << s.MinimumAngle[1] << "," << s.ObtuseShare << ","
+                << s.DiscordantShare << std::endl;
+    }
+  }
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  if (argc == 4 && std::strcmp(argv[1], "--curve") == 0)
+  {
+    return Curve(argv[2], std::atoi(argv[3]));
+  }
+  Table(argc > 1 && std::strcmp(argv[1], "--large") == 0);
+  return Failures == 0 ? 0 : 1;
+}

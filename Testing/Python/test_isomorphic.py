@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pairs of triangulations from landmarks."""
+
+import numpy
+import pytest
+
+from vtkhomeomorphism import Homeomorphism, isomorphic_triangulation
+
+
+def _landmarks(count=60):
+    random = numpy.random.default_rng(1)
+    source = random.random((count, 2))
+    return source, source + 0.04 * numpy.sin(6 * source[:, ::-1])
+
+
+def _doubled_areas(points, triangles):
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return numpy.cross(b - a, c - a)
+
+
+def test_landmarks_go_to_landmarks_and_back():
+    source, target = _landmarks()
+    f = Homeomorphism.from_landmarks(source, target)
+    assert numpy.allclose(f(source), target, atol=1e-13)
+    assert numpy.allclose(f.inverse(target), source, atol=1e-13)
+
+
+def test_triangles_are_valid_in_both_domains():
+    source, target = _landmarks()
+    pair = isomorphic_triangulation(source, target)
+    assert numpy.array_equal(pair.source[:60], source)
+    assert numpy.array_equal(pair.target[:60], target)
+    assert pair.added_points == 0 and len(pair.source) == 64
+    for points in (pair.source, pair.target):
+        assert (_doubled_areas(points, pair.triangles) > 0).all()
+
+
+def test_the_mistyped_landmark_is_the_most_suspicious():
+    source, target = _landmarks()
+    target[17] += 0.05
+    assert isomorphic_triangulation(source, target).residuals.argmax() == 17
+
+
+def test_outlines_and_added_points():
+    outline = numpy.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [0, 1]], float)
+    other = numpy.roll(outline, -3, axis=0)
+    with pytest.raises(ValueError, match="points? ha"):
+        isomorphic_triangulation(outline, other, outlines=[range(6)], maximum_added_points=0)
+    pair = isomorphic_triangulation(outline, other, outlines=[range(6)])
+    assert pair.added_points > 0
+    for points in (pair.source, pair.target):
+        assert numpy.isclose(_doubled_areas(points, pair.triangles).sum() / 2, 5)
+
+
+def test_conflicting_segments_are_named_or_left_out():
+    points = numpy.array([[0, 0], [1, 0], [0.4, 1], [0.5, -1]], float)
+    moved = points.copy()
+    moved[3] = 2, 1
+    segments = [[0, 1], [2, 3]]
+    with pytest.raises(ValueError, match="cross"):
+        isomorphic_triangulation(points, moved, segments=segments)
+    pair = isomorphic_triangulation(
+        points, moved, segments=segments, leave_out_conflicting_segments=True
+    )
+    assert len(pair.left_out) == 1
+
+
+def test_points_that_do_not_exist_are_refused():
+    source, target = _landmarks(5)
+    with pytest.raises(ValueError, match=r"segments\[0\]"):
+        isomorphic_triangulation(source, target, segments=[[0, 99]])
