@@ -36,8 +36,10 @@ constexpr int Orders = 12;
 constexpr int FewPoints = 4;
 /// Added points beyond which another order would take long and change little.
 constexpr int ManyPoints = 200;
-/// Components that common edges leave, from which on points are taken to be unrelated.
-constexpr int Unrelated = 100;
+/// Components that common edges leave, from which on points are taken to be unrelated: so many, or
+/// so many that are also a fifth of all points.
+constexpr int Unrelated = 70;
+constexpr int UnrelatedFew = 20;
 /// How many ids a problem lists.
 constexpr std::size_t ListedIds = 10;
 
@@ -772,7 +774,7 @@ private:
     std::array<std::vector<Vector2>, 2> points;
     std::vector<std::array<int, 3>> triangles;
     if (!this->Proceed(0.3) ||
-      (!(this->Map->GetNumberOfComponents() > Unrelated && this->FillByGrid(points, triangles)) &&
+      (!(this->AreUnrelated() && this->FillByGrid(points, triangles)) &&
         (!this->BridgeComponents() || !this->Triangulate(points, triangles))) ||
       !this->Proceed(0.5))
     {
@@ -1022,6 +1024,13 @@ private:
     this->FillFaces();
     this->AddDiagonals();
     return !this->Stopped;
+  }
+
+  bool AreUnrelated() const
+  {
+    const int components = this->Map->GetNumberOfComponents();
+    return components > Unrelated ||
+      (components > UnrelatedFew && 5 * static_cast<std::size_t>(components) > this->Order.size());
   }
 
   /// For points in frames whose positions have little to do with each other. A line runs through
