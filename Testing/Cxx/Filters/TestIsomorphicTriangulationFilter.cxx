@@ -147,7 +147,7 @@ TEST(IsomorphicTriangulationFilter, MakesPairsThatOtherFiltersTake)
   }),
     Lattice(Bent), {}, nullptr, VTK_FLOAT);
   vtkNew<vtkDifferentiableHomeomorphism> map;
-  map->SetInputData(run.Source);
+  map->SetDataObject(run.Source);
   map->SetSourceConnection(run.Pair->GetOutputPort(0));
   map->SetTargetConnection(run.Pair->GetOutputPort(1));
   map->Update();
@@ -156,12 +156,15 @@ TEST(IsomorphicTriangulationFilter, MakesPairsThatOtherFiltersTake)
   // The map takes landmarks to landmarks.
   vtkPolyData* mapped = vtkPolyData::SafeDownCast(map->GetOutput());
   ASSERT_NE(nullptr, mapped);
-  for (vtkIdType i = 0; i < mapped->GetNumberOfPoints(); ++i)
+  ASSERT_EQ(25, mapped->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < 25; ++i)
   {
-    for (int k = 0; k < 2; ++k)
-    {
-      EXPECT_NEAR(run.Target->GetPoint(i)[k], mapped->GetPoint(i)[k], 1e-6);
-    }
+    Point expected;
+    Point found;
+    run.Target->GetPoint(i, expected.data());
+    mapped->GetPoint(i, found.data());
+    EXPECT_NEAR(expected[0], found[0], 1e-6) << i;
+    EXPECT_NEAR(expected[1], found[1], 1e-6) << i;
   }
   vtkPolyData* source = run.Pair->GetOutput();
   EXPECT_EQ(VTK_DOUBLE, source->GetPoints()->GetDataType());
@@ -396,12 +399,16 @@ TEST(IsomorphicTriangulationRefusals, HullsDiffer)
 
 TEST(IsomorphicTriangulationRefusals, PointLimit)
 {
-  // A bent strip and its mirror image with the same corners.
-  const std::vector<Point> left{ { 0, 0, 0 }, { 3, 0, 0 }, { 3, 3, 0 }, { 2, 3, 0 }, { 2, 1, 0 },
-    { 0, 1, 0 } };
-  std::vector<Point> right = left;
-  std::rotate(right.begin(), right.begin() + 3, right.end());
-  PairRun run(left, right, { {}, { { 0, 1, 2, 3, 4, 5 } } });
+  // A comb, and the same comb with its corners numbered from another one.
+  std::vector<Point> comb{ { 0, 0, 0 }, { 4, 0, 0 } };
+  for (int i = 4; i-- > 0;)
+  {
+    comb.push_back({ i + 1.0, 10.0, 0.0 });
+    comb.push_back({ i + 0.5, i > 0 ? 0.5 : 1.0, 0.0 });
+  }
+  std::vector<Point> turned = comb;
+  std::rotate(turned.begin(), turned.begin() + 2, turned.end());
+  PairRun run(comb, turned, { {}, { { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 } } });
   run.Pair->SetMaximumNumberOfAddedPoints(0);
   EXPECT_EQ(Filter::POINT_LIMIT, run.Refusal());
   EXPECT_LT(0, run.Pair->GetProblemCount(0));
