@@ -492,6 +492,38 @@ vtkMTimeType vtkDifferentiableHomeomorphism::GetMTime()
   return std::max(this->Superclass::GetMTime(), this->Internal->Continuity->GetMTime());
 }
 
+namespace
+{
+
+/// Where the map is certified and where it has no derivative, on a mesh.
+void AddCubicArrays(const Homeomorphism& map, vtkPointSet* mesh)
+{
+  const Triangulation& triangulation = map.GetPair().GetTriangulation();
+  vtkNew<vtkDoubleArray> certificates;
+  certificates->SetName("Certificate");
+  certificates->SetNumberOfValues(mesh->GetNumberOfCells());
+  certificates->Fill(0.0);
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    certificates->SetValue(triangulation.GetCellId(t), map.GetCubic()->GetCertificate(t));
+  }
+  mesh->GetCellData()->AddArray(certificates);
+  vtkNew<vtkUnsignedCharArray> exceptional;
+  exceptional->SetName("ExceptionalVertex");
+  exceptional->SetNumberOfValues(mesh->GetNumberOfPoints());
+  exceptional->Fill(0);
+  for (const bool interior : { true, false })
+  {
+    for (const std::int32_t point : map.GetCubic()->GetExceptionalPoints(interior))
+    {
+      exceptional->SetValue(point, 1);
+    }
+  }
+  mesh->GetPointData()->AddArray(exceptional);
+}
+
+} // namespace
+
 int vtkDifferentiableHomeomorphism::Execute(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -524,7 +556,8 @@ int vtkDifferentiableHomeomorphism::Execute(
   {
     return 1;
   }
-  if (!data)
+  const bool mapsMesh = !data;
+  if (mapsMesh)
   {
     data = this->Inverse ? target : source;
   }
@@ -553,6 +586,10 @@ int vtkDifferentiableHomeomorphism::Execute(
   else if (auto* result = vtkPointSet::SafeDownCast(output))
   {
     Mapping(this, *map, vtkDataSet::SafeDownCast(data), result).Run();
+    if (mapsMesh && map->GetCubic())
+    {
+      AddCubicArrays(*map, result);
+    }
   }
   else
   {

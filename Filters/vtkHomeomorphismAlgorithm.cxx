@@ -195,6 +195,29 @@ std::shared_ptr<const Homeomorphism> vtkHomeomorphismAlgorithm::GetMap(
   {
     this->Fail(MESHES_REFUSED);
   }
+  CubicMapStatistics cubic;
+  double scale = 1.0;
+  if (map && map->GetCubic())
+  {
+    cubic = map->GetCubic()->GetMap().GetStatistics();
+    scale = map->GetPair().GetGeometry(Domain::Target).GetInverseScale();
+    if (cubic.UncertifiedTriangles > 0)
+    {
+      vtkWarningMacro(<< "The Cubic map is not certified in " << cubic.UncertifiedTriangles
+                      << " triangles (array Certificate): doubles cannot represent its elements "
+                         "there. Use the Smooth system, or allow a larger MaximumDeviation.");
+    }
+  }
+  this->NumberOfCubicElements = cubic.Elements;
+  this->NumberOfCutTriangles = cubic.Bending.CutTriangles;
+  this->NumberOfVertexRings = cubic.Rings;
+  this->NumberOfBendingRounds = cubic.Bending.Rounds;
+  this->BendingEnergy = cubic.Bending.Energy * scale * scale;
+  this->NumberOfExceptionalInteriorVertices =
+    static_cast<vtkIdType>(cubic.ExceptionalInteriorPoints.size());
+  this->NumberOfExceptionalBoundaryVertices =
+    static_cast<vtkIdType>(cubic.ExceptionalBoundaryPoints.size());
+  this->NumberOfUncertifiedTriangles = cubic.UncertifiedTriangles;
   return map;
 }
 
@@ -234,4 +257,16 @@ void vtkHomeomorphismAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   PrintOptions(this, os, indent);
   os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
   os << indent << "NumberOfDiscordantTriangles: " << this->NumberOfDiscordantTriangles << "\n";
+  os << indent << "NumberOfCubicElements: " << this->NumberOfCubicElements << "\n";
+  os << indent << "NumberOfCutTriangles: " << this->NumberOfCutTriangles << "\n";
+  os << indent << "NumberOfVertexRings: " << this->NumberOfVertexRings << "\n";
+  os << indent << "NumberOfBendingRounds: " << this->NumberOfBendingRounds << "\n";
+  os << indent << "BendingEnergy: " << this->BendingEnergy << "\n";
+  os << indent
+     << "NumberOfExceptionalInteriorVertices: " << this->NumberOfExceptionalInteriorVertices
+     << "\n";
+  os << indent
+     << "NumberOfExceptionalBoundaryVertices: " << this->NumberOfExceptionalBoundaryVertices
+     << "\n";
+  os << indent << "NumberOfUncertifiedTriangles: " << this->NumberOfUncertifiedTriangles << "\n";
 }

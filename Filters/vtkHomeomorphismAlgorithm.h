@@ -90,6 +90,22 @@ public:
   /// USE_LINEAR, 0 otherwise. vtkTriangularCoordinates counts them for all systems.
   vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
 
+  ///@{
+  /// Of the CUBIC system's last map, 0 in others: its cubic elements (those that are repeated
+  /// without end at exceptional vertices once), triangles that are cut into 19 elements, rings of
+  /// elements around vertices, linear systems solved, the integral of the squared second
+  /// derivatives in the target's units squared, interior and boundary points at which the map has
+  /// no derivative, and triangles whose determinant is not certified to be positive.
+  vtkGetMacro(NumberOfCubicElements, vtkIdType);
+  vtkGetMacro(NumberOfCutTriangles, vtkIdType);
+  vtkGetMacro(NumberOfVertexRings, vtkIdType);
+  vtkGetMacro(NumberOfBendingRounds, vtkIdType);
+  vtkGetMacro(BendingEnergy, double);
+  vtkGetMacro(NumberOfExceptionalInteriorVertices, vtkIdType);
+  vtkGetMacro(NumberOfExceptionalBoundaryVertices, vtkIdType);
+  vtkGetMacro(NumberOfUncertifiedTriangles, vtkIdType);
+  ///@}
+
   /// Makes the statistics of the last update the same in all processes of @a controller (null: the
   /// global controller; without one nothing happens). Numbers of points and of continuity features
   /// become sums, or -1 if one process has -1; numbers of triangles and jumps become the largest.
@@ -141,6 +157,14 @@ protected:
 
   vtkIdType NumberOfOutsidePoints = 0;
   vtkIdType NumberOfDiscordantTriangles = 0;
+  vtkIdType NumberOfCubicElements = 0;
+  vtkIdType NumberOfCutTriangles = 0;
+  vtkIdType NumberOfVertexRings = 0;
+  vtkIdType NumberOfBendingRounds = 0;
+  double BendingEnergy = 0.0;
+  vtkIdType NumberOfExceptionalInteriorVertices = 0;
+  vtkIdType NumberOfExceptionalBoundaryVertices = 0;
+  vtkIdType NumberOfUncertifiedTriangles = 0;
   /// The number of input ports with meshes, which come first.
   int NumberOfMeshPorts = 2;
   /// The first input port that is requested in pieces.

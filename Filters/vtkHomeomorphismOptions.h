@@ -10,8 +10,19 @@
  * and vtkHomeomorphismTransform have:
  *
  * - `CoordinateSystem`: LINEAR (the piecewise linear map), CONTOUR (the published construction;
- *   concordant triangles only) or SMOOTH (default; twice continuously differentiable except at the
- *   vertices, any triangle).
+ *   concordant triangles only), SMOOTH (default; twice continuously differentiable except at the
+ *   vertices, any triangle) or CUBIC (continuously differentiable, interior vertices included, and
+ *   certified one to one; it bends least, but does not map triangles onto triangles. Meshes in
+ *   planes only). See Documentation/cubic.md.
+ * - `CubicBending`: which map of the CUBIC system: LEAST (default; bends least among those that could
+ *   be certified) or LOCAL (in closed form; moving a point changes the map nearby only).
+ * - `MaximumDeviation`: the greatest distance of the CUBIC system's images from LINEAR's, in the
+ *   target's units, positive. Unlimited by default.
+ * - `CertificateMargin`: with LEAST, how far above zero the certificate of the determinant has to be:
+ *   relative to LINEAR's determinant, or, in triangles that are cut, to LOCAL's certificate. 0.02 by
+ *   default, in [0, 0.5].
+ * - `FairnessRefinement`: with LEAST, how often the triangles are cut into four first, 0 (default) to
+ *   4. Each level bends less and costs four times as much.
  * - `CenterPoint`: where the contours of the Contour system start: CENTROID (default), or INCENTER,
  *   with which every triangle is concordant.
  * - `DiscordantTriangles`: whether triangles that are discordant in either mesh are an error in the
@@ -42,7 +53,11 @@
 /// A line for each option: name, type, default, least and greatest value. Switches have only a name
 /// and a default.
 #define vtkHomeomorphismOptionsList(Option, Switch)                                                \
-  Option(CoordinateSystem, int, SMOOTH, LINEAR, SMOOTH);                                           \
+  Option(CoordinateSystem, int, SMOOTH, LINEAR, CUBIC);                                            \
+  Option(CubicBending, int, LEAST, LOCAL, LEAST);                                                  \
+  Option(MaximumDeviation, double, VTK_DOUBLE_MAX, VTK_DOUBLE_MIN, VTK_DOUBLE_MAX);                \
+  Option(CertificateMargin, double, 0.02, 0.0, 0.5);                                               \
+  Option(FairnessRefinement, int, 0, 0, 4);                                                        \
   Option(CenterPoint, int, CENTROID, CENTROID, INCENTER);                                          \
   Option(DiscordantTriangles, int, REFUSE, REFUSE, USE_LINEAR);                                    \
   Option(Tolerance, double, 0.0, 0.0, VTK_DOUBLE_MAX);                                             \
@@ -78,12 +93,18 @@ public:                                                                         
   {                                                                                                \
     LINEAR = 0,                                                                                    \
     CONTOUR = 1,                                                                                   \
-    SMOOTH = 2                                                                                     \
+    SMOOTH = 2,                                                                                    \
+    CUBIC = 3                                                                                      \
   };                                                                                               \
   enum CenterPoints                                                                                \
   {                                                                                                \
     CENTROID = 0,                                                                                  \
     INCENTER = 1                                                                                   \
+  };                                                                                               \
+  enum CubicBendings                                                                               \
+  {                                                                                                \
+    LOCAL = 0,                                                                                     \
+    LEAST = 1                                                                                      \
   };                                                                                               \
   enum DiscordantTrianglesModes                                                                    \
   {                                                                                                \
@@ -102,6 +123,10 @@ public:                                                                         
   void SetCoordinateSystemToSmooth()                                                               \
   {                                                                                                \
     this->SetCoordinateSystem(SMOOTH);                                                             \
+  }                                                                                                \
+  void SetCoordinateSystemToCubic()                                                                \
+  {                                                                                                \
+    this->SetCoordinateSystem(CUBIC);                                                              \
   }
 
 /// Declares the options of filters that map data.

@@ -25,6 +25,10 @@ HomeomorphismOptions GetOptions(Algorithm* self)
   options.Center = static_cast<CenterPoint>(self->GetCenterPoint());
   options.MaskInvalidTriangles = self->GetMaskInvalidTriangles();
   options.DiscordantByLinear = self->GetDiscordantTriangles() == Algorithm::USE_LINEAR;
+  options.Cubic.Bending = static_cast<CubicBending>(self->GetCubicBending());
+  options.Cubic.MaximumDeviation = self->GetMaximumDeviation();
+  options.Cubic.CertificateMargin = self->GetCertificateMargin();
+  options.Cubic.FairnessRefinement = self->GetFairnessRefinement();
   return options;
 }
 

@@ -24,6 +24,11 @@ SYSTEMS = {
     "linear": vtkDifferentiableHomeomorphism.LINEAR,
     "contour": vtkDifferentiableHomeomorphism.CONTOUR,
     "smooth": vtkDifferentiableHomeomorphism.SMOOTH,
+    "cubic": vtkDifferentiableHomeomorphism.CUBIC,
+}
+BENDINGS = {
+    "local": vtkDifferentiableHomeomorphism.LOCAL,
+    "least": vtkDifferentiableHomeomorphism.LEAST,
 }
 CENTERS = {
     "centroid": vtkDifferentiableHomeomorphism.CENTROID,
@@ -153,6 +158,15 @@ class Homeomorphism:
     tolerance : float
         Greatest distance of a mapped point from the domain, relative to the diagonal of the domain.
         0 allows for rounding only.
+    cubic_bending : str
+        Of the Cubic system: "least", which bends least, or "local", in closed form.
+    maximum_deviation : float, optional
+        Of the Cubic system: the greatest distance of images from those of the Linear system, in the
+        target's units.
+    fairness_refinement : int
+        Of the Cubic system with least bending: how often triangles are cut into four first.
+
+    The Cubic system maps meshes in a plane only.
 
     Points outside the domain become NaN. Invalid meshes raise ValueError with a message that lists the
     triangles. An object must not be used by several threads at a time; each call is itself parallel.
@@ -168,6 +182,9 @@ class Homeomorphism:
         center: str = "centroid",
         discordant_by_linear: bool = False,
         tolerance: float = 0.0,
+        cubic_bending: str = "least",
+        maximum_deviation: Optional[float] = None,
+        fairness_refinement: int = 0,
     ):
         self._meshes = []
         dimensions = []
@@ -192,6 +209,14 @@ class Homeomorphism:
             _choose(CENTERS, center, "center"),
             discordant_by_linear,
         )
+        if maximum_deviation is not None and not maximum_deviation > 0:
+            raise ValueError(f"maximum_deviation must be positive, not {maximum_deviation!r}")
+        self._cubic = {
+            "cubic_bending": cubic_bending,
+            "maximum_deviation": maximum_deviation,
+            "fairness_refinement": fairness_refinement,
+        }
+        self._bending = _choose(BENDINGS, cubic_bending, "cubic_bending")
         self._filter = vtkDifferentiableHomeomorphism()
         self._set_up(self._filter)
         self._filter.SetTolerance(tolerance)
@@ -220,6 +245,10 @@ class Homeomorphism:
         algorithm.SetSourceData(self._meshes[0])
         algorithm.SetTargetData(self._meshes[1])
         configure(algorithm, *self._settings)
+        algorithm.SetCubicBending(self._bending)
+        if self._cubic["maximum_deviation"] is not None:
+            algorithm.SetMaximumDeviation(self._cubic["maximum_deviation"])
+        algorithm.SetFairnessRefinement(self._cubic["fairness_refinement"])
 
     def __reduce__(self):
         arrays = [
@@ -232,6 +261,7 @@ class Homeomorphism:
             "center": _name_of(CENTERS, center),
             "discordant_by_linear": discordant_by_linear,
             "tolerance": self._filter.GetTolerance(),
+            **self._cubic,
         }
         return _rebuild, (*arrays, triangles, _name_of(SYSTEMS, system), options)
 
