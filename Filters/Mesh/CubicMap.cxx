@@ -104,8 +104,31 @@ bool Contains(const CubicPatch& patch, const Vector2& image, double tolerance, d
     greatest = { std::max(greatest.x, point.x), std::max(greatest.y, point.y) };
   }
   extent = MaxNorm(greatest - least);
-  return image.x >= least.x - tolerance && image.x <= greatest.x + tolerance &&
-    image.y >= least.y - tolerance && image.y <= greatest.y + tolerance;
+  if (!(image.x >= least.x - tolerance && image.x <= greatest.x + tolerance &&
+        image.y >= least.y - tolerance && image.y <= greatest.y + tolerance))
+  {
+    return false;
+  }
+  // A box in the plane's axes is far too large for a thin image: the same along two of its edges.
+  const Vector2 origin = patch.Points[0];
+  const Vector2 first = patch.Points[PatchNumber(3, 0)] - origin;
+  const Vector2 second = patch.Points[PatchNumber(0, 3)] - origin;
+  const double area = Cross(first, second);
+  const Vector2 local = image - origin;
+  const Vector2 along{ Cross(local, second), Cross(first, local) };
+  const Vector2 slack{ tolerance * (std::abs(second.x) + std::abs(second.y)),
+    tolerance * (std::abs(first.x) + std::abs(first.y)) };
+  least = { std::min(0.0, area), std::min(0.0, area) };
+  greatest = { std::max(0.0, area), std::max(0.0, area) };
+  for (const Vector2& point : patch.Points)
+  {
+    const Vector2 d = point - origin;
+    const Vector2 at{ Cross(d, second), Cross(first, d) };
+    least = { std::min(least.x, at.x), std::min(least.y, at.y) };
+    greatest = { std::max(greatest.x, at.x), std::max(greatest.y, at.y) };
+  }
+  return along.x >= least.x - slack.x && along.x <= greatest.x + slack.x &&
+    along.y >= least.y - slack.y && along.y <= greatest.y + slack.y;
 }
 
 // Bisections until a patch is as small as rounding allows, and between attempts to finish sooner.

@@ -771,32 +771,69 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
   const StarHomotopy homotopy(fan, derivative);
   const double ratioLogarithm = std::log(VertexRings::Ratio);
   // The innermost outline must stay well above what coordinates beside the vertex can represent.
-  for (int count : { 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 40 })
-  {
-    for (double end : { 0.25, 0.5, 0.75, 1.0 })
+  constexpr int greatestNumber = 46;
+  const auto append = [&](std::vector<VertexRings::Outline>& outlines, double share, double rate) {
+    outlines.push_back(homotopy.GetOutline(share, rate / ratioLogarithm));
+    const bool certified =
+      outlines.size() == 1 || IsRingCertified(fan, outlines[outlines.size() - 2], outlines.back());
+    if (!certified)
     {
-      rings.Outlines.clear();
-      bool certified = true;
-      for (int j = 0; j <= count && certified; ++j)
+      outlines.pop_back();
+    }
+    return certified;
+  };
+  // The share of the way to the linear map, and by how much it grows from ring to ring. It starts
+  // at rest, grows as fast as rings are certified, and ends at rest where there is a derivative.
+  // Hurry may end in a star that is hard to leave, so slower ways are tried too.
+  for (double fastest : { 0.5, 0.2, 0.1, 0.06, 0.045, 0.035, 0.028 })
+  {
+    double share = 0.0;
+    double rate = 0.0;
+    rings.Outlines.clear();
+    append(rings.Outlines, share, rate);
+    while (rings.GetNumberOfRings() < greatestNumber && share < 1.2)
+    {
+      if (rings.GetNumberOfRings() > 0 &&
+        FindVertexDerivative(GetStar(fan, rings.Outlines.back())).Margin > 0.0)
       {
-        const double x = static_cast<double>(j) / count;
-        // A share that starts and ends with derivative zero.
-        const double share = end * x * x * (3.0 - 2.0 * x);
-        const double rate = end * 6.0 * x * (1.0 - x) / count / ratioLogarithm;
-        rings.Outlines.push_back(homotopy.GetOutline(share, rate));
-        certified = j == 0 ||
-          IsRingCertified(
-            fan, rings.Outlines[static_cast<std::size_t>(j) - 1], rings.Outlines.back());
+        VertexRings stopped = rings;
+        double at = share;
+        double speed = rate;
+        bool certified = true;
+        while (certified && speed > 0.0 && stopped.GetNumberOfRings() < greatestNumber)
+        {
+          const double next = speed < 0.02 ? 0.0 : 0.6 * speed;
+          at += 0.5 * (speed + next);
+          certified = append(stopped.Outlines, at, next);
+          speed = next;
+        }
+        if (certified && speed == 0.0)
+        {
+          stopped.Center = FindVertexDerivative(GetStar(fan, stopped.Outlines.back()));
+          if (stopped.Center.Margin > 0.0)
+          {
+            rings = std::move(stopped);
+            return true;
+          }
+        }
       }
-      if (!certified)
+      bool advanced = false;
+      for (double factor :
+        { 1.6, 1.2, 1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002 })
       {
-        continue;
+        const double next =
+          std::min(fastest, factor * std::max(rate, rings.GetNumberOfRings() == 0 ? 0.2 : 0.0));
+        if (append(rings.Outlines, share + 0.5 * (rate + next), next))
+        {
+          share += 0.5 * (rate + next);
+          rate = next;
+          advanced = true;
+          break;
+        }
       }
-      const VertexFan star = GetStar(fan, rings.Outlines.back());
-      rings.Center = FindVertexDerivative(star);
-      if (rings.Center.Margin > 0.0)
+      if (!advanced)
       {
-        return true;
+        break;
       }
     }
   }
