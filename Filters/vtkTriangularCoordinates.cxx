@@ -190,6 +190,12 @@ int vtkTriangularCoordinates::Execute(
   vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
   vtkPolyData* lines = vtkPolyData::GetData(outputs, 1);
   vtkPolyData* described = vtkPolyData::GetData(outputs, 2);
+  if (this->CoordinateSystem == CUBIC)
+  {
+    vtkErrorMacro(<< "The Cubic system is a map and has no triangular coordinates: use the Linear, "
+                     "Contour or Smooth system.");
+    return this->Fail(MESHES_REFUSED);
+  }
   const std::shared_ptr<const Homeomorphism> map = this->GetMap(triangulation, nullptr);
   if (!map)
   {

@@ -227,6 +227,7 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
     {
       return nullptr;
     }
+    if (target)
     {
       result->Cubic = std::make_shared<const CubicHomeomorphism>(*result->Pair, options.Cubic);
     }
