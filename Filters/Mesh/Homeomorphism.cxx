@@ -627,6 +627,13 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
 
 Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const
 {
+  if (this->Cubic)
+  {
+    Vector2 inPlane;
+    Matrix2 derivative;
+    this->Cubic->MapPoint(this->ToCubic(from), triangle, point, inPlane, derivative);
+    return this->Pair->GetGeometry(Opposite(from)).GetPlaneFrame(triangle).ToFrame(inPlane);
+  }
   return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {
     return homeomorphism::MapPoint(chart, other, point);
   });

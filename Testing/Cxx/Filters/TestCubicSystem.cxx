@@ -184,7 +184,7 @@ TEST(CubicSystem, RefusesSurfacesAndCoordinates)
   filter->SetTargetData(pair.Target);
   filter->SetCoordinateSystemToCubic();
   filter->Update();
-  EXPECT_NE(errors.Error().find("target does not lie in a plane"), std::string::npos);
+  EXPECT_NE(errors.Error().find("target do not lie in a plane"), std::string::npos);
   EXPECT_NE(errors.Error().find("Smooth"), std::string::npos);
 
   vtkNew<vtkTriangularCoordinates> coordinates;
