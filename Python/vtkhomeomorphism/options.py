@@ -109,7 +109,8 @@ def map_settings(default, mask=True):
     """Options of the map; the command takes `settings`."""
     options = [
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False), default=None,
-                     help=f"Coordinate system: smooth (twice continuously differentiable except at vertices), contour "
+                     help=f"Coordinate system: smooth (twice continuously differentiable except at vertices), cubic (continuously "
+                          f"differentiable at vertices too, least bending; meshes in planes), contour "
                           f"(the published construction) or linear (piecewise linear). Default: {default}."),
         click.option("--incenter", is_flag=True, help="Start the contours of Contour at the incenter."),
         click.option("--linear-where-discordant", is_flag=True,

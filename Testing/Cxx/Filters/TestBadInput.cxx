@@ -872,7 +872,7 @@ std::vector<BadInput> Table()
       continuity->SetSamplesPerEdge(-3);
       continuity->SetResolution(7.0);
       return Outcome{ listener.GetText(),
-        filter->GetCoordinateSystem() == vtkDifferentiableHomeomorphism::SMOOTH &&
+        filter->GetCoordinateSystem() == vtkDifferentiableHomeomorphism::CUBIC &&
           filter->GetCenterPoint() == vtkDifferentiableHomeomorphism::CENTROID &&
           filter->GetDiscordantTriangles() == vtkDifferentiableHomeomorphism::USE_LINEAR &&
           filter->GetTolerance() == 0.0 && coordinates->GetNumberOfContours() == 1 &&

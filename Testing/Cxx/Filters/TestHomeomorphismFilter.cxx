@@ -1641,13 +1641,13 @@ TEST(HomeomorphismFilter, PropertiesAreClampedAndPrinted)
   filter->SetCoordinateSystem(-3);
   EXPECT_EQ(filter->GetCoordinateSystem(), vtkDifferentiableHomeomorphism::LINEAR);
   filter->SetCoordinateSystem(17);
-  EXPECT_EQ(filter->GetCoordinateSystem(), vtkDifferentiableHomeomorphism::SMOOTH);
+  EXPECT_EQ(filter->GetCoordinateSystem(), vtkDifferentiableHomeomorphism::CUBIC);
   filter->SetAttributeTransformation(
     "Force", vtkDifferentiableHomeomorphism::NORMAL_TRANSFORMATION);
   std::ostringstream text;
   filter->Print(text);
   for (const char* word :
-    { "CoordinateSystem: 2", "Inverse: 0", "CenterPoint: 0", "DiscordantTriangles: 0",
+    { "CoordinateSystem: 3", "Inverse: 0", "CenterPoint: 0", "DiscordantTriangles: 0",
       "MaskInvalidTriangles: 0", "Tolerance: 0", "ComputeTriangleId: 0", "ComputeJacobian: 0",
       "ComputeJacobianDeterminant: 0", "TransformActiveAttributes: 1",
       "TransformAllInputVectors: 0", "AttributeTransformation of Force: 3", "BlankOutside: 1",
