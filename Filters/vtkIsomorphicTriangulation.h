@@ -147,8 +147,8 @@ public:
 
   ///@{
   /// Points are added until no angle of either domain is smaller, in degrees, 0 to 60. 0 (default):
-  /// only necessary points are added. For other qualities: until the worst quality, of which 60 is
-  /// that of equilateral triangles (90 degrees less the excess, for NON_OBTUSE), is as large.
+  /// only necessary points are added. For CONCORDANCE and NON_OBTUSE, 90 stands for no discordant
+  /// or obtuse triangle; for DISTORTION, 60 for similar triangles.
   vtkSetClampMacro(TargetMinimumAngle, double, 0.0, 90.0);
   vtkGetMacro(TargetMinimumAngle, double);
   ///@}

@@ -361,6 +361,10 @@ void JointOptimization::Smooth(const std::vector<int>& vertices, bool finish)
   }
   for (int d = 0; d < 2; ++d)
   {
+    if (this->Mesh.GetQuality() == PairQuality::NonObtuse)
+    {
+      this->SmoothDomain(vertices, d, Goal::ObtuseExcess, 1.0, 15);
+    }
     this->SmoothDomain(vertices, d, Goal::SoftMinimum, 0.3, 15);
     this->SmoothDomain(vertices, d, Goal::SoftMinimum, 1.2, 15);
     if (finish)

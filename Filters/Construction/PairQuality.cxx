@@ -15,10 +15,10 @@ namespace
 
 constexpr double Degrees = 57.295779513082320877;
 
-// A foot in the middle of an edge counts as much as an angle of 60 degrees. Angles count with a
-// factor, so that concordant triangles do not become needles.
-constexpr double FootScale = 120.0;
-constexpr double AngleFactor = 6.0;
+// An angle of 2.5 degrees counts as much as the limit of concordance: concordant triangles are not
+// to become needles.
+constexpr double NeedleOffset = 85.0;
+constexpr double NeedleFactor = 2.0;
 
 /// (|J|^2 / det J) / 2 of the affine map between two triangles: (s + 1 / s) / 2 for the ratio s of
 /// its singular values.
@@ -150,23 +150,26 @@ int QualityTerms(PairQuality quality, const TrianglePoints& p, const TrianglePoi
     }
     else if (quality == PairQuality::Concordance)
     {
-      angle.Value *= AngleFactor;
-      angle.Gradient[next] = AngleFactor * angle.Gradient[next];
-      angle.Gradient[previous] = AngleFactor * angle.Gradient[previous];
-      // The feet of the centroid on the two edges, counted from this corner.
+      angle.Value = NeedleOffset + NeedleFactor * angle.Value;
+      angle.Gradient[next] = NeedleFactor * angle.Gradient[next];
+      angle.Gradient[previous] = NeedleFactor * angle.Gradient[previous];
+      // The centroid's foot is within an edge if the median makes an angle below 90 degrees with
+      // it.
+      const Vector2 median = u + v;
+      const double mm = Dot(median, median);
+      const Vector2 byMedian = (Degrees / mm) * Vector2{ -median.y, median.x };
       for (int e = 0; e < 2; ++e)
       {
-        const Vector2& along = e == 0 ? u : v;
-        const Vector2& beside = e == 0 ? v : u;
+        const Vector2& edge = e == 0 ? u : v;
+        const double sign = e == 0 ? 1.0 : -1.0;
         const double square = e == 0 ? uu : vv;
+        const Vector2 byEdge = (Degrees / square) * Vector2{ -edge.y, edge.x };
         QualityTerm& foot = terms[count++];
-        foot.Value = FootScale / 3.0 * (1.0 + uv / square);
-        const double scale = FootScale / (3.0 * square);
-        const Vector2 byAlong = scale * (beside - (2.0 * uv / square) * along);
-        const Vector2 byBeside = scale * along;
-        foot.Gradient[next] = e == 0 ? byAlong : byBeside;
-        foot.Gradient[previous] = e == 0 ? byBeside : byAlong;
-        foot.Gradient[k] = -1.0 * (byAlong + byBeside);
+        foot.Value = 180.0 - Degrees * std::atan2(doubleArea, Dot(edge, median));
+        const Vector2 common = -sign * byMedian;
+        foot.Gradient[next] = e == 0 ? common + sign * byEdge : common;
+        foot.Gradient[previous] = e == 0 ? common : common + sign * byEdge;
+        foot.Gradient[k] = -1.0 * (foot.Gradient[next] + foot.Gradient[previous]);
       }
     }
     angle.Gradient[k] = -1.0 * (angle.Gradient[next] + angle.Gradient[previous]);

@@ -36,7 +36,9 @@ std::array<double, 3> Angles(const TrianglePoints& triangle);
 /// the smaller one: 1 for a similarity. Infinite for degenerate triangles.
 double Distortion(const TrianglePoints& source, const TrianglePoints& target);
 
-/// The quality of a pair of triangles, the higher the better, at most 60 (for NonObtuse 120); -1
+/// The quality of a pair of triangles, the higher the better: the smallest angle in degrees; 180
+/// less the largest angle between an edge and the median at its end, above 90 if both are
+/// concordant; 60 for similar triangles; 180 less the largest angle, from 90 if none is obtuse. -1
 /// unless both triangles are counterclockwise, by exact orientation.
 double QualityOf(PairQuality quality, const TrianglePoints& source, const TrianglePoints& target);
 
