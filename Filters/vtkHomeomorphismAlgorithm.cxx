@@ -13,7 +13,9 @@
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 
 #include <algorithm>
 
@@ -23,6 +25,7 @@ class vtkHomeomorphismAlgorithm::Internals
 {
 public:
   HomeomorphismCache Cache;
+  vtkNew<vtkTable> Diagnostics;
   ProcessStatistics Own{ { 0.0 }, { 0.0 } };
 };
 
@@ -191,6 +194,7 @@ std::shared_ptr<const Homeomorphism> vtkHomeomorphismAlgorithm::GetMap(
   HomeomorphismCache& cache = this->Internal->Cache;
   std::shared_ptr<const Homeomorphism> map = cache.Get(source, target, GetOptions(this));
   ReportProblems(this, cache.GetProblems());
+  MakeTable(cache.GetProblems(), this->Internal->Diagnostics);
   if (!map)
   {
     this->Fail(MESHES_REFUSED);
@@ -244,6 +248,11 @@ void vtkHomeomorphismAlgorithm::ReduceStatistics(vtkMultiProcessController* cont
   const ProcessStatistics total = Total(this, this->Internal->Own, controller);
   this->NumberOfOutsidePoints = static_cast<vtkIdType>(total.Sums[0]);
   this->NumberOfDiscordantTriangles = static_cast<vtkIdType>(total.Largest[0]);
+}
+
+vtkTable* vtkHomeomorphismAlgorithm::GetDiagnostics()
+{
+  return this->Internal->Diagnostics;
 }
 
 vtkIdType vtkHomeomorphismAlgorithm::GetNumberOfMeshBuilds()

@@ -40,6 +40,7 @@
 
 class vtkMultiProcessController;
 class vtkPolyData;
+class vtkTable;
 
 namespace homeomorphism
 {
@@ -112,6 +113,11 @@ public:
   /// Every process must call this after its update, even after an error. The next update replaces
   /// the statistics by those of its own process. ParaView's plugin calls this.
   virtual void ReduceStatistics(vtkMultiProcessController* controller);
+
+  /// The defects that the last update found in the meshes, a row for each kind and mesh. The
+  /// columns are described in Documentation/diagnostics.md; the field data array Ids has all cell
+  /// ids.
+  vtkTable* GetDiagnostics();
 
   /// Number of times the meshes have been read and validated since the filter was created.
   vtkIdType GetNumberOfMeshBuilds();

@@ -81,7 +81,18 @@ MapUnderTest MakeMapUnderTest(const Homeomorphism& map)
         map.MapInFrame(Domain::Source, found, inFrame));
       return true;
     };
-    return LocalMap{ evaluate };
+    LocalMap local{ evaluate };
+    if (map.GetCubic())
+    {
+      // The Cubic system computes in coordinates that are not relative to the origin.
+      Vector3 origin;
+      const TriangulationPair& pair = map.GetPair();
+      pair.GetGeometry(Domain::Source).FromMeshPoint(vicinity.Origin, 0.0, origin.data());
+      local.PointMagnitude = Length(origin);
+      pair.GetGeometry(Domain::Target).FromMeshPoint(vicinity.Origin, 0.0, origin.data());
+      local.ImageMagnitude = Length(origin);
+    }
+    return local;
   };
 }
 

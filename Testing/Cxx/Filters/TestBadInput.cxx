@@ -503,7 +503,7 @@ std::vector<BadInput> Table()
     "A warning; the rest is mapped.", Spoilt(Which::Target, foldOver, true, Smooth, true));
   add(points, "Discordant triangles in the Contour system",
     { "discordant", "Use the Smooth system, which takes any triangle", "DiscordantTriangles" },
-    "Refused, unless the Linear system may carry them.",
+    "Refused, unless the Linear system may map them.",
     Spoilt(
       Which::Target,
       [](vtkPolyData* mesh) {

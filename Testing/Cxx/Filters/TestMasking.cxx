@@ -6,8 +6,12 @@
 
 #include "MappedPoints.h"
 
+#include "vtkFieldData.h"
 #include "vtkHomeomorphismTransform.h"
+#include "vtkIdTypeArray.h"
+#include "vtkTable.h"
 #include "vtkTriangularCoordinates.h"
+#include "vtkVariant.h"
 
 #include "vtkCellData.h"
 
@@ -473,6 +477,43 @@ TEST(Masking, CoordinatesFilter)
   {
     ASSERT_GE(ids->GetTuple1(i), 2);
   }
+}
+
+TEST(Masking, DiagnosticsAreATable)
+{
+  const MeshPair pair = MakePlanarPair(4, 3, 0.0);
+  MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
+  MovePoint(pair.Target, 24, { 3.0, 3.5, std::numeric_limits<double>::quiet_NaN() });
+  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  Messages messages(filter);
+  filter->SetSourceData(pair.Source);
+  filter->SetTargetData(pair.Target);
+  filter->MaskInvalidTrianglesOn();
+  filter->Update();
+  EXPECT_TRUE(messages.HasWarning());
+  vtkTable* table = filter->GetDiagnostics();
+  ASSERT_EQ(2, table->GetNumberOfRows());
+  auto* ids = vtkIdTypeArray::SafeDownCast(table->GetFieldData()->GetArray("Ids"));
+  ASSERT_TRUE(ids);
+  const char* const kinds[] = { "DegenerateTriangle", "NotFinite" };
+  const char* const domains[] = { "source", "target" };
+  const vtkIdType firstCells[] = { 0, 30 };
+  for (vtkIdType row = 0; row < 2; ++row)
+  {
+    EXPECT_EQ(kinds[row], table->GetValueByName(row, "Kind").ToString());
+    EXPECT_EQ(domains[row], table->GetValueByName(row, "Domain").ToString());
+    EXPECT_EQ("masked", table->GetValueByName(row, "Outcome").ToString());
+    EXPECT_EQ("RepairOrMask", table->GetValueByName(row, "Remedy").ToString());
+    EXPECT_EQ(2, table->GetValueByName(row, "Count").ToInt());
+    const vtkIdType first = table->GetValueByName(row, "FirstId").ToInt();
+    EXPECT_EQ(firstCells[row], ids->GetValue(first));
+    EXPECT_EQ(firstCells[row] + 1, ids->GetValue(first + 1));
+  }
+  // The table is that of the last update.
+  filter->SetSourceData(MakePlanarPair(4, 3).Source);
+  filter->SetTargetData(MakePlanarPair(4, 3).Target);
+  filter->Update();
+  EXPECT_EQ(0, filter->GetDiagnostics()->GetNumberOfRows());
 }
 
 } // namespace

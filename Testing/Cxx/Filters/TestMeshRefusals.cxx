@@ -1038,8 +1038,8 @@ TEST(MeshRefusals, DiscordantTriangles)
   options.CoordinateSystem = vtkDifferentiableHomeomorphism::CONTOUR;
   const std::string fault = "are discordant: the foot of a center segment is not inside its edge, "
                             "so the Contour system does not exist there";
-  const std::string advice = "Use the Smooth system, which takes any triangle, or let the Linear "
-                             "system carry them (DiscordantTriangles).";
+  const std::string advice = "Use the Smooth system, which takes any triangle, or map them by the "
+                             "Linear system (DiscordantTriangles).";
   ExpectPairRefused(pair, { "2 triangles of the target (cells 0, 1) " + fault, advice }, options);
   ExpectPairRefused({ pair.Target, pair.Source },
     { "2 triangles of the source (cells 0, 1) " + fault, advice }, options);
@@ -1231,7 +1231,7 @@ TEST(MeshRefusals, VerticesAndLinesShiftTheIdsOfNonTriangles)
   const std::array<vtkIdType, 4> ids{ 0, 1, 2, 3 };
   strips->InsertNextCell(4, ids.data());
   pair.Source->SetStrips(strips);
-  ExpectAloneRefused(pair.Source, { "1 cell of the triangulation (cell 37) is not a triangle" });
+  ExpectAloneRefused(pair.Source, { "1 cell of the triangulation (cell 37) is a triangle strip" });
 }
 
 TEST(MeshRefusals, VerticesAndLinesOfOneMeshAlone)
