@@ -6,7 +6,8 @@
 #include "Construction/IsomorphicTriangulation.h"
 #include "Construction/LandmarkResiduals.h"
 #include "Mesh/TriangulationPair.h"
-#include "Pipeline/FilterSupport.h"
+#include "Pipeline/PointBlocks.h"
+#include "Pipeline/Requests.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -15,6 +16,7 @@
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -298,7 +300,7 @@ void vtkIsomorphicTriangulation::SetTargetData(vtkPolyData* target)
 int vtkIsomorphicTriangulation::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Set(AskedForWhole(), 1);
+  info->Set(RequestedWhole(), 1);
   return 1;
 }
 
@@ -387,7 +389,7 @@ int vtkIsomorphicTriangulation::RequestData(
   {
     return refuse();
   }
-  if (!IsFirstPiece(request, outputs))
+  if (!homeomorphism::IsFirstPiece(request, outputs))
   {
     return 1;
   }
