@@ -30,8 +30,8 @@
  *   reverses orientation with respect to the planes' normals; with ComputeJacobianDeterminant.
  *
  * With the CUBIC system, a mesh that is mapped itself (because there is no data) gets a cell array
- * `Certificate` (double: a lower bound of the determinant over the piecewise linear map's; the map is
- * certified one to one in the triangle if it is positive) and a point array `ExceptionalVertex`
+ * `Certificate` (double: a lower bound of the determinant over the piecewise linear map's; the map
+ * is certified one to one in the triangle if it is positive) and a point array `ExceptionalVertex`
  * (unsigned char: 1 where the map has no derivative).
  *
  * With MeasureContinuity, output port 1 is that of vtkJacobianContinuity; otherwise it is empty.

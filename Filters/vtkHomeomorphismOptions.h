@@ -14,15 +14,15 @@
  *   vertices, any triangle) or CUBIC (continuously differentiable, interior vertices included, and
  *   certified one to one; it bends least, but does not map triangles onto triangles. Meshes in
  *   planes only). See Documentation/cubic.md.
- * - `CubicBending`: which map of the CUBIC system: LEAST (default; bends least among those that could
- *   be certified) or LOCAL (in closed form; moving a point changes the map nearby only).
+ * - `CubicBending`: which map of the CUBIC system: LEAST (default; bends least among those that
+ *   could be certified) or LOCAL (in closed form; moving a point changes the map nearby only).
  * - `MaximumDeviation`: the greatest distance of the CUBIC system's images from LINEAR's, in the
  *   target's units, positive. Unlimited by default.
- * - `CertificateMargin`: with LEAST, how far above zero the certificate of the determinant has to be:
- *   relative to LINEAR's determinant, or, in triangles that are cut, to LOCAL's certificate. 0.02 by
- *   default, in [0, 0.5].
- * - `FairnessRefinement`: with LEAST, how often the triangles are cut into four first, 0 (default) to
- *   4. Each level bends less and costs four times as much.
+ * - `CertificateMargin`: with LEAST, how far above zero the certificate of the determinant has to
+ *   be: relative to LINEAR's determinant, or, in triangles that are cut, to LOCAL's certificate.
+ *   0.02 by default, in [0, 0.5].
+ * - `FairnessRefinement`: with LEAST, how often the triangles are cut into four first, 0 (default)
+ *   to 4. Each level bends less and costs four times as much.
  * - `CenterPoint`: where the contours of the Contour system start: CENTROID (default), or INCENTER,
  *   with which every triangle is concordant.
  * - `DiscordantTriangles`: whether triangles that are discordant in either mesh are an error in the

@@ -108,7 +108,8 @@ std::string FigureProblem::Message() const
       text = "Coordinates are not finite or too large" + where + ": points " + points + ".";
       break;
     case Kind::NotPlanar:
-      text = "The figure does not lie in a plane" + where + ": the farthest point is " + points + ".";
+      text =
+        "The figure does not lie in a plane" + where + ": the farthest point is " + points + ".";
       break;
     case Kind::Collinear:
       text = "All points lie on one line" + where + ".";
