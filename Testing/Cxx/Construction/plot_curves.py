@@ -43,6 +43,9 @@ for column, name in enumerate(names):
         for key, style in (("discordant", "-"), ("obtuse", "--")):
             lower.plot(points, [100 * float(row[key]) for row in own], style, color=color,
                        label=f"{key}, for {QUALITIES[min(quality, 2)]}")
+    if not lower.lines or not any(len(line.get_xdata()) for line in lower.lines):
+        lower.set_axis_off()
+        continue
     lower.set(xlabel="added points", ylabel="share of triangles (%)", ylim=(-2, 102))
     lower.legend(fontsize=8)
 figure.tight_layout()
