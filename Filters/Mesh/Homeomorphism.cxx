@@ -261,19 +261,6 @@ double Homeomorphism::GetAbsoluteTolerance(Domain domain, double tolerance, doub
   return std::max(rounding, tolerance * geometry.GetDiagonal());
 }
 
-double Homeomorphism::GetDistance(Domain domain, const double point[3]) const
-{
-  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
-  return this->Pair->GetLocation(domain).GetDistance(geometry.ToNormalized(point)) *
-    geometry.GetInverseScale();
-}
-
-double Homeomorphism::GetRelativeTolerance(Domain domain, double distance) const
-{
-  const MeshGeometry& geometry = this->Pair->GetGeometry(domain);
-  return distance * geometry.GetScale() / geometry.GetDiagonal();
-}
-
 SurfacePoint Homeomorphism::Locate(
   Domain domain, const double point[3], double tolerance, TriangleIndex hint) const
 {

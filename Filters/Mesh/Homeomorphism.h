@@ -113,12 +113,6 @@ public:
   /// that is more.
   double GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const;
 
-  /// The distance of a point from a mesh's domain, in the input's units: infinite if the domain is
-  /// empty. Takes longer than Locate.
-  double GetDistance(Domain domain, const double point[3]) const;
-  /// The relative tolerance with which points at a distance from a mesh's domain are found.
-  double GetRelativeTolerance(Domain domain, double distance) const;
-
   /// Locates a point in a mesh's domain.
   SurfacePoint Locate(
     Domain domain, const double point[3], double tolerance, TriangleIndex hint) const;

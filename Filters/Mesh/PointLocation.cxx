@@ -192,18 +192,6 @@ SurfacePoint PointLocation::Find(
   return location;
 }
 
-double PointLocation::GetDistance(const Vector3& normalized) const
-{
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const SurfacePoint nearest = this->Geometry.IsPlanar()
-    ? this->FindInPlane(normalized, infinity, -1)
-    : this->FindNearest(normalized, infinity, -1);
-  return nearest.Triangle < 0
-    ? infinity
-    : Length(Difference(
-        normalized, this->Geometry.FromFrame(nearest.Triangle, { nearest.Point.InPlane, 0.0 })));
-}
-
 int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized) const
 {
   const Triangulation::Corners& corners = this->Topology.GetCorners(triangle);

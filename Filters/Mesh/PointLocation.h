@@ -101,9 +101,6 @@ public:
   /// frames.
   SurfacePoint Find(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
 
-  /// The distance of a point from the domain, in normalized coordinates.
-  double GetDistance(const Vector3& normalized) const;
-
   /// A triangle of a planar mesh that is probably near a point, or -1.
   TriangleIndex GetSeed(const Vector2& point) const
   {
