@@ -835,7 +835,7 @@ std::vector<BadInput> Table()
     "Refused. Give a data set or a tree of them.", []() {
       vtkNew<vtkTable> table;
       return RunWithData(
-        table, [](vtkPointSet* output) { return !output || output->GetNumberOfPoints() == 0; }, 0);
+        table, [](vtkPointSet* output) { return !output || output->GetNumberOfPoints() == 0; }, -1);
     });
 
   // --- Use
