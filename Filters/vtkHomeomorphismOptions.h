@@ -68,10 +68,11 @@
   Switch(TransformActiveAttributes, true);                                                         \
   Switch(BlankOutside, true)
 
-/// Declares the methods and the member of an option.
+/// Declares the methods and the member of an option. In braces, because the wrapping tools of
+/// VTK 9.6 take an equals sign here for an ambiguity.
 #define vtkHomeomorphismOptionMacro(name, type, value, least, greatest)                            \
 protected:                                                                                         \
-  type name = value;                                                                               \
+  type name{ value };                                                                              \
                                                                                                    \
 public:                                                                                            \
   vtkSetClampMacro(name, type, least, greatest);                                                   \
@@ -80,7 +81,7 @@ public:                                                                         
 /// The same of a switch.
 #define vtkHomeomorphismSwitchMacro(name, value)                                                   \
 protected:                                                                                         \
-  bool name = value;                                                                               \
+  bool name{ value };                                                                              \
                                                                                                    \
 public:                                                                                            \
   vtkSetMacro(name, bool);                                                                         \
