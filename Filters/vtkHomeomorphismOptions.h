@@ -55,7 +55,7 @@
 #define vtkHomeomorphismOptionsList(Option, Switch)                                                \
   Option(CoordinateSystem, int, SMOOTH, LINEAR, CUBIC);                                            \
   Option(CubicBending, int, LEAST, LOCAL, LEAST);                                                  \
-  Option(MaximumDeviation, double, VTK_DOUBLE_MAX, VTK_DOUBLE_MIN, VTK_DOUBLE_MAX);                \
+  Option(MaximumDeviation, double, VTK_DOUBLE_MAX, 1e-300, VTK_DOUBLE_MAX);                        \
   Option(CertificateMargin, double, 0.02, 0.0, 0.5);                                               \
   Option(FairnessRefinement, int, 0, 0, 4);                                                        \
   Option(CenterPoint, int, CENTROID, CENTROID, INCENTER);                                          \

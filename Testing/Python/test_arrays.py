@@ -186,7 +186,7 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "point numbers from 0"):
             Homeomorphism(self.source, self.target, self.triangles + 1000)
         with self.assertRaisesRegex(ValueError, "one of linear, contour, smooth"):
-            self.make("cubic")
+            self.make("quadratic")
         with self.assertRaisesRegex(ValueError, "(?i)discordant"):
             self.make("contour")
         with self.assertRaisesRegex(TypeError, "numbers"):
@@ -199,7 +199,7 @@ class Arrays(unittest.TestCase):
     def test_the_package(self):
         self.assertEqual(doctest.testmod(vtkhomeomorphism).failed, 0)
         self.assertIn("SMOOTH", dir(vtkhomeomorphism.vtkHomeomorphismTransform))
-        self.assertIn("carry data", vtkhomeomorphism.vtkDifferentiableHomeomorphism.__doc__)
+        self.assertIn("map data", vtkhomeomorphism.vtkDifferentiableHomeomorphism.__doc__)
         with self.assertRaises(AttributeError):
             vtkhomeomorphism.nothing
 

@@ -45,10 +45,8 @@ def test_the_mistyped_landmark_is_the_most_suspicious():
 def test_outlines_and_added_points():
     outline = numpy.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [0, 1]], float)
     other = numpy.roll(outline, -3, axis=0)
-    with pytest.raises(ValueError, match="points? ha"):
-        isomorphic_triangulation(outline, other, outlines=[range(6)], maximum_added_points=0)
-    pair = isomorphic_triangulation(outline, other, outlines=[range(6)])
-    assert pair.added_points > 0
+    pair = isomorphic_triangulation(outline, other, outlines=[range(6)], maximum_added_points=0)
+    assert pair.added_points == 0
     for points in (pair.source, pair.target):
         assert numpy.isclose(_doubled_areas(points, pair.triangles).sum() / 2, 5)
 
