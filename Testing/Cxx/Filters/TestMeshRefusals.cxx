@@ -1090,8 +1090,8 @@ TEST(MeshRefusals, DiscordantTriangles)
     { vtkDifferentiableHomeomorphism::LINEAR, vtkDifferentiableHomeomorphism::SMOOTH })
   {
     options.CoordinateSystem = system;
-    const MappedPoints mapped = MapPoints(pair, points, options);
-    EXPECT_EQ("", mapped.Error + mapped.Warning);
+    const MappedPoints accepted = MapPoints(pair, points, options);
+    EXPECT_EQ("", accepted.Error + accepted.Warning);
   }
 }
 
