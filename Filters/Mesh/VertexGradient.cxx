@@ -137,9 +137,8 @@ Matrix2 Multiply(const Matrix2& a, const Matrix2& b)
   return { a * b.ImageOfX, a * b.ImageOfY };
 }
 
-// The fit, of what remains after the mean of the sectors' derivatives if that is close to them all:
-// affine pairs are then reproduced to rounding.
-Matrix2 FitLinear(const VertexFan& fan)
+// The mean of the sectors' derivatives, weighted by area.
+Matrix2 GetMeanDerivative(const VertexFan& fan)
 {
   Matrix2 mean{};
   double total = 0.0;
@@ -149,7 +148,14 @@ Matrix2 FitLinear(const VertexFan& fan)
     mean = mean + area * sector.Affine;
     total += area;
   }
-  mean = (1.0 / total) * mean;
+  return (1.0 / total) * mean;
+}
+
+// The fit, of what remains after the mean of the sectors' derivatives if that is close to them all:
+// affine pairs are then reproduced to rounding.
+Matrix2 FitLinear(const VertexFan& fan)
+{
+  const Matrix2 mean = GetMeanDerivative(fan);
   const double determinant = mean.Determinant();
   if (!(determinant > 0.0))
   {
@@ -546,15 +552,7 @@ Matrix2 FitBoundary(const VertexFan& fan)
     const auto product = [](const Matrix2& a, const Matrix2& b) {
       return Dot(a.ImageOfX, b.ImageOfX) + Dot(a.ImageOfY, b.ImageOfY);
     };
-    Matrix2 mean{};
-    double total = 0.0;
-    for (const FanSector& sector : fan.Sectors)
-    {
-      const double area = Cross(sector.Start, sector.End);
-      mean = mean + area * sector.Affine;
-      total += area;
-    }
-    mean = (1.0 / total) * mean;
+    const Matrix2 mean = GetMeanDerivative(fan);
     const double aa = product(basis[0], basis[0]);
     const double ab = product(basis[0], basis[1]);
     const double bb = product(basis[1], basis[1]);
