@@ -19,6 +19,7 @@ COMMANDS = {
     "morph": "Make intermediate frames of images or data between the source and the target.",
     "figure": "Draw a grid or the contours on the source, and mapped to the target.",
     "coordinates": "Attach triangular coordinates (e, p, c) in a mesh to the points of data.",
+    "triangulate": "Make a pair of meshes from landmarks, outlines and constraint lines.",
     "refine": "Make a finer pair whose piecewise linear map approximates the Smooth map, for PROJ and others.",
     "convert": "Write a pair in another format.",
 }
@@ -46,6 +47,7 @@ class Commands(click.Group):
     epilog="""
     A pair of meshes is one file that has both (PROJ's triangulation files, or a mesh with the target's positions as a
     point array) or two files, SOURCE and TARGET. Meshes: .json .vtp .vtk .vtu .obj .off .ply .stl, xmorph's .mesh.
+    Landmarks are a pair, too: .csv (source x, y, target x, y), .points of QGIS, IIIF georeference annotations, BigWarp.
     - is standard input or output.
 
     \b
@@ -55,6 +57,7 @@ class Commands(click.Group):
       dhm check shift.json
       dhm map shift.json points.csv -o shifted.csv
       dhm map shift.json parcels.gpkg -o shifted.gpkg --crs EPSG:3067
+      dhm warp scan.tif control.points --crs EPSG:3857 -o rectified.tif
       dhm warp here.obj there.obj photo.png -o warped.png
       dhm map --inverse before.vtp after.vtp measured.vtp -o back.vtp
 

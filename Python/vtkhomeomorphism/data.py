@@ -146,10 +146,13 @@ class Data:
                        f"the map is from {crs_in}.")
         result, outside = vectors.map_layers(layers, lambda points: work.map_points(points)[0], densify)
         self._report(outside, "feature", mark=f"its geometry is empty, and it is marked 1 in {vectors.MARK}")
-        crs = self.crs or crs_out
-        if crs:
+        crs = crs_out if self.crs is None else self.crs
+        if crs is not None:
             try:
-                result = {name: layer.set_crs(crs, allow_override=True) for name, layer in result.items()}
+                for layer in result.values():
+                    # None for pixels.
+                    layer.crs = None
+                    layer.crs = crs or None
             except Exception as error:
                 raise Failure(f"The coordinate reference system {crs} is not known: {error}", USAGE) from None
         with self.output as output:

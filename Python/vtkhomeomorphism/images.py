@@ -46,6 +46,10 @@ class Grid:
         """Lowest and highest x and y of the pixels' centers."""
         return self.x, self.x + (self.width - 1) * self.dx, self.y - (self.height - 1) * self.dy, self.y
 
+    def hanging(self):
+        """The same pixels with the upper left corner at (0, 0), as QGIS shows images that are not georeferenced."""
+        return replace(self, x=0.5, y=-0.5, dx=1.0, dy=1.0)
+
     def part(self, column, row, width, height):
         width, height = min(width, self.width - column), min(height, self.height - row)
         return replace(self, width=width, height=height, x=self.x + column * self.dx, y=self.y - row * self.dy)

@@ -40,6 +40,9 @@ class IsomorphicTriangulation(NamedTuple):
         Number of points added, corners of a frame not counted.
     left_out : list of (int, str)
         Segments that conflict with others and why, if they were to be left out.
+    report : dict
+        Of both domains: smallest_angles (degrees), shares_of_angles_below_10_15_20, obtuse_share and
+        discordant_share (of triangles that are so in at least one), largest_distortion and its triangle.
     """
 
     source: numpy.ndarray
@@ -48,6 +51,62 @@ class IsomorphicTriangulation(NamedTuple):
     residuals: numpy.ndarray
     added_points: int
     left_out: list
+    report: dict
+
+    def suspicious(self) -> numpy.ndarray:
+        """At most ten landmarks with outstanding residuals, the worst first."""
+        worst = numpy.argsort(-self.residuals, kind="stable")[:10]
+        return worst[self.residuals[worst] > _usual(self.residuals)]
+
+
+def _usual(residuals):
+    """The limit of usual residuals: four times the largest of all but a fifth of them."""
+    return 4 * numpy.quantile(residuals, 0.8)
+
+
+def _smooth_frame(source, target, rectangle, trusted, smooth=True):
+    """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images
+    under the thin-plate spline through the trusted landmarks (or the affine map that fits them best)."""
+    low = numpy.minimum(rectangle[::2], source.min(axis=0))
+    high = numpy.maximum(rectangle[1::2], source.max(axis=0))
+    low, high = low - 0.01 * (high - low), high + 0.01 * (high - low)
+    t = numpy.arange(8)[:, None] / 8
+    corners = numpy.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+    rim = numpy.vstack([a * (1 - t) + b * t for a, b in zip(corners, numpy.roll(corners, -1, axis=0))])
+    trusted = trusted[:: 1 + len(trusted) // 1000]
+    middle, size = (low + high) / 2, numpy.hypot(*(high - low))
+    a, b = (source[trusted] - middle) / size, (rim - middle) / size
+
+    def columns(points):
+        squares = ((points[:, None] - a) ** 2).sum(axis=2) if smooth else numpy.zeros((len(points), 0))
+        bending = squares * numpy.log(numpy.maximum(squares, 1e-300))
+        return numpy.hstack((bending, numpy.ones((len(points), 1)), points))
+
+    own = columns(a)
+    if smooth:
+        own = numpy.vstack((own, numpy.hstack((own[:, -3:].T, numpy.zeros((3, 3))))))
+    values = numpy.vstack((target[trusted] - target[trusted[0]], numpy.zeros((len(own) - len(a), 2))))
+    weights = numpy.linalg.lstsq(own, values, rcond=None)[0]
+    return rim, columns(b) @ weights + target[trusted[0]]
+
+
+def _with_frame(source, target, options):
+    """Makes the pair with the image of the source's frame predicted, or the filter's frame if landmarks
+    are outside of the predictions."""
+    source, target = (numpy.asarray(points, float) for points in (source, target))
+    rectangle = options.pop("frame")[0]
+    first = isomorphic_triangulation(source, target, **options)
+    trusted = numpy.flatnonzero(first.residuals <= _usual(first.residuals))
+    for smooth in (True, False):
+        frames = _smooth_frame(source, target, numpy.asarray(rectangle, float), trusted, smooth)
+        outline = range(len(source), len(source) + len(frames[0]))
+        points = [numpy.vstack(both) for both in zip((source, target), frames)]
+        try:
+            made = isomorphic_triangulation(*points, **dict(options, outlines=[outline], domain="outline"))
+        except ValueError:
+            continue
+        return made._replace(residuals=first.residuals)
+    return first
 
 
 def _cells(lists: Sequence[Sequence[int]], points: int, what: str) -> vtkCellArray:
@@ -88,7 +147,9 @@ def isomorphic_triangulation(
     segments : sequence of sequences of int
         Polygonal lines of point ids that must become edges.
     frame : pair of (least x, largest x, least y, largest y)
-        Rectangles around source and target, for example those of images.
+        Rectangles around source and target, for example those of images. If the target's is None, a
+        smooth map through the landmarks that are not suspicious (a thin-plate spline) takes the
+        source's, enlarged by 1 %, to the target; for points in planes and without outlines.
     domain : {"automatic", "outline", "frame", "convex_hull"}
     quality : {"minimum_angle", "concordance", "distortion", "non_obtuse"}
     target_minimum_angle : float
@@ -103,6 +164,11 @@ def isomorphic_triangulation(
 
     Raises ValueError with a message that names the points if the figures have no such triangulations.
     """
+    if frame is not None and frame[1] is None:
+        own = ("frame", "segments", "quality", "target_minimum_angle", "maximum_added_points",
+               "maximum_triangle_size", "leave_out_conflicting_segments")
+        given = locals()
+        return _with_frame(source, target, {name: given[name] for name in own})
     algorithm = vtkIsomorphicTriangulation()
     figures = []
     dimension = 2
@@ -150,4 +216,12 @@ def isomorphic_triangulation(
         numpy.array(residuals[:count]),
         algorithm.GetNumberOfAddedPoints(),
         left_out,
+        {
+            "smallest_angles": algorithm.GetSmallestAngles(),
+            "shares_of_angles_below_10_15_20": algorithm.GetSharesOfSmallAngles(),
+            "obtuse_share": algorithm.GetObtuseShare(),
+            "discordant_share": algorithm.GetDiscordantShare(),
+            "largest_distortion": algorithm.GetLargestDistortion(),
+            "largest_distortion_triangle": algorithm.GetLargestDistortionCell(),
+        },
     )

@@ -21,7 +21,7 @@ import io
 import json
 import math
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import List, Optional, Sequence, Tuple
 
 import numpy
@@ -42,6 +42,7 @@ class Landmarks:
     left_out : (name, reason) of each landmark that the file lists but that is not used
     image_coordinates : whether source is in pixels with y down
     crs : coordinate reference system of the target as the file states it, or None
+    origin : what to add to coordinates in pixels so that 0 is at the edge of an image
     """
 
     source: numpy.ndarray
@@ -50,6 +51,17 @@ class Landmarks:
     left_out: List[Tuple[str, str]] = field(default_factory=list)
     image_coordinates: bool = False
     crs: Optional[str] = None
+    origin: float = 0.0
+
+    def without(self, names: Sequence[str]) -> Landmarks:
+        """The landmarks except those of the given names, which are left out."""
+        unknown = [name for name in names if name not in self.names]
+        if unknown:
+            raise LandmarkFileError(f"there is no landmark {', '.join(unknown[:5])} to leave out")
+        kept = [i for i, name in enumerate(self.names) if name not in names]
+        left_out = self.left_out + [(name, "on request") for name in self.names if name in names]
+        chosen = [self.names[i] for i in kept]
+        return replace(self, source=self.source[kept], target=self.target[kept], names=chosen, left_out=left_out)
 
 
 def _number(text: str, path: str, line: int, column: str) -> float:
@@ -163,7 +175,8 @@ def _read_bigwarp(lines: List[str], path: str) -> Landmarks:
         inactive = record[1].strip().lower() != "true"
         # A side that is not set decides first: an inactive point is usually a deliberate choice.
         rows.append((record[0], values, _finite_or_reason(values) or ("inactive" if inactive else None)))
-    return _collect(rows, path)
+    # Its pixels have their centers at whole numbers.
+    return _collect(rows, path, origin=0.5)
 
 
 def _read_csv(lines: List[str], path: str) -> Landmarks:
@@ -250,16 +263,16 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
 
 
 def is_landmark_file(path) -> bool:
-    """Whether a file name or content is that of landmarks rather than of a mesh: `.points`, `.csv`, or
-    JSON with a georeference annotation."""
+    """Whether a file name and content are those of landmarks: `.points`, `.csv` with at least four columns, or JSON
+    with a georeference annotation."""
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
-    if suffix in (".points", ".csv"):
-        return True
-    if suffix not in (".json", ".geojson"):
-        return False
+    if suffix not in (".csv", ".json", ".geojson") or not os.path.isfile(path):
+        return suffix == ".points"
     with open(path, "rb") as file:
         start = file.read(1 << 20)
-    return b"FeatureCollection" in start and (
-        b"resourceCoords" in start or b"pixelCoords" in start or b"AnnotationPage" in start
+    if suffix == ".csv":
+        return start.split(b"\n", 1)[0].count(b",") >= 3
+    return b"FeatureCollection" in start and any(
+        word in start for word in (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
     )

@@ -9,8 +9,9 @@ from types import SimpleNamespace
 import click
 
 from .arrays import SYSTEMS
-from .files import USAGE, Failure, set_quiet
-from .images import read_size
+from .files import PICTURES, USAGE, VECTORS, Failure, Input, format_of, set_quiet
+from .images import read, read_size
+from .landmarks import is_landmark_file
 from .mapping import Settings
 
 
@@ -69,18 +70,24 @@ def pair_files(names, others=0):
         click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
                      help="Of xmorph's meshes that do not fill their pictures: the size of its working picture "
                           "(resulting_size in a session's file)."),
+        click.option("--scan", default="", metavar="FILE",
+                     help="Of landmarks in an image's pixels: the image, whose rectangle is the source's domain."),
+        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
     )
 
     def decorate(command):
         @functools.wraps(command)
-        def wrapped(files, target_array, target_uv, input_format, working_size, **rest):
+        def wrapped(files, target_array, target_uv, input_format, working_size, scan, without, **rest):
+            if others and len(files) == 2 and format_of(files[0]) in PICTURES + VECTORS and is_landmark_file(files[1]):
+                files = files[::-1]
             if not 1 + others <= len(files) <= 2 + others:
                 raise click.UsageError(f"The files are {names}; found {len(files)}")
             inputs = SimpleNamespace(
                 pair=files[: len(files) - others], others=files[len(files) - others :], names=names,
                 target_array=target_array, target_uv=target_uv, input_format=input_format,
-                working_size=read_size(working_size),
+                working_size=read_size(working_size), scan=scan, without=without, crs=None,
             )
+            inputs.grids = lambda marks: (scan_grid(inputs), None)
             if list(files).count("-") > 1:
                 raise Failure("Only one of the files can come from standard input.", USAGE)
             return command(inputs=inputs, **rest)
@@ -88,6 +95,14 @@ def pair_files(names, others=0):
         return options(wrapped)
 
     return decorate
+
+
+def scan_grid(inputs):
+    """The pixels of the image of --scan, or None."""
+    if not inputs.scan:
+        return None
+    with Input(inputs.scan) as file:
+        return read(file).grid
 
 
 def read_pair(inputs):

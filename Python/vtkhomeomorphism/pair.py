@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pairs of triangulations, read from files and written to files."""
+"""Pairs of triangulations, read from files, made from landmarks, and written to files."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Optional
 
 import numpy
@@ -10,7 +10,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import meshes, tinshift, xmorph
-from .files import FILE, REFUSED, USAGE, Failure, Input, format_of
+from .files import FILE, REFUSED, USAGE, Failure, Input, count, format_of, import_extra, inform, replace_path
+from .landmarks import Landmarks, LandmarkFileError, is_landmark_file, read_landmarks
 
 FORMATS = ("json", "vtp", "vtk")
 """Formats that hold both meshes."""
@@ -30,6 +31,8 @@ class Pair:
     """For xmorph meshes: the largest x and y of their images, or None if unknown."""
     metadata: dict = field(default_factory=dict)
     """Metadata for writing a triangulation file."""
+    landmarks: Optional[Landmarks] = None
+    """The landmarks that the pair was made from."""
 
     @property
     def source(self):
@@ -87,6 +90,8 @@ def _open(name, input_format):
 def _read_one(name, options):
     with _open(name, options.input_format) as file:
         names = [file.name, file.name]
+        if file.format in ("csv", "points", "json") and is_landmark_file(file.path):
+            return from_landmarks(read_landmark_file(file, options), file.name, options)[0]
         if file.format == "json":
             try:
                 shift = tinshift.read(file.path)
@@ -113,6 +118,66 @@ def _read_one(name, options):
     target.SetVerts(source.GetVerts())
     target.SetLines(source.GetLines())
     return Pair([source, target], names)
+
+
+def read_landmark_file(file, options):
+    """The landmarks of a file, without those to be left out, in the coordinate reference system asked for."""
+    try:
+        marks = read_landmarks(file.path).without([name for name in options.without.split(",") if name])
+    except LandmarkFileError as error:
+        raise Failure(f"{replace_path(error, file)}.", FILE) from None
+    if marks.left_out:
+        names = ", ".join(f"{name} ({reason})" for name, reason in marks.left_out[:10])
+        inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}"
+               f"{', ...' if len(marks.left_out) > 10 else ''}.")
+    if options.crs and marks.crs and options.crs != marks.crs:
+        marks = replace(marks, target=_reproject(marks.target, marks.crs, options.crs))
+    return replace(marks, crs=options.crs or marks.crs)
+
+
+def _reproject(points, before, after):
+    rasterio = import_extra("rasterio", "python3-rasterio", f"Taking landmarks from {before} to {after}")
+    from rasterio.warp import transform
+
+    try:
+        return numpy.column_stack(transform(before, after, *points.T))
+    except rasterio.errors.RasterioError as error:
+        raise Failure(f"Cannot take the landmarks from {before} to {after}: {error}", USAGE) from None
+
+
+def _box(points):
+    return numpy.column_stack((points.min(axis=0), points.max(axis=0))).ravel()
+
+
+def from_landmarks(marks, name, options, **more):
+    """The pair made of landmarks, and the IsomorphicTriangulation. Landmarks of images are in pixels, y down, and become
+    those of images.Grid.hanging(). Says what was made."""
+    from .isomorphic import isomorphic_triangulation
+
+    points, grids = [marks.source, marks.target], options.grids(marks)
+    for side, grid in enumerate(grids):
+        if grid or (side == 0 and marks.image_coordinates):
+            points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
+    if grids[0] and not more.get("outlines"):
+        # The pixels' centers, so that borders go to borders, and landmarks beyond them.
+        more["frame"] = [grid and _box(numpy.vstack((p, numpy.reshape(grid.hanging().bounds, (2, 2)).T)))
+                         for grid, p in zip(grids, points)]
+    try:
+        made = isomorphic_triangulation(*points, **more)
+    except ValueError as error:
+        raise Failure(f"{name}: {error}", REFUSED) from None
+    angles = made.report["smallest_angles"]
+    inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
+           f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "
+           f"{angles[1]:.3g} degrees.")
+    worst = made.suspicious()
+    if len(worst):
+        listed = ", ".join(f"{marks.names[i]} ({made.residuals[i]:.4g})" for i in worst)
+        inform(f"{name}: suspicious landmarks, and how far they are in the target from where their neighbors put them: "
+               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without.")
+    for cell, reason in made.left_out:
+        inform(f"{name}: line {cell} is left out: {reason}")
+    return Pair([meshes.make_mesh(p, made.triangles) for p in made[:2]], [name, name], landmarks=marks), made
 
 
 def read_mesh(name, input_format=""):

@@ -74,11 +74,15 @@ def command(inputs, output, force, output_format, settings, all_systems, grid, c
     """Draw a grid, or the contours, on the source and mapped onto the target. The meshes are in a plane."""
     close_up = read_close_up(close_up)
     target = Output(output, output_format, force, plots.FORMATS, "a figure")
-    both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     raster = None
     if image:
         with Input(image) as file:
             raster = images.read(file)
+        inputs.grids = lambda marks: (raster.grid, None if marks.crs else raster.grid)
+    both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
+    if image:
+        if both.landmarks:
+            raster.grid = raster.grid.hanging()
         size = (raster.grid.width, raster.grid.height)
         pair.fit_to_pictures(both, [size, size])
         images.require_overlap(raster.grid, image, both.source, both.name_of(0))
@@ -137,6 +141,8 @@ def _picture(raster, both, settings, side):
     if side == 0:
         pixels = raster.window((0, grid.width), (0, grid.height))
     else:
+        if both.landmarks and both.landmarks.crs:
+            grid = images.Warp(both, settings).fit_grid(raster, (grid.width, grid.height))
         fine = replace(grid, width=3 * grid.width - 2, height=3 * grid.height - 2, dx=grid.dx / 3, dy=grid.dy / 3)
         pixels, mask = images.Warp(both, settings).warp(raster, fine, "")
         pixels, grid = images.finish(pixels, mask, raster.has_alpha, None), fine

@@ -34,6 +34,7 @@ def command(inputs, data, settings, inverse, densify, jacobian, determinant, tri
 
     Points outside the domain become nan and are marked 0 in vtkValidPointMask; features outside become empty. For a
     PROJ triangulation file, heights (a third coordinate) and the fallback strategy are those of PROJ."""
+    inputs.crs = None if inverse else data.crs
     pair = options.read_pair(inputs)
     work = PointMap(pair, settings, inverse)
     work.filter.SetComputeJacobian(jacobian)
@@ -43,4 +44,7 @@ def command(inputs, data, settings, inverse, densify, jacobian, determinant, tri
     work.filter.SetTransformActiveAttributes(not keep_vectors)
     shift = pair.shift
     crs = (shift.crs(inverse, output=False), shift.crs(inverse)) if shift else None
+    if pair.landmarks and pair.landmarks.crs:
+        # Pixels have no coordinate reference system.
+        crs = (pair.landmarks.crs, "") if inverse else (None, pair.landmarks.crs)
     data.process(inputs.others[0], work, moves=True, shift=shift, densify=densify, known_crs=crs)

@@ -109,15 +109,21 @@ def command(inputs, output, force, source_image, target_image, data, frames, pat
     outputs = [Output(name, "", force, known, what) for name in frame_names(output, frames)]
     color = images.read_background(background, format) if with_images else None
     size = images.read_size(size)
-    both = options.read_pair(inputs)
     rasters = [None, None]
     for side, name in enumerate(names):
         if name:
             with Input(name) as file:
                 rasters[side] = images.read(file)
+    first = rasters[0] or rasters[1]
+    if first:
+        inputs.grids = lambda marks: [(raster or first).grid for raster in rasters]
+    both = options.read_pair(inputs)
     if with_images:
-        first = rasters[0] or rasters[1]
+        for raster in rasters if both.landmarks else ():
+            if raster:
+                raster.grid = raster.grid.hanging()
         grid = images.Grid(*size) if size else first.grid
+        grid = grid.hanging() if both.landmarks else grid
         grids = [(raster or first).grid if raster else grid for raster in rasters]
         pair.fit_to_pictures(both, [(g.width, g.height) for g in grids])
         for side, raster in enumerate(rasters):

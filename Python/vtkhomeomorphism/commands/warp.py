@@ -41,33 +41,55 @@ def command(inputs, output, force, output_format, image_format, settings, invers
     size = options.read_size(size)
     target = Output(output, output_format, force, images.WRITE, "an image")
     color = images.read_background(background, target.format)
-    both = options.read_pair(inputs)
-    settings = replace(settings, system=settings.system_for(both))
+    inputs.crs = None if inverse else crs
     with Input(inputs.others[0], image_format, "--image-format") as file:
-        raster = images.read(file)
-        if not raster.grid.placed:
+        opened = []
+
+        def grids(marks):
+            opened.append(images.read(file))
+            own = opened[0].grid
+            if own.placed:
+                return options.scan_grid(inputs) or (images.Grid(*size) if inverse and size else None), None
+            if marks.crs and not inverse:
+                return own, None
+            if marks.image_coordinates and not inverse:
+                raise Failure(f"{inputs.pair[0]} does not name the coordinate reference system of its target: give --crs.", USAGE)
+            return (own, images.Grid(*size) if size else own)[:: -1 if inverse else 1]
+
+        inputs.grids = grids
+        both = options.read_pair(inputs)
+        settings = replace(settings, system=settings.system_for(both))
+        raster = opened[0] if opened else images.read(file)
+        # A layer that goes back onto a scan becomes an image without georeference.
+        marks = both.landmarks
+        scan = marks and inverse and raster.grid.placed and grids(marks)[0]
+        placed = not scan and (raster.grid.placed or bool(marks and marks.crs and not inverse))
+        if not placed:
             for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
                 if value:
                     raise Failure(f"{name} is for georeferenced rasters, which {file.name} is not.", USAGE)
-        grid = raster.grid
-        if not grid.placed and size:
+        if marks and not raster.grid.placed:
+            raster.grid = raster.grid.hanging()
+        grid = scan.hanging() if scan else raster.grid
+        if not placed and not scan and size:
             grid = images.Grid(*size) if target.format != "vti" else replace(grid, width=size[0], height=size[1])
+            grid = grid.hanging() if marks else grid
         sizes = [(g.width, g.height) for g in (raster.grid, grid)]
         pair.fit_to_pictures(both, sizes[::-1] if inverse else sizes)
         side = int(inverse)
         images.require_overlap(raster.grid, file.name, both.meshes[side], both.name_of(side))
         warp = images.Warp(both, settings, inverse)
-        if grid.placed:
+        if placed:
             if target.format not in ("tif", "tiff"):
                 raise Failure(f"A georeferenced raster becomes a .tif, not a .{target.format}.", USAGE)
-            crs = crs or (both.shift and both.shift.crs(inverse)) or grid.crs
+            crs = crs or (both.shift and both.shift.crs(inverse)) or (marks and marks.crs) or grid.crs
             if like:
                 with Input(like) as model:
                     grid = images.read(model).grid
             else:
                 grid = warp.fit_grid(raster, size, resolution, crs)
         images.require_overlap(grid, "the result", both.meshes[1 - side], both.name_of(1 - side))
-        if grid.placed:
+        if placed:
             with target as place:
                 writer = images.TiffWriter(place, grid, raster, None if not background else color)
                 for tile in warp.tiles(raster, grid):

@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""A generated scan with control points whose truth is known, for Examples/georeference.
+
+    scan.py write FOLDER [WIDTH HEIGHT]     scan.tif, positions.tif, control.points, control-2.points, roads.gpkg
+    scan.py compare FOLDER RECTIFIED.tif    how far a rectified positions.tif is from the truth
+
+The sheet is bent by a known map, by 27 pixels beyond the best affine map at most. The control points are exact
+except for two, which are mistyped by 30 pixels; four rows are disabled. The bands of positions.tif are each pixel's own
+coordinates: a rectified one shows where each pixel came from.
+"""
+
+import os
+import sys
+import warnings
+
+import numpy
+
+CRS = "EPSG:3857"
+ORIGIN, METERS, ANGLE = numpy.array([1490000.0, 6890000.0]), 2.5, 0.12
+BEND = 0.008
+"""How far the middle of an edge is bent, as a share of the image's width."""
+MISTYPED = {17: (30.0, 0.0), 41: (-18.0, 24.0)}
+"""Errors in pixels, by the number of the control point."""
+DISABLED = (5, 23, 38, 50)
+"""Rows before which a disabled control point is listed."""
+
+
+class Sheet:
+    """The map of a scan's pixels (from the upper left corner, y down) to the ground: each row is shifted along a
+    parabola, then each column, and the result is turned and scaled."""
+
+    def __init__(self, width=4000, height=3000):
+        self.size = numpy.array([width, height], float)
+        self.width, self.height, self.bend = width, height, BEND * width
+
+    def to_ground(self, pixels):
+        u, v = numpy.asarray(pixels, float).T
+        u = u + 4 * self.bend * (v / self.height - 0.5) ** 2
+        v = v + 4 * self.bend * (u / self.width - 0.5) ** 2
+        cos, sin = METERS * numpy.cos(ANGLE), METERS * numpy.sin(ANGLE)
+        return ORIGIN + numpy.column_stack((cos * u + sin * v, sin * u - cos * v))
+
+    def to_pixels(self, ground):
+        x, y = (numpy.asarray(ground, float) - ORIGIN).T / METERS
+        cos, sin = numpy.cos(ANGLE), numpy.sin(ANGLE)
+        u, v = cos * x + sin * y, sin * x - cos * y
+        v = v - 4 * self.bend * (u / self.width - 0.5) ** 2
+        return numpy.column_stack((u - 4 * self.bend * (v / self.height - 0.5) ** 2, v))
+
+    def pixel_centers(self):
+        x, y = numpy.meshgrid(numpy.arange(self.width) + 0.5, numpy.arange(self.height) + 0.5)
+        return numpy.column_stack((x.ravel(), y.ravel()))
+
+    def control_points(self):
+        """60 pixels, on a grid with some disorder, and their places on the ground, two of them wrong."""
+        i, j = numpy.meshgrid(numpy.arange(10), numpy.arange(6))
+        own = numpy.column_stack(((i.ravel() + 0.5) / 10, (j.ravel() + 0.5) / 6))
+        own = (own + numpy.random.default_rng(3).uniform(-0.02, 0.02, own.shape)) * self.size
+        pixels = numpy.round(own, 2)
+        ground = self.to_ground(pixels)
+        for k, error in MISTYPED.items():
+            ground[k] = self.to_ground(pixels[k : k + 1] + error)[0]
+        return pixels, ground
+
+    def bend_beyond_affine(self):
+        """The largest distance in pixels from the affine map that fits the whole sheet best."""
+        t = numpy.linspace(0, 1, 41)
+        pixels = numpy.stack(numpy.meshgrid(t, t), axis=-1).reshape(-1, 2) * self.size
+        ground = self.to_ground(pixels)
+        columns = numpy.column_stack((pixels, numpy.ones(len(pixels))))
+        fitted = columns @ numpy.linalg.lstsq(columns, ground - ORIGIN, rcond=None)[0] + ORIGIN
+        return numpy.hypot(*(ground - fitted).T).max() / METERS
+
+    def draw(self):
+        """An old map in three colors, of shape (height, width, 3): relief, a river, streets and a graticule."""
+        u, v = (self.pixel_centers() / self.width).T.reshape(2, self.height, self.width)
+        relief = numpy.sin(9 * u + 2 * numpy.sin(7 * v)) + numpy.cos(8 * v - 3 * u)
+        shade = numpy.gradient(relief, axis=1) - numpy.gradient(relief, axis=0)
+        paper = 225 + 12 * shade / numpy.abs(shade).max()
+        paint = numpy.stack([paper, paper - 9, paper - 38], axis=-1)
+
+        def line(distance, width, color):
+            t = numpy.clip((width - numpy.abs(distance)) * self.width / 2 + 0.5, 0, 1)[..., None]
+            paint[:] = (1 - t) * paint + t * numpy.array(color)
+
+        step = (relief * 3) % 1
+        line(numpy.minimum(step, 1 - step) / 30, 0.0005, (172, 133, 92))
+        line(v - 0.36 - 0.1 * numpy.sin(6 * u) - 0.02 * numpy.sin(25 * u), 0.009, (96, 140, 176))
+        for a, b, c in ((0.2, 1, 0.45), (1, -0.35, 0.32), (1, 0.25, 0.75), (-0.5, 1, 0.1)):
+            line((a * u + b * v - c) / numpy.hypot(a, b), 0.0022, (120, 40, 36))
+        for k in range(1, 10):
+            line(u - k / 10, 0.0004, (60, 60, 60)), line(v - k / 10, 0.0004, (60, 60, 60))
+        edge = numpy.minimum(numpy.minimum(u, 1 - u), numpy.minimum(v, self.height / self.width - v))
+        line(edge - 0.012, 0.0012, (40, 40, 40))
+        return numpy.clip(paint, 0, 255).astype(numpy.uint8)
+
+
+def write_points(path, pixels, ground, version):
+    """Control points as QGIS 2 and 3 save them: its y axis points up, from 0 at the upper edge of the image."""
+    rows = [(*p, *g, 1) for p, g in zip(pixels, ground)]
+    for k in reversed(DISABLED):
+        rows.insert(k, (*(pixels[k] + 3), *(ground[k] + 500), 0))
+    with open(path, "w", encoding="utf-8") as file:
+        if version == 3:
+            file.write(f"#CRS: {CRS}\n")
+        names, rest = ("source", ",0,0,0") if version == 3 else ("pixel", "")
+        file.write(f"mapX,mapY,{names}X,{names}Y,enable{',dX,dY,residual' if rest else ''}\n")
+        for u, v, x, y, used in rows:
+            file.write(f"{x:.4f},{y:.4f},{u:.2f},{-v:.2f},{used}{rest}\n")
+
+
+def names_of_mistyped():
+    """The names by which dhm calls the mistyped control points: rows counted from 0, disabled ones included."""
+    return [str(k + sum(row <= k for row in DISABLED)) for k in MISTYPED]
+
+
+def write_tiff(path, pixels):
+    import rasterio
+
+    warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+    bands = numpy.moveaxis(pixels, 2, 0)
+    with rasterio.open(path, "w", driver="GTiff", width=pixels.shape[1], height=pixels.shape[0], count=len(bands),
+                       dtype=pixels.dtype, tiled=True, compress="deflate") as file:
+        file.write(bands)
+
+
+def write_roads(path, sheet):
+    """A layer on the ground: lines over the sheet, true to its map."""
+    import geopandas
+    from shapely.geometry import LineString
+
+    t = numpy.linspace(0.05, 0.95, 50)
+    shapes = []
+    for a, b, c in ((0.2, 1, 0.45), (-0.5, 1, 0.1)):
+        v = (c - a * t) / b * sheet.width
+        inside = (v > 0.03 * sheet.height) & (v < 0.97 * sheet.height)
+        shapes.append(LineString(sheet.to_ground(numpy.column_stack((t * sheet.width, v)))[inside]))
+    geopandas.GeoDataFrame({"name": ["first", "second"]}, geometry=shapes, crs=CRS).to_file(path, driver="GPKG")
+
+
+def write(folder, width=4000, height=3000):
+    sheet = Sheet(width, height)
+    os.makedirs(folder, exist_ok=True)
+    write_tiff(os.path.join(folder, "scan.tif"), sheet.draw())
+    # Of an image with two bands, the second is transparency.
+    positions = numpy.column_stack((sheet.pixel_centers(), numpy.zeros(width * height)))
+    write_tiff(os.path.join(folder, "positions.tif"), positions.reshape(height, width, 3).astype(numpy.float32))
+    points = sheet.control_points()
+    write_points(os.path.join(folder, "control.points"), *points, 3)
+    write_points(os.path.join(folder, "control-2.points"), *points, 2)
+    write_roads(os.path.join(folder, "roads.gpkg"), sheet)
+    print(f"{width} x {height} pixels, bent by {sheet.bend_beyond_affine():.1f} pixels beyond the best affine map; "
+          f"mistyped control points: {', '.join(names_of_mistyped())}")
+
+
+def errors(sheet, rectified):
+    """Distances in pixels of the scan between where the pixels of a rectified positions.tif came from and the truth, for
+    all pixels whose true position is on the scan; infinite where the result is empty."""
+    import rasterio
+
+    with rasterio.open(rectified) as file:
+        found = file.read().astype(float)
+        column, row = numpy.meshgrid(numpy.arange(file.width) + 0.5, numpy.arange(file.height) + 0.5)
+        ground = numpy.column_stack(file.transform * (column.ravel(), row.ravel()))
+    truth = sheet.to_pixels(ground)
+    # Values at the rim would need pixels beyond it.
+    inside = ((truth > 1) & (truth < sheet.size - 1)).all(axis=1)
+    distances = numpy.hypot(*(found.reshape(len(found), -1)[:2].T[inside] - truth[inside]).T)
+    return numpy.where(numpy.isfinite(distances), distances, numpy.inf)
+
+
+def compare(folder, rectified):
+    import rasterio
+
+    warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+    with rasterio.open(os.path.join(folder, "positions.tif")) as file:
+        sheet = Sheet(file.width, file.height)
+    found = errors(sheet, rectified)
+    print(f"{100 * (found <= 1).mean():.2f} % of the pixels are within a pixel of the truth; median "
+          f"{numpy.median(found):.3f}, 95 %: {numpy.quantile(found, 0.95):.3f}, largest {found.max():.2f}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) in (3, 5) and sys.argv[1] == "write":
+        write(sys.argv[2], *map(int, sys.argv[3:]))
+    elif len(sys.argv) == 4 and sys.argv[1] == "compare":
+        compare(*sys.argv[2:])
+    else:
+        sys.exit(__doc__)

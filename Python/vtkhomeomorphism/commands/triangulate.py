@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""dhm triangulate"""
+
+import click
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .. import options, pair, vtkfiles
+from ..files import FILE, USAGE, Failure, Input, Output
+from ..isomorphic import DOMAINS, QUALITIES
+from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lines
+from ..meshes import points_of
+
+
+def read_figures(names):
+    """Landmarks, loops and lines of two VTK files with the same cells."""
+    figures = []
+    for name in names:
+        with Input(name) as file:
+            if file.format not in ("vtp", "vtk"):
+                raise Failure(f"{name} is not a figure: landmarks are one file, figures two of .vtp or .vtk.", USAGE)
+            data = vtkfiles.read(file)
+            if data.GetClassName() != "vtkPolyData":
+                file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
+            figures.append(data)
+    cells = []
+    for get in ("GetPolys", "GetLines"):
+        both = [getattr(figure, get)() for figure in figures]
+        lists = [_lists(c) for c in both]
+        if lists[0] != lists[1]:
+            raise Failure(f"{names[0]} and {names[1]} have different cells: a figure is drawn twice.")
+        cells.append(lists[0])
+    points = [points_of(figure) for figure in figures]
+    if len(points[0]) != len(points[1]):
+        raise Failure(f"{names[0]} has {len(points[0])} points and {names[1]} {len(points[1])}: they must correspond.")
+    flat = [p[:, :2] if numpy.ptp(p[:, 2]) == 0 else p for p in points]
+    return Landmarks(*flat, [str(i) for i in range(len(points[0]))]), *cells
+
+
+def _lists(cells):
+    ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+    return [part.tolist() for part in numpy.split(ids, offsets[1:-1])] if len(ids) else []
+
+
+def print_report(made, marks):
+    found = made.report
+    below = found["shares_of_angles_below_10_15_20"]
+    rows = [("landmarks", len(marks.names)), ("added points", made.added_points), ("triangles", len(made.triangles)),
+            ("smallest angles, degrees", "{:.4g} (source), {:.4g} (target)".format(*found["smallest_angles"])),
+            ("angles below 10, 15, 20 degrees", ", ".join(f"{100 * share:.1f} %" for share in below)),
+            ("obtuse triangles", f"{100 * found['obtuse_share']:.1f} %"),
+            ("discordant triangles", f"{100 * found['discordant_share']:.1f} %"),
+            ("largest distortion", f"{found['largest_distortion']:.4g} (cell {found['largest_distortion_triangle']})"),
+            ("median residual", f"{numpy.median(made.residuals):.4g}")]
+    for name, value in rows:
+        click.echo(f"{name:33}{value}")
+    suspicious = set(made.suspicious().tolist())
+    click.echo("largest residuals, target's units")
+    for i in numpy.argsort(-made.residuals, kind="stable")[:10].tolist():
+        click.echo(f"  {marks.names[i]:31}{made.residuals[i]:.4g}{'  suspicious' if i in suspicious else ''}")
+
+
+@click.command("triangulate")
+@options.pair_files("LANDMARKS | SOURCE TARGET")
+@options.output("The pair in one file: .json (PROJ's), .vtp or .vtk (the target as the point array Target).", "json")
+@click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line a row.")
+@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop a row.")
+@click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic", show_default=True,
+              help="The inside of outlines, a frame around the landmarks (without outlines), or their convex hulls.")
+@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", show_default=True,
+              help="What triangles are optimized for.")
+@click.option("--target-angle", type=options.Number(most=90), default=0.0, metavar="DEGREES",
+              help="Add points until no angle is smaller (default: necessary points only).")
+@click.option("--maximum-added-points", type=options.Number(whole=True), metavar="NUMBER",
+              help="Greatest number of points to add (default: the necessary ones, and up to 100 for --target-angle).")
+@click.option("--maximum-size", type=options.Number(most=1), default=0.0, metavar="SHARE",
+              help="Divide triangles with a larger share of the domain's area.")
+@click.option("--leave-out-conflicts", is_flag=True, help="Leave out lines that conflict with others, and name them.")
+@click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks that are probably wrong.")
+@options.quiet
+def command(inputs, output, force, output_format, lines, outlines, domain, quality, target_angle, maximum_added_points,
+            maximum_size, leave_out_conflicts, report):
+    """Make a pair of meshes with the same triangles from landmarks.
+
+    LANDMARKS is a .csv (source_x, source_y, target_x, target_y, optionally id; or BigWarp's), QGIS's .points, or a IIIF
+    georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops (polygons or lines) and
+    constraint lines, with the same cells. Triangles fold in neither domain; points are added where necessary."""
+    target = Output(output, output_format, force, pair.FORMATS, "a pair")
+    segments, loops = [], []
+    if len(inputs.pair) == 2:
+        marks, loops, segments = read_figures(inputs.pair)
+    else:
+        name = inputs.pair[0]
+        with Input(name, inputs.input_format or "csv", "--input-format") as file:
+            if not is_landmark_file(file.path):
+                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv, .points and IIIF's .json.", USAGE)
+            marks = pair.read_landmark_file(file, inputs)
+        try:
+            segments, loops = (read_lines(file, marks.names) if file else [] for file in (lines, outlines))
+        except (LandmarkFileError, OSError) as error:
+            raise Failure(f"{error}.", FILE) from None
+    both, made = pair.from_landmarks(
+        marks, " and ".join(inputs.pair), inputs, outlines=loops, segments=segments, domain=domain, quality=quality,
+        target_minimum_angle=target_angle, maximum_added_points=maximum_added_points,
+        maximum_triangle_size=maximum_size, leave_out_conflicting_segments=leave_out_conflicts,
+    )
+    if marks.crs:
+        both.metadata["output_crs"] = marks.crs
+    with target as place:
+        pair.write(both, place)
+    if report:
+        print_report(made, marks)
