@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy
@@ -14,16 +15,12 @@ from .arrays import _as_points, _choose, _Messages
 from .vtkFiltersHomeomorphism import vtkIsomorphicTriangulation
 
 QUALITIES = {
-    "minimum_angle": vtkIsomorphicTriangulation.MINIMUM_ANGLE,
-    "concordance": vtkIsomorphicTriangulation.CONCORDANCE,
-    "distortion": vtkIsomorphicTriangulation.DISTORTION,
-    "non_obtuse": vtkIsomorphicTriangulation.NON_OBTUSE,
+    name: getattr(vtkIsomorphicTriangulation, name.upper())
+    for name in ("minimum_angle", "concordance", "distortion", "non_obtuse")
 }
 DOMAINS = {
-    "automatic": vtkIsomorphicTriangulation.AUTOMATIC,
-    "outline": vtkIsomorphicTriangulation.OUTLINE,
-    "frame": vtkIsomorphicTriangulation.FRAME,
-    "convex_hull": vtkIsomorphicTriangulation.CONVEX_HULL,
+    name: getattr(vtkIsomorphicTriangulation, name.upper())
+    for name in ("automatic", "outline", "frame", "convex_hull")
 }
 
 
@@ -31,13 +28,13 @@ class IsomorphicTriangulation(NamedTuple):
     """A pair of triangulations with the same triangles.
 
     source, target : array of float64 of shape (n, 2) or (n, 3)
-        The landmarks, unchanged and in their order, then the corners of a frame and added points.
+        The landmarks, unchanged and in their order, then points of a frame and added points.
     triangles : array of int64 of shape (m, 3)
     residuals : array of float64
         For each landmark, the distance in the target from where a smooth map through its neighbors
         puts it without it: the largest ones are suspicious.
     added_points : int
-        Number of points added, corners of a frame not counted.
+        Number of points added, those of a frame not counted.
     left_out : list of (int, str)
         Segments that conflict with others and why, if they were to be left out.
     report : dict
@@ -64,7 +61,7 @@ def _usual(residuals):
     return 4 * numpy.quantile(residuals, 0.8)
 
 
-def _smooth_frame(source, target, rectangle, trusted, smooth=True):
+def _smooth_frame(source, target, rectangle, trusted, smooth):
     """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images
     under the thin-plate spline through the trusted landmarks (or the affine map that fits them best)."""
     low = numpy.minimum(rectangle[::2], source.min(axis=0))
@@ -78,7 +75,7 @@ def _smooth_frame(source, target, rectangle, trusted, smooth=True):
     a, b = (source[trusted] - middle) / size, (rim - middle) / size
 
     def columns(points):
-        squares = ((points[:, None] - a) ** 2).sum(axis=2) if smooth else numpy.zeros((len(points), 0))
+        squares = ((points[:, None] - a) ** 2).sum(axis=2)[:, : len(a) if smooth else 0]
         bending = squares * numpy.log(numpy.maximum(squares, 1e-300))
         return numpy.hstack((bending, numpy.ones((len(points), 1)), points))
 
@@ -90,34 +87,31 @@ def _smooth_frame(source, target, rectangle, trusted, smooth=True):
     return rim, columns(b) @ weights + target[trusted[0]]
 
 
-def _with_frame(source, target, options):
-    """Makes the pair with the image of the source's frame predicted, or the filter's frame if landmarks
+def _with_frame(source, target, rectangle, make):
+    """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks
     are outside of the predictions."""
     source, target = (numpy.asarray(points, float) for points in (source, target))
-    rectangle = options.pop("frame")[0]
-    first = isomorphic_triangulation(source, target, **options)
+    first = make(source, target)
     trusted = numpy.flatnonzero(first.residuals <= _usual(first.residuals))
     for smooth in (True, False):
         frames = _smooth_frame(source, target, numpy.asarray(rectangle, float), trusted, smooth)
-        outline = range(len(source), len(source) + len(frames[0]))
         points = [numpy.vstack(both) for both in zip((source, target), frames)]
         try:
-            made = isomorphic_triangulation(*points, **dict(options, outlines=[outline], domain="outline"))
+            outline = range(len(source), len(points[0]))
+            return make(*points, outlines=[outline], domain="outline")._replace(residuals=first.residuals)
         except ValueError:
             continue
-        return made._replace(residuals=first.residuals)
     return first
 
 
 def _cells(lists: Sequence[Sequence[int]], points: int, what: str) -> vtkCellArray:
     cells = vtkCellArray()
     for number, ids in enumerate(lists):
-        ids = [int(i) for i in ids]
         if any(not 0 <= i < points for i in ids):
             raise ValueError(f"{what}[{number}] names a point that does not exist")
         cells.InsertNextCell(len(ids))
         for i in ids:
-            cells.InsertCellPoint(i)
+            cells.InsertCellPoint(int(i))
     return cells
 
 
@@ -127,7 +121,7 @@ def isomorphic_triangulation(
     *,
     outlines: Sequence[Sequence[int]] = (),
     segments: Sequence[Sequence[int]] = (),
-    frame: Optional[Tuple[Sequence[float], Sequence[float]]] = None,
+    frame: Optional[Tuple[Sequence[float], Optional[Sequence[float]]]] = None,
     domain: str = "automatic",
     quality: str = "minimum_angle",
     target_minimum_angle: float = 0.0,
@@ -147,10 +141,11 @@ def isomorphic_triangulation(
     segments : sequence of sequences of int
         Polygonal lines of point ids that must become edges.
     frame : pair of (least x, largest x, least y, largest y)
-        Rectangles around source and target, for example those of images. If the target's is None, a
-        smooth map through the landmarks that are not suspicious (a thin-plate spline) takes the
-        source's, enlarged by 1 %, to the target; for points in planes and without outlines.
+        Rectangles around source and target, for example those of images. If the target's is None, the
+        source's, enlarged by 1 %, goes where a thin-plate spline through the landmarks that are not
+        suspicious takes it (points of shape (n, 2), without outlines).
     domain : {"automatic", "outline", "frame", "convex_hull"}
+        "automatic": the inside of the outlines if there are any, otherwise a frame.
     quality : {"minimum_angle", "concordance", "distortion", "non_obtuse"}
     target_minimum_angle : float
         Points are added until no angle is smaller, in degrees. 0: only necessary points are added.
@@ -165,57 +160,46 @@ def isomorphic_triangulation(
     Raises ValueError with a message that names the points if the figures have no such triangulations.
     """
     if frame is not None and frame[1] is None:
-        own = ("frame", "segments", "quality", "target_minimum_angle", "maximum_added_points",
-               "maximum_triangle_size", "leave_out_conflicting_segments")
-        given = locals()
-        return _with_frame(source, target, {name: given[name] for name in own})
+        return _with_frame(source, target, frame[0], functools.partial(
+            isomorphic_triangulation, segments=segments, quality=quality,
+            target_minimum_angle=target_minimum_angle, maximum_added_points=maximum_added_points,
+            maximum_triangle_size=maximum_triangle_size,
+            leave_out_conflicting_segments=leave_out_conflicting_segments))
+    if domain == "automatic":
+        domain = "outline" if len(outlines) else "frame"
     algorithm = vtkIsomorphicTriangulation()
-    figures = []
     dimension = 2
-    for points, what in ((source, "source"), (target, "target")):
+    for port, (points, what) in enumerate(((source, "source"), (target, "target"))):
         figure = vtkPolyData()
         # A copy, so that the points cannot change.
         vtk_points, own = _as_points(numpy.array(points), what)
         dimension = max(dimension, own)
         figure.SetPoints(vtk_points)
-        figures.append(figure)
-    count = figures[0].GetNumberOfPoints()
-    lines = _cells(segments, count, "segments")
-    polygons = _cells(outlines, count, "outlines")
-    for figure in figures:
-        figure.SetLines(lines)
-        figure.SetPolys(polygons)
-    algorithm.SetSourceData(figures[0])
-    algorithm.SetTargetData(figures[1])
+        figure.SetLines(_cells(segments, len(points), "segments"))
+        figure.SetPolys(_cells(outlines, len(points), "outlines"))
+        algorithm.SetInputData(port, figure)
     if frame is not None:
         algorithm.SetSourceFrame(*frame[0])
         algorithm.SetTargetFrame(*frame[1])
     algorithm.SetDomain(_choose(DOMAINS, domain, "domain"))
     algorithm.SetQuality(_choose(QUALITIES, quality, "quality"))
     algorithm.SetTargetMinimumAngle(target_minimum_angle)
-    if maximum_added_points is not None:
-        algorithm.SetMaximumNumberOfAddedPoints(maximum_added_points)
+    algorithm.SetMaximumNumberOfAddedPoints(-1 if maximum_added_points is None else maximum_added_points)
     algorithm.SetMaximumTriangleSize(maximum_triangle_size)
     algorithm.SetLeaveOutConflictingSegments(leave_out_conflicting_segments)
     messages = _Messages(algorithm)
     algorithm.Update()
     messages.raise_if_any()
     outputs = [algorithm.GetOutput(0), algorithm.GetOutput(1)]
-    arrays = [
-        numpy.array(vtk_to_numpy(mesh.GetPoints().GetData())[:, :dimension]) for mesh in outputs
-    ]
     triangles = vtk_to_numpy(outputs[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
     residuals = vtk_to_numpy(outputs[0].GetPointData().GetArray("LandmarkResidual"))
-    left_out = [
-        (algorithm.GetLeftOutCell(i), algorithm.GetLeftOutMessage(i))
-        for i in range(algorithm.GetNumberOfLeftOutSegments())
-    ]
     return IsomorphicTriangulation(
-        *arrays,
+        *(numpy.array(vtk_to_numpy(mesh.GetPoints().GetData())[:, :dimension]) for mesh in outputs),
         numpy.array(triangles, numpy.int64),
-        numpy.array(residuals[:count]),
+        numpy.array(residuals[: len(source)]),
         algorithm.GetNumberOfAddedPoints(),
-        left_out,
+        [(algorithm.GetLeftOutCell(i), algorithm.GetLeftOutMessage(i))
+         for i in range(algorithm.GetNumberOfLeftOutSegments())],
         {
             "smallest_angles": algorithm.GetSmallestAngles(),
             "shares_of_angles_below_10_15_20": algorithm.GetSharesOfSmallAngles(),

@@ -4,22 +4,19 @@
 
 Formats, recognized by their content:
 
-- CSV with the columns source_x, source_y, target_x, target_y and optionally id, or with four
-  unnamed columns of numbers in this order (five: an id first);
-- control points of QGIS's Georeferencer (``.points``). Its source coordinates have a y axis that
-  points up, with 0 at the upper edge of an image; they are returned with y down, in pixels from the
-  image's upper left corner. Disabled points are left out;
+- CSV with the columns source_x, source_y, target_x, target_y and optionally id, or with four unnamed columns of numbers
+  in this order (five: an id first);
+- control points of QGIS's Georeferencer (``.points``), whose y axis points up from 0 at the upper edge of an image;
+  returned with y down, in pixels from the image's upper left corner. Disabled points are left out;
 - IIIF Georeference Annotations (JSON): pixels from the upper left corner, longitude and latitude;
-- 2-D landmarks of BigWarp (CSV without a header): moving points are the source. Inactive points and
-  points that are set on one side only are left out.
+- 2-D landmarks of BigWarp (CSV without a header): moving points are the source. Inactive points and points that are
+  set on one side only are left out.
 """
 
 from __future__ import annotations
 
 import csv
-import io
 import json
-import math
 import os
 from dataclasses import dataclass, field, replace
 from typing import List, Optional, Sequence, Tuple
@@ -64,185 +61,137 @@ class Landmarks:
         return replace(self, source=self.source[kept], target=self.target[kept], names=chosen, left_out=left_out)
 
 
-def _number(text: str, path: str, line: int, column: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise LandmarkFileError(
-            f"{path}, line {line}: {column} is {text.strip()[:40]!r}, not a number"
-        ) from None
-
-
 def _collect(rows, path: str, **facts) -> Landmarks:
     """rows: (name, four numbers, reason to leave the landmark out or None)."""
-    used = [(name, values) for name, values, reason in rows if reason is None]
-    values = numpy.array([values for _, values in used], float).reshape(-1, 4)
+    used, values, left_out = [], [], []
+    for name, row, reason in rows:
+        missing = [side for side, k in (("source", 0), ("target", 2)) if not numpy.isfinite(row[k : k + 2]).all()]
+        if missing and reason != "disabled":
+            reason = f"no position in the {' and the '.join(missing)}"
+        if reason:
+            left_out.append((name, reason))
+        else:
+            used.append(name)
+            values.append(row)
     if len(values) < 3:
         raise LandmarkFileError(f"{path}: {len(values)} usable landmarks; at least 3 are needed")
-    return Landmarks(
-        values[:, :2].copy(),
-        values[:, 2:].copy(),
-        [name for name, _ in used],
-        [(name, reason) for name, _, reason in rows if reason is not None],
-        **facts,
-    )
+    values = numpy.array(values, float)
+    return Landmarks(values[:, :2].copy(), values[:, 2:].copy(), used, left_out, **facts)
 
 
-def _finite_or_reason(values: Sequence[float]) -> Optional[str]:
-    sides = [all(math.isfinite(v) for v in values[i : i + 2]) for i in (0, 2)]
-    if all(sides):
-        return None
-    return "no position on either side" if not any(sides) else (
-        "no position in the source" if not sides[0] else "no position in the target"
-    )
+def _read_table(lines: List[str], path: str, header: Optional[List[str]], columns: Sequence[str], first: int = 1):
+    """Yields the columns' numbers and a dict of all fields for each row of a table."""
+    reader = csv.reader(lines)
+    for record in reader:
+        line = first + reader.line_num - 1
+        if not any(f.strip() for f in record):
+            continue
+        if header is None:
+            header = [name.strip() for name in record]
+            missing = [name for name in columns if name not in header]
+            if missing:
+                raise LandmarkFileError(f"{path}, line {line}: the column {missing[0]} is missing")
+            continue
+        if len(record) != len(header):
+            raise LandmarkFileError(f"{path}, line {line}: {len(record)} fields, where {len(header)} are expected")
+        fields = dict(zip(header, record))
+        values = []
+        for name in columns:
+            try:
+                values.append(float(fields[name]))
+            except ValueError:
+                found = fields[name].strip()[:40]
+                raise LandmarkFileError(f"{path}, line {line}: {name} is {found!r}, not a number") from None
+        yield values, fields
 
 
 def _read_qgis(lines: List[str], path: str) -> Landmarks:
-    crs = None
-    first = 0
-    while first < len(lines) and lines[first].startswith("#"):
-        if lines[first].upper().startswith("#CRS:"):
-            crs = lines[first][5:].strip() or None
-        first += 1
-    reader = csv.DictReader(lines[first:])
-    names = [name.strip() for name in reader.fieldnames or []]
-    reader.fieldnames = names
+    comments = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+    crs = [line[5:].strip() for line in lines[:comments] if line.upper().startswith("#CRS:")]
     # QGIS 2 writes pixelX and pixelY.
-    x, y = ("sourceX", "sourceY") if "sourceX" in names else ("pixelX", "pixelY")
-    for column in ("mapX", "mapY", x, y):
-        if column not in names:
-            raise LandmarkFileError(f"{path}, line {first + 1}: the column {column} is missing")
+    x, y = ("sourceX", "sourceY") if "sourceX" in lines[comments] else ("pixelX", "pixelY")
     rows = []
-    for record in reader:
-        line = first + reader.line_num
-        if None in record.values():
-            raise LandmarkFileError(f"{path}, line {line}: fewer fields than the header names")
-        values = [_number(record[c], path, line, c) for c in (x, y, "mapX", "mapY")]
-        values[1] = -values[1]
-        disabled = record.get("enable", "1").strip() in ("0", "false")
-        reason = "disabled" if disabled else _finite_or_reason(values)
-        rows.append((str(len(rows)), values, reason))
-    return _collect(rows, path, image_coordinates=True, crs=crs)
+    for (u, v, *target), fields in _read_table(lines[comments:], path, None, (x, y, "mapX", "mapY"), comments + 1):
+        disabled = fields.get("enable", "1").strip() in ("0", "false")
+        rows.append((str(len(rows)), [u, -v, *target], "disabled" if disabled else None))
+    return _collect(rows, path, image_coordinates=True, crs=crs[0] if crs and crs[0] else None)
 
 
 def _annotations(document) -> list:
-    if isinstance(document, dict):
-        if document.get("type") == "AnnotationPage":
-            return [a for item in document.get("items", []) for a in _annotations(item)]
-        body = document.get("body")
-        if isinstance(body, dict) and body.get("type") == "FeatureCollection":
-            return [body]
-    return []
+    if not isinstance(document, dict):
+        return []
+    if document.get("type") == "AnnotationPage":
+        return [a for item in document.get("items", []) for a in _annotations(item)]
+    body = document.get("body")
+    return [body] if isinstance(body, dict) and body.get("type") == "FeatureCollection" else []
 
 
 def _read_iiif(text: str, path: str) -> Landmarks:
     try:
-        document = json.loads(text)
+        maps = _annotations(json.loads(text))
     except (ValueError, RecursionError) as error:
         raise LandmarkFileError(f"{path}: not valid JSON ({str(error)[:80]})") from None
-    maps = _annotations(document)
     if len(maps) != 1:
-        raise LandmarkFileError(
-            f"{path}: {len(maps)} georeference annotations; a file with exactly one is needed"
-        )
+        raise LandmarkFileError(f"{path}: {len(maps)} georeference annotations; a file with exactly one is needed")
     rows = []
     for number, feature in enumerate(maps[0].get("features", [])):
         try:
-            properties = feature["properties"]
-            pixel = properties.get("resourceCoords", properties.get("pixelCoords"))
-            values = [float(v) for v in (*pixel[:2], *feature["geometry"]["coordinates"][:2])]
-            if len(values) != 4:
-                raise ValueError
+            pixel = feature["properties"].get("resourceCoords") or feature["properties"]["pixelCoords"]
+            u, v, x, y = (float(c) for c in (*pixel[:2], *feature["geometry"]["coordinates"][:2]))
         except (KeyError, TypeError, ValueError, AttributeError):
-            raise LandmarkFileError(
-                f"{path}, feature {number}: resourceCoords and a Point of two coordinates are needed"
-            ) from None
-        rows.append((str(feature.get("id", number)), values, _finite_or_reason(values)))
+            needed = "resourceCoords and a Point of two coordinates are needed"
+            raise LandmarkFileError(f"{path}, feature {number}: {needed}") from None
+        rows.append((str(feature.get("id", number)), [u, v, x, y], None))
     return _collect(rows, path, image_coordinates=True, crs="EPSG:4326")
 
 
 def _read_bigwarp(lines: List[str], path: str) -> Landmarks:
-    rows = []
-    reader = csv.reader(lines)
-    for record in reader:
-        if not record:
-            continue
-        if len(record) != 6:
-            raise LandmarkFileError(
-                f"{path}, line {reader.line_num}: {len(record)} fields; 2-D landmarks of BigWarp have 6"
-            )
-        values = [_number(f, path, reader.line_num, "a coordinate") for f in record[2:]]
-        inactive = record[1].strip().lower() != "true"
-        # A side that is not set decides first: an inactive point is usually a deliberate choice.
-        rows.append((record[0], values, _finite_or_reason(values) or ("inactive" if inactive else None)))
+    table = _read_table(lines, path, ["name", "active", *_COLUMNS], _COLUMNS)
+    rows = [(f["name"], v, None if f["active"].strip().lower() == "true" else "inactive") for v, f in table]
     # Its pixels have their centers at whole numbers.
     return _collect(rows, path, origin=0.5)
 
 
 def _read_csv(lines: List[str], path: str) -> Landmarks:
-    reader = csv.reader(lines)
-    records = [(reader.line_num, record) for record in reader if any(f.strip() for f in record)]
-    if not records:
-        raise LandmarkFileError(f"{path}: no landmarks")
-    header = [f.strip().lower() for f in records[0][1]]
-    if all(column in header for column in _COLUMNS):
-        order = [header.index(column) for column in _COLUMNS]
-        name = header.index("id") if "id" in header else None
-        records = records[1:]
-    elif len(header) in (4, 5):
-        order = list(range(len(header) - 4, len(header)))
-        name = 0 if len(header) == 5 else None
-        try:
-            [float(header[i]) for i in order]
-        except ValueError:
-            raise LandmarkFileError(
-                f"{path}, line {records[0][0]}: the columns are {', '.join(header)[:80]}; name them "
-                f"{', '.join(_COLUMNS)}"
-            ) from None
+    first = [f.strip().lower() for f in next(csv.reader(lines))]
+    header = first
+    if all(column in first for column in _COLUMNS):
+        # As the first line, in small letters.
+        lines = [""] + lines[1:]
+    elif len(first) not in (4, 5) or any(f and f[0].isalpha() for f in first[-4:]):
+        found = f"{len(first)} columns ({', '.join(first)[:80]})"
+        raise LandmarkFileError(f"{path}, line 1: {found}; landmarks need the columns {', '.join(_COLUMNS)}")
     else:
-        raise LandmarkFileError(
-            f"{path}: {len(header)} columns; landmarks need the columns {', '.join(_COLUMNS)}"
-        )
-    rows = []
-    for line, record in records:
-        if len(record) != len(header):
-            raise LandmarkFileError(
-                f"{path}, line {line}: {len(record)} fields where the first line has {len(header)}"
-            )
-        values = [_number(record[i], path, line, c) for i, c in zip(order, _COLUMNS)]
-        label = record[name].strip() if name is not None else str(len(rows))
-        rows.append((label, values, _finite_or_reason(values)))
-    return _collect(rows, path)
+        header = ["id", *_COLUMNS][-len(first) :]
+    table = enumerate(_read_table(lines, path, header, _COLUMNS))
+    return _collect([(fields.get("id", str(row)).strip(), values, None) for row, (values, fields) in table], path)
 
 
 def read_landmarks(path) -> Landmarks:
-    """Reads a file of landmark pairs.
-
-    Raises LandmarkFileError where the file is not one of the formats above or has fewer than three
-    usable landmarks, and OSError where it cannot be read.
-    """
+    """Reads a file of landmark pairs. Raises LandmarkFileError where the file is not one of the formats above or has fewer
+    than three usable landmarks, and OSError where it cannot be read."""
     path = os.fspath(path)
-    with open(path, "rb") as file:
-        data = file.read()
     try:
-        text = data.decode("utf-8-sig")
+        with open(path, encoding="utf-8-sig") as file:
+            text = file.read()
     except UnicodeDecodeError as error:
         raise LandmarkFileError(f"{path}: not a text file (byte {error.start})") from None
     lines = text.splitlines()
     content = next((line for line in lines if line.strip() and not line.startswith("#")), "")
+    if not content:
+        raise LandmarkFileError(f"{path}: no landmarks")
     if content.lstrip().startswith(("{", "[")):
         return _read_iiif(text, path)
     if "mapX" in content and "mapY" in content:
         return _read_qgis(lines, path)
-    first = next(csv.reader(io.StringIO(content)), [])
-    if len(first) == 6 and first[1].strip().lower() in ("true", "false"):
-        return _read_bigwarp(lines, path)
-    return _read_csv(lines, path)
+    first = next(csv.reader([content]))
+    bigwarp = len(first) == 6 and first[1].strip().lower() in ("true", "false")
+    return (_read_bigwarp if bigwarp else _read_csv)(lines, path)
 
 
 def read_lines(path, names: Sequence[str]) -> List[List[int]]:
-    """Reads constraint lines: one polyline a line, as identifiers of landmarks separated by blanks or
-    commas. Returns indices into names."""
+    """Reads constraint lines: one polyline a line, as identifiers of landmarks separated by blanks or commas. Returns
+    indices into names."""
     path = os.fspath(path)
     index = {name: i for i, name in enumerate(names)}
     lines = []
@@ -252,12 +201,9 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
             if not ids or ids[0].startswith("#"):
                 continue
             unknown = [i for i in ids if i not in index]
-            if unknown:
-                raise LandmarkFileError(
-                    f"{path}, line {number}: there is no landmark {', '.join(unknown[:5])}"
-                )
-            if len(ids) < 2:
-                raise LandmarkFileError(f"{path}, line {number}: a line needs at least two landmarks")
+            if unknown or len(ids) < 2:
+                what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs at least two landmarks"
+                raise LandmarkFileError(f"{path}, line {number}: {what}")
             lines.append([index[i] for i in ids])
     return lines
 
@@ -273,6 +219,5 @@ def is_landmark_file(path) -> bool:
         start = file.read(1 << 20)
     if suffix == ".csv":
         return start.split(b"\n", 1)[0].count(b",") >= 3
-    return b"FeatureCollection" in start and any(
-        word in start for word in (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
-    )
+    words = (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
+    return b"FeatureCollection" in start and any(word in start for word in words)

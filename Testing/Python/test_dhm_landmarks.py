@@ -128,6 +128,14 @@ def test_outlines_lines_and_figures(dhm):
         )
     dhm("triangulate", "s.vtk", "t.vtk", "-o", "figures.json")
     assert dhm.path("figures.json").read_text() == dhm.path("pair.json").read_text()
+    # The loop as lines.
+    for name in ("s.vtk", "t.vtk"):
+        text = dhm.path(name).read_text()
+        lines = text.replace("LINES 2 6\n2 4 5\n2 5 6\nPOLYGONS 1 5\n4 0 1 2 3", "LINES 2 8\n3 0 1 2\n3 2 3 0")
+        dhm.path("lines-" + name).write_text(lines)
+    dhm("triangulate", "lines-s.vtk", "lines-t.vtk", "-o", "lines.json")
+    lines, _ = read_json(dhm.path("lines.json"))
+    assert len(lines.source) == 7 and doubled_areas(lines.target, lines.triangles).sum() == 64
     dhm.path("t.vtk").write_text(dhm.path("t.vtk").read_text().replace("2 5 6", "2 4 6"))
     dhm.refuse(REFUSED, "triangulate", "s.vtk", "t.vtk", "-o", "other.json", says="different cells")
 

@@ -108,7 +108,7 @@ def test_bigwarp_leaves_out_and_names_points_set_on_one_side(tmp_path):
     [
         ("a.csv", "source_x,source_y,target_x,target_y\n1,2,3,4\n1,2,x,4\n", "line 3: target_x"),
         ("b.csv", "1,2,3,4\n5,6,7,8\n", "2 usable"),
-        ("c.csv", "a,b,c,d\n1,2,3,4\n", "name them"),
+        ("c.csv", "a,b,c,d\n1,2,3,4\n", "need the columns"),
         ("d.csv", "1,2,3\n", "3 columns"),
         ("e.csv", "1,2,3,4\n1,2,3\n", "line 2"),
         ("f.points", "mapX,mapY,enable\n1,2,1\n", "pixelX is missing"),

@@ -14,7 +14,7 @@ from ..meshes import points_of
 
 
 def read_figures(names):
-    """Landmarks, loops and lines of two VTK files with the same cells."""
+    """Landmarks, polygons and lines of two VTK files with the same cells."""
     figures = []
     for name in names:
         with Input(name) as file:
@@ -24,16 +24,10 @@ def read_figures(names):
             if data.GetClassName() != "vtkPolyData":
                 file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
             figures.append(data)
-    cells = []
-    for get in ("GetPolys", "GetLines"):
-        both = [getattr(figure, get)() for figure in figures]
-        lists = [_lists(c) for c in both]
-        if lists[0] != lists[1]:
-            raise Failure(f"{names[0]} and {names[1]} have different cells: a figure is drawn twice.")
-        cells.append(lists[0])
+    cells, others = ([_lists(figure.GetPolys()), _lists(figure.GetLines())] for figure in figures)
     points = [points_of(figure) for figure in figures]
-    if len(points[0]) != len(points[1]):
-        raise Failure(f"{names[0]} has {len(points[0])} points and {names[1]} {len(points[1])}: they must correspond.")
+    if cells != others or len(points[0]) != len(points[1]):
+        raise Failure(f"{names[0]} and {names[1]} have different cells or numbers of points: a figure is drawn twice.")
     flat = [p[:, :2] if numpy.ptp(p[:, 2]) == 0 else p for p in points]
     return Landmarks(*flat, [str(i) for i in range(len(points[0]))]), *cells
 
@@ -43,17 +37,23 @@ def _lists(cells):
     return [part.tolist() for part in numpy.split(ids, offsets[1:-1])] if len(ids) else []
 
 
+def are_loops(lines):
+    """Whether each point of the lines has two segments."""
+    ends = [i for line in lines for pair in zip(line, line[1:]) for i in pair]
+    return bool(ends) and set(numpy.unique(ends, return_counts=True)[1]) == {2}
+
+
 def print_report(made, marks):
     found = made.report
     below = found["shares_of_angles_below_10_15_20"]
-    rows = [("landmarks", len(marks.names)), ("added points", made.added_points), ("triangles", len(made.triangles)),
+    for name, value in (
+            ("landmarks", len(marks.names)), ("added points", made.added_points), ("triangles", len(made.triangles)),
             ("smallest angles, degrees", "{:.4g} (source), {:.4g} (target)".format(*found["smallest_angles"])),
             ("angles below 10, 15, 20 degrees", ", ".join(f"{100 * share:.1f} %" for share in below)),
             ("obtuse triangles", f"{100 * found['obtuse_share']:.1f} %"),
             ("discordant triangles", f"{100 * found['discordant_share']:.1f} %"),
             ("largest distortion", f"{found['largest_distortion']:.4g} (cell {found['largest_distortion_triangle']})"),
-            ("median residual", f"{numpy.median(made.residuals):.4g}")]
-    for name, value in rows:
+            ("median residual", f"{numpy.median(made.residuals):.4g}")):
         click.echo(f"{name:33}{value}")
     suspicious = set(made.suspicious().tolist())
     click.echo("largest residuals, target's units")
@@ -90,6 +90,7 @@ def command(inputs, output, force, output_format, lines, outlines, domain, quali
     segments, loops = [], []
     if len(inputs.pair) == 2:
         marks, loops, segments = read_figures(inputs.pair)
+        domain = "outline" if domain == "automatic" and are_loops(segments) else domain
     else:
         name = inputs.pair[0]
         with Input(name, inputs.input_format or "csv", "--input-format") as file:
