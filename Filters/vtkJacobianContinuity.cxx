@@ -40,7 +40,7 @@ class vtkJacobianContinuity::Internals
 public:
   /// Of a transform, which has options of its own.
   HomeomorphismCache Cache;
-  /// Edges on the boundary, then places by type and verdict; the largest jump.
+  /// Edges on the boundary, then features by type and verdict; the largest jump.
   ProcessStatistics Own{ std::vector<double>(1 + (VERTEX + 1) * (UNDECIDED + 1)), { 0.0 } };
 };
 
@@ -49,14 +49,14 @@ namespace
 
 using Sample = MeasuredFeatures::Sample;
 
-static_assert(int(FeatureKind::Vertex) == vtkJacobianContinuity::VERTEX, "kinds of places");
+static_assert(int(FeatureKind::Vertex) == vtkJacobianContinuity::VERTEX, "kinds of features");
 
-/// Cell arrays, one value a place.
-class PlaceArrays
+/// Cell arrays, one value per feature.
+class FeatureArrays
 {
 public:
-  PlaceArrays(const MeasuredFeatures& places, bool secondDerivatives)
-    : Places(places)
+  FeatureArrays(const MeasuredFeatures& features, bool secondDerivatives)
+    : Features(features)
   {
     for (const char* name : { "JacobianJump", "JacobianJumpError", "JacobianJumpExact",
            "NormalJump", "TangentialJump", "AngleJump", "StretchJump", "ConvergenceOrder" })
@@ -64,7 +64,7 @@ public:
       this->AddDoubles(name);
     }
     this->Verdict = this->NewIntegers("Verdict");
-    this->Type = this->NewIntegers("PlaceType");
+    this->Type = this->NewIntegers("FeatureType");
     if (secondDerivatives)
     {
       this->AddDoubles("SecondDerivativeJump");
@@ -73,15 +73,15 @@ public:
     }
     this->Triangles->SetName("EdgeTriangles");
     this->Triangles->SetNumberOfComponents(2);
-    this->Triangles->SetNumberOfTuples(places.GetNumberOfFeatures());
+    this->Triangles->SetNumberOfTuples(features.GetNumberOfFeatures());
   }
 
-  /// @a samples are what was measured at the place: none if there is nothing to compare.
+  /// @a samples are what was measured at the feature: none if there is nothing to compare.
   void Set(vtkIdType index, const std::vector<Sample>& samples)
   {
-    const MeasuredFeature& surfacePoint = this->Places.GetSurfacePoint(index);
-    this->Type->SetValue(index, static_cast<int>(surfacePoint.Kind));
-    const std::array<vtkIdType, 2> cells = this->Places.GetCells(surfacePoint);
+    const MeasuredFeature& feature = this->Features.GetFeature(index);
+    this->Type->SetValue(index, static_cast<int>(feature.Kind));
+    const std::array<vtkIdType, 2> cells = this->Features.GetCells(feature);
     this->Triangles->SetTypedTuple(index, cells.data());
     this->Verdict->SetValue(index, vtkJacobianContinuity::NOTHING_TO_COMPARE);
     if (this->SecondVerdict)
@@ -98,8 +98,8 @@ public:
     }
   }
 
-  double GetJump(vtkIdType surfacePoint) const { return this->Doubles[0]->GetValue(surfacePoint); }
-  int GetVerdict(vtkIdType surfacePoint) const { return this->Verdict->GetValue(surfacePoint); }
+  double GetJump(vtkIdType feature) const { return this->Doubles[0]->GetValue(feature); }
+  int GetVerdict(vtkIdType feature) const { return this->Verdict->GetValue(feature); }
 
   void AddTo(vtkCellData* cellData) const
   {
@@ -145,7 +145,7 @@ private:
       this->Doubles[i]->SetValue(index, values[i]);
     }
     this->Verdict->SetValue(index, Conclude(samples, &Sample::First));
-    if (this->SecondVerdict && !MeasuredFeatures::IsPoint(this->Places.GetSurfacePoint(index).Kind))
+    if (this->SecondVerdict && !MeasuredFeatures::IsPoint(this->Features.GetFeature(index).Kind))
     {
       const Sample worstSecond = largest(&Sample::Second);
       this->Doubles[8]->SetValue(index, worstSecond.Second.Jump);
@@ -154,7 +154,7 @@ private:
     }
   }
 
-  /// One crease makes the place a crease; it is differentiable only if it is at all samples.
+  /// One crease makes the feature a crease; it is differentiable only if it is at all samples.
   static int Conclude(const std::vector<Sample>& samples, JacobianJump Sample::*which)
   {
     const auto count = [&samples, which](JumpVerdict verdict) {
@@ -173,18 +173,18 @@ private:
   {
     this->Doubles.push_back(vtkSmartPointer<vtkDoubleArray>::New());
     this->Doubles.back()->SetName(name);
-    this->Doubles.back()->SetNumberOfTuples(this->Places.GetNumberOfFeatures());
+    this->Doubles.back()->SetNumberOfTuples(this->Features.GetNumberOfFeatures());
   }
 
   vtkSmartPointer<vtkIntArray> NewIntegers(const char* name) const
   {
     auto array = vtkSmartPointer<vtkIntArray>::New();
     array->SetName(name);
-    array->SetNumberOfTuples(this->Places.GetNumberOfFeatures());
+    array->SetNumberOfTuples(this->Features.GetNumberOfFeatures());
     return array;
   }
 
-  const MeasuredFeatures& Places;
+  const MeasuredFeatures& Features;
   std::vector<vtkSmartPointer<vtkDoubleArray>> Doubles;
   vtkSmartPointer<vtkIntArray> Verdict;
   vtkSmartPointer<vtkIntArray> Type;
@@ -317,7 +317,7 @@ void vtkJacobianContinuity::ResetStatistics()
   this->KeepStatistics();
 }
 
-/// Keeps the statistics of this process, which ReduceStatistics replaces by totals.
+/// Keeps the statistics of this process; ReduceStatistics replaces them by totals.
 void vtkJacobianContinuity::KeepStatistics()
 {
   ProcessStatistics& own = this->Internal->Own;
@@ -338,18 +338,18 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
     ? map->GetPair().GetGeometry(Domain::Source).IsColumnar()
     : map->GetPair().GetGeometry(Domain::Source).IsPlanar();
   const homeomorphism::CenterPoint center = map->GetCharts(Domain::Source).GetCenter();
-  const MeasuredFeatures places(*map, center,
+  const MeasuredFeatures features(*map, center,
     { true, this->BoundaryEdges, this->Spokes, this->WingSegments, this->CenterSegments,
       this->StripBorders, this->Centroids, this->Vertices },
     planar, this->SamplesPerEdge);
-  this->NumberOfBoundaryEdges = static_cast<vtkIdType>(places.GetEdges().GetBoundaryEdges().size());
+  this->NumberOfBoundaryEdges = static_cast<vtkIdType>(features.GetEdges().GetBoundaryEdges().size());
 
-  // Each place's points follow those of the place before it.
-  const vtkIdType count = places.GetNumberOfFeatures();
+  // The points of each feature follow those of the feature before it.
+  const vtkIdType count = features.GetNumberOfFeatures();
   std::vector<vtkIdType> firstPoint(count + 1, 0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    firstPoint[i + 1] = firstPoint[i] + places.GetNumberOfPoints(places.GetSurfacePoint(i).Kind);
+    firstPoint[i + 1] = firstPoint[i] + features.GetNumberOfPoints(features.GetFeature(i).Kind);
   }
   const vtkIdType numberOfPoints = firstPoint[count];
   vtkNew<vtkPoints> points;
@@ -358,7 +358,7 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
   const auto pointJump = NewJumpArray("JacobianJump", numberOfPoints);
   const auto pointError = NewJumpArray("JacobianJumpError", numberOfPoints);
   const auto pointExact = NewJumpArray("JacobianJumpExact", numberOfPoints);
-  PlaceArrays placeArrays(places, this->SecondDerivatives);
+  FeatureArrays featureArrays(features, this->SecondDerivatives);
 
   const vtkIdType done = RunInBlocks(
     algorithm, count, 0.05, 0.95,
@@ -368,25 +368,25 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
       {
         const MapUnderTest evaluate =
           unknown ? MakeMapUnderTest(transform, *map) : MakeMapUnderTest(*map);
-        const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
-        const int samples = places.GetNumberOfSamples(surfacePoint.Kind);
+        const MeasuredFeature& feature = features.GetFeature(index);
+        const int samples = features.GetNumberOfSamples(feature.Kind);
         // A line's first point is its end, not a sample.
         const vtkIdType firstSample =
-          firstPoint[index] + (MeasuredFeatures::IsPoint(surfacePoint.Kind) ? 0 : 1);
+          firstPoint[index] + (MeasuredFeatures::IsPoint(feature.Kind) ? 0 : 1);
         values.clear();
         for (int i = 0; i < samples; ++i)
         {
           values.push_back(
-            places.Measure(surfacePoint, i, evaluate, this->Resolution, this->SecondDerivatives));
+            features.Measure(feature, i, evaluate, this->Resolution, this->SecondDerivatives));
           pointJump->SetValue(firstSample + i, values[i].First.Jump);
           pointError->SetValue(firstSample + i, values[i].First.Error);
           pointExact->SetValue(firstSample + i, values[i].Exact);
         }
-        placeArrays.Set(index, values);
+        featureArrays.Set(index, values);
         for (vtkIdType i = firstPoint[index]; i < firstPoint[index + 1]; ++i)
         {
           points->SetPoint(
-            i, places.GetPosition(surfacePoint, static_cast<int>(i - firstPoint[index])).data());
+            i, features.GetPosition(feature, static_cast<int>(i - firstPoint[index])).data());
         }
       }
     },
@@ -403,32 +403,32 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
   const auto vertexJump = NewJumpArray("JacobianJump", mesh->GetNumberOfPoints());
   for (vtkIdType index = 0; index < count; ++index)
   {
-    const MeasuredFeature& surfacePoint = places.GetSurfacePoint(index);
-    vtkCellArray* cells = MeasuredFeatures::IsPoint(surfacePoint.Kind) ? vertexCells : lineCells;
-    cells->InsertNextCell(places.GetNumberOfPoints(surfacePoint.Kind));
+    const MeasuredFeature& feature = features.GetFeature(index);
+    vtkCellArray* cells = MeasuredFeatures::IsPoint(feature.Kind) ? vertexCells : lineCells;
+    cells->InsertNextCell(features.GetNumberOfPoints(feature.Kind));
     for (vtkIdType i = firstPoint[index]; i < firstPoint[index + 1]; ++i)
     {
       cells->InsertCellPoint(i);
     }
-    const int verdict = placeArrays.GetVerdict(index);
+    const int verdict = featureArrays.GetVerdict(index);
     if (verdict >= 0)
     {
-      ++this->Counts[int(surfacePoint.Kind)][verdict];
+      ++this->Counts[int(feature.Kind)][verdict];
     }
-    if (surfacePoint.Kind != FeatureKind::Edge)
+    if (feature.Kind != FeatureKind::Edge)
     {
       continue;
     }
-    const double jump = placeArrays.GetJump(index);
+    const double jump = featureArrays.GetJump(index);
     // What is not a number counts for nothing, as where a mesh's array starts from.
     const auto raise = [jump](vtkDoubleArray* array, vtkIdType id) {
       array->SetValue(id, std::fmax(array->GetValue(id), jump));
     };
-    for (const vtkIdType cell : places.GetCells(surfacePoint))
+    for (const vtkIdType cell : features.GetCells(feature))
     {
       raise(triangleJump, cell);
     }
-    for (const std::int32_t point : places.GetEdges().GetInteriorEdges()[surfacePoint.Item].Points)
+    for (const std::int32_t point : features.GetEdges().GetInteriorEdges()[feature.Item].Points)
     {
       raise(vertexJump, point);
     }
@@ -437,7 +437,7 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
   lines->SetPoints(points);
   lines->SetVerts(vertexCells);
   lines->SetLines(lineCells);
-  placeArrays.AddTo(lines->GetCellData());
+  featureArrays.AddTo(lines->GetCellData());
   lines->GetPointData()->AddArray(pointJump);
   lines->GetPointData()->AddArray(pointError);
   lines->GetPointData()->AddArray(pointExact);

@@ -30,7 +30,7 @@
  * - `Verdict` (int): see Verdicts;
  * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles; the same id twice
  *   within a triangle; the second is -1 at boundary edges and vertices;
- * - `PlaceType` (int): see FeatureTypes;
+ * - `FeatureType` (int): see FeatureTypes;
  * - `SecondDerivativeJump`, `SecondDerivativeJumpError` (times the steps' length over the norm of
  *   the Jacobian), `SecondDerivativeVerdict` (int): the same for the second derivative across the
  *   line; with SecondDerivatives.

@@ -44,7 +44,7 @@ public:
     bool planar, int samples);
 
   vtkIdType GetNumberOfFeatures() const { return static_cast<vtkIdType>(this->Features.size()); }
-  const MeasuredFeature& GetSurfacePoint(vtkIdType feature) const
+  const MeasuredFeature& GetFeature(vtkIdType feature) const
   {
     return this->Features[feature];
   }

@@ -111,7 +111,7 @@ struct SmoothCoordinates
 
 /// From barycentric coordinates of a run to the plane of a triangle's frame.
 template <typename Coordinates>
-HOMEOMORPHISM_FOR_WIDE_VECTORS void LeaveFrame(const PlaneFrame& frame, int begin, int end,
+HOMEOMORPHISM_FOR_WIDE_VECTORS void BarycentricToPlane(const PlaneFrame& frame, int begin, int end,
   const Coordinates& coordinates, double plane[3][PointBlock::Size])
 {
   const PlaneFrame f = frame;
@@ -558,7 +558,7 @@ void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin
   const PlaneFrame& frame = target.GetPlaneFrame(triangle);
   const double orientation = target.IsColumnar() ? 1.0 : frame.Orientation;
   double mapped[3][PointBlock::Size];
-  LeaveFrame(frame, begin, end, coordinates, mapped);
+  BarycentricToPlane(frame, begin, end, coordinates, mapped);
   for (int i = begin; i < end; ++i)
   {
     mapped[2][i] = orientation * this->OffsetOfImage(from, block.Offsets[i]);

@@ -13,6 +13,7 @@
 #include "TriangulationPair.h"
 
 #include <memory>
+#include <tuple>
 
 class vtkPolyData;
 
@@ -30,6 +31,14 @@ struct HomeomorphismOptions
   bool DiscordantByLinear = false;
   /// Of the Cubic system. The deviation is in the target's units.
   CubicMapOptions Cubic;
+
+  bool operator==(const HomeomorphismOptions& other) const
+  {
+    const auto all = [](const HomeomorphismOptions& o) {
+      return std::tie(o.System, o.Center, o.MaskInvalidTriangles, o.DiscordantByLinear, o.Cubic);
+    };
+    return all(*this) == all(other);
+  }
 };
 
 /// The map's derivative, in the coordinates of the input.

@@ -147,12 +147,7 @@ bool HomeomorphismCache::HasChanged(vtkPolyData* source, vtkPolyData* target)
 std::shared_ptr<const Homeomorphism> HomeomorphismCache::Get(
   vtkPolyData* source, vtkPolyData* target, const HomeomorphismOptions& options)
 {
-  const bool sameOptions = options.System == this->Options.System &&
-    options.Center == this->Options.Center &&
-    options.MaskInvalidTriangles == this->Options.MaskInvalidTriangles &&
-    options.DiscordantByLinear == this->Options.DiscordantByLinear &&
-    options.Cubic == this->Options.Cubic;
-  if (this->HasChanged(source, target) || !sameOptions)
+  if (this->HasChanged(source, target) || !(options == this->Options))
   {
     this->Problems.clear();
     this->Current = Homeomorphism::Make(source, target, options, this->Problems);

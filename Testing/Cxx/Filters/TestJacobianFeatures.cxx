@@ -72,7 +72,7 @@ std::vector<vtkIdType> CellsOf(Continuity* filter, int featureType)
   std::vector<vtkIdType> cells;
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
   {
-    if (CellValue(filter, "PlaceType", i) == featureType)
+    if (CellValue(filter, "FeatureType", i) == featureType)
     {
       cells.push_back(i);
     }
@@ -116,7 +116,7 @@ TEST(JacobianFeatures, AllFeaturesAreListed)
   vtkPolyData* output = filter->GetOutput();
   for (vtkIdType i = 0; i < output->GetNumberOfCells(); ++i)
   {
-    const auto type = static_cast<int>(CellValue(filter, "PlaceType", i));
+    const auto type = static_cast<int>(CellValue(filter, "FeatureType", i));
     const bool point = type == Continuity::TRIANGLE_CENTER || type == Continuity::VERTEX;
     EXPECT_EQ(output->GetCellType(i),
       point                                 ? VTK_VERTEX

@@ -88,7 +88,7 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
   std::array<Tally, featureTypes> tallies;
   for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
   {
-    const auto type = static_cast<int>(Value(output->GetCellData(), "PlaceType", cell));
+    const auto type = static_cast<int>(Value(output->GetCellData(), "FeatureType", cell));
     const auto verdict = static_cast<int>(Value(output->GetCellData(), "Verdict", cell));
     Tally& tally = tallies[type];
     ++tally.Count;
