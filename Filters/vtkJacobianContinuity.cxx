@@ -342,7 +342,8 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
     { true, this->BoundaryEdges, this->Spokes, this->WingSegments, this->CenterSegments,
       this->StripBorders, this->Centroids, this->Vertices },
     planar, this->SamplesPerEdge);
-  this->NumberOfBoundaryEdges = static_cast<vtkIdType>(features.GetEdges().GetBoundaryEdges().size());
+  this->NumberOfBoundaryEdges =
+    static_cast<vtkIdType>(features.GetEdges().GetBoundaryEdges().size());
 
   // The points of each feature follow those of the feature before it.
   const vtkIdType count = features.GetNumberOfFeatures();

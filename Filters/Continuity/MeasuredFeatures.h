@@ -44,10 +44,7 @@ public:
     bool planar, int samples);
 
   vtkIdType GetNumberOfFeatures() const { return static_cast<vtkIdType>(this->Features.size()); }
-  const MeasuredFeature& GetFeature(vtkIdType feature) const
-  {
-    return this->Features[feature];
-  }
+  const MeasuredFeature& GetFeature(vtkIdType feature) const { return this->Features[feature]; }
   const EdgeCrossings& GetEdges() const { return this->Edges; }
 
   static bool IsPoint(FeatureKind kind)
