@@ -60,7 +60,7 @@ public:
   {
     MESHES_REFUSED = 40000, ///< the meshes are invalid or missing (vtkErrorCode::UserError)
     DATA_REFUSED = 40001,   ///< the data has a type or contents that cannot be processed
-    UPDATE_ABORTED = 40002  ///< the update was aborted; the output is incomplete
+    UPDATE_ABORTED = 40002  ///< the update was aborted; outputs are incomplete or empty
   };
 
   ///@{

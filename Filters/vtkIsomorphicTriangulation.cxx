@@ -403,7 +403,7 @@ int vtkIsomorphicTriangulation::RequestData(
   options.LeaveOutConflictingSegments = this->LeaveOutConflictingSegments;
   options.Progress = [this](double progress) {
     this->UpdateProgress(progress);
-    return this->GetAbortExecute() == 0;
+    return !homeomorphism::ShouldAbort(this);
   };
   const double* s = this->SourceFrame;
   const double* t = this->TargetFrame;

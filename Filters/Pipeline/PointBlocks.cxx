@@ -59,7 +59,8 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
     ReadPoints(pointSet->GetPoints()->GetData(), first, block);
     return;
   }
-  if (auto* image = vtkImageData::SafeDownCast(data))
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (image && !HasPointArray(image))
   {
     // Equivalent to GetPoint, but finds each row only once.
     const int* extent = image->GetExtent();

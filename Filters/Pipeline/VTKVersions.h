@@ -9,6 +9,7 @@
 #define homeomorphism_VTKVersions_h
 
 #include "vtkAlgorithm.h"
+#include "vtkImageData.h"
 #include "vtkUnstructuredGrid.h"
 
 namespace homeomorphism
@@ -25,6 +26,17 @@ template <typename Algorithm>
 bool ShouldAbort(Algorithm* self, long)
 {
   return self->GetAbortExecute() != 0;
+}
+
+template <typename Image>
+auto HasPointArray(Image* image, int) -> decltype(image->GetPoints(), bool())
+{
+  return true;
+}
+template <typename Image>
+bool HasPointArray(Image*, long)
+{
+  return false;
 }
 
 template <typename Grid>
@@ -57,6 +69,13 @@ auto CopyCells(Grid* from, Grid* to, long) -> decltype(from->GetFaceLocations(),
 inline bool ShouldAbort(vtkAlgorithm* self)
 {
   return versions::ShouldAbort(self, 0);
+}
+
+/// Whether GetPoint of an image reads an implicit array of points. Since VTK 9.5 it does, and rounds
+/// otherwise than TransformIndexToPhysicalPoint.
+inline bool HasPointArray(vtkImageData* image)
+{
+  return versions::HasPointArray(image, 0);
 }
 
 /// Copies the cells of one grid to another, including polyhedra. VTK 9.4 renamed the lists of

@@ -214,8 +214,8 @@ class Output:
                 raise self._failure(error) from None
 
     def _failure(self, error):
-        if isinstance(error, BrokenPipeError):
-            # Prevents a second error message when Python closes standard output.
+        if self.standard:
+            # Python flushes what is left when it closes standard output, and would end with another status.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE)
 

@@ -14,14 +14,24 @@ MARK = "outside"
 """The column of features that are not within the domain; their geometries are empty."""
 
 
+def _read(path):
+    import geopandas
+
+    if hasattr(geopandas, "list_layers"):
+        names = geopandas.list_layers(path)["name"]
+    else:
+        # Before geopandas 1.0.
+        import fiona
+
+        names = fiona.listlayers(path)
+    return {name: geopandas.read_file(path, layer=name) for name in names}
+
+
 def read(input):
     """The layers of a file by name, GeoDataFrames."""
-    geopandas = import_extra("geopandas", "python3-geopandas", f"Reading {input.name}")
-    import fiona
-
+    import_extra("geopandas", "python3-geopandas", f"Reading {input.name}")
     try:
-        names = fiona.listlayers(input.path)
-        return {name: geopandas.read_file(input.path, layer=name) for name in names}
+        return _read(input.path)
     except Exception as error:
         input.fail(f"it cannot be read as .{input.format}: {replace_path(error, input)}")
 
@@ -30,29 +40,18 @@ def write(layers, output):
     """Writes layers to one file; only GeoPackage holds several."""
     if len(layers) > 1 and output.format != "gpkg":
         raise Failure(f"{output.name} can hold one layer, not {len(layers)} ({', '.join(layers)}): write a .gpkg.")
-    from fiona.io import MemoryFile
-
-    def put(path):
+    try:
         for name, layer in layers.items():
             options = {"layer": name} if output.format == "gpkg" else {}
-            layer.to_file(path, driver=DRIVERS[output.format], index=False, **options)
-
-    try:
-        if output.format == "shp":
-            # Several files, and fixed sizes of records.
-            put(output.path)
-            if sum(len(layer) for layer in read(output).values()) != sum(map(len, layers.values())):
-                raise Failure(f"Cannot write {output.name}: features are missing in what was written.", FILE)
-        else:
-            # Via memory, because GDAL does not tell when a disk is full at the end.
-            with MemoryFile(ext="." + output.format) as file:
-                put(file.name)
-                file.seek(0)
-                output.write_bytes(file.read())
-    except (OSError, Failure):
+            layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
+        # Read again, because GDAL does not tell when a disk is full at the end.
+        complete = list(map(len, _read(output.path).values())) == list(map(len, layers.values()))
+    except OSError:
         raise
     except Exception as error:
         raise Failure(f"Cannot write {output.name}: {replace_path(error, output)}", FILE) from None
+    if not complete:
+        raise Failure(f"Cannot write {output.name}: features are missing in what was written.", FILE)
 
 
 def _densify(step):

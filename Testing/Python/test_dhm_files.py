@@ -120,7 +120,8 @@ def test_interrupts_leave_nothing(dhm, pair):
         process = dhm.start("check", "-", stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         process.stdin.write(b"{")
         process.stdin.flush()
-        wait_for(lambda: list(dhm.temporary.iterdir()))
+        # Python's tempfile tries out the folder with a file of its own.
+        wait_for(lambda: list(dhm.temporary.glob(".dhm-unfinished-*")))
         process.send_signal(number)
         assert process.wait(60) == -number
         process.stdin.close()

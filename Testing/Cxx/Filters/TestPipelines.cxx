@@ -749,7 +749,12 @@ public:
     , Tag(algorithm->AddObserver(vtkCommand::ProgressEvent, this, &AbortAt::Check))
   {
   }
-  ~AbortAt() { this->Algorithm->RemoveObserver(this->Tag); }
+  ~AbortAt()
+  {
+    this->Algorithm->RemoveObserver(this->Tag);
+    // The executive does it before VTK 9.3 only.
+    this->Algorithm->AbortExecuteOff();
+  }
   AbortAt(const AbortAt&) = delete;
   void operator=(const AbortAt&) = delete;
 
@@ -783,24 +788,26 @@ TEST(Pipelines, AnAbortedMapIsMarkedAsIncomplete)
     filter->Update();
   }
   vtkPointSet* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-  ASSERT_EQ(output->GetNumberOfPoints(), image->GetNumberOfPoints());
   EXPECT_FALSE(messages.HasError());
-  vtkIdType mapped = 0;
-  vtkIdType wrong = 0;
-  vtkDataArray* ghosts = PointArray(output, vtkDataSetAttributes::GhostArrayName());
-  ASSERT_TRUE(ghosts);
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  if (KeepsAbortedOutput(output, image->GetNumberOfPoints()))
   {
-    const bool isDone = PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
-    mapped += isDone;
-    wrong += PointOf(output, i) != (isDone ? PointOf(whole, i) : PointOf(image, i));
-    wrong += std::isnan(PointArray(output, "Vectors")->GetComponent(i, 0)) == isDone;
-    wrong += (ghosts->GetComponent(i, 0) != 0.0) == isDone;
+    vtkIdType mapped = 0;
+    vtkIdType wrong = 0;
+    vtkDataArray* ghosts = PointArray(output, vtkDataSetAttributes::GhostArrayName());
+    ASSERT_TRUE(ghosts);
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+    {
+      const bool isDone = PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
+      mapped += isDone;
+      wrong += PointOf(output, i) != (isDone ? PointOf(whole, i) : PointOf(image, i));
+      wrong += std::isnan(PointArray(output, "Vectors")->GetComponent(i, 0)) == isDone;
+      wrong += (ghosts->GetComponent(i, 0) != 0.0) == isDone;
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(mapped, 0);
+    EXPECT_LT(mapped, image->GetNumberOfPoints());
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - mapped);
   }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GT(mapped, 0);
-  EXPECT_LT(mapped, image->GetNumberOfPoints());
-  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), image->GetNumberOfPoints() - mapped);
 
   // The next execution starts again.
   filter->Modified();
@@ -825,20 +832,23 @@ TEST(Pipelines, AbortedCoordinatesAreMarkedAsIncomplete)
     filter->Update();
   }
   vtkDataSet* output = DataOf(filter);
-  const vtkIdType outside = filter->GetNumberOfOutsidePoints();
-  EXPECT_GT(outside, 0);
-  EXPECT_LT(outside, image->GetNumberOfPoints());
-  vtkIdType wrong = 0;
-  vtkIdType missing = 0;
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  if (KeepsAbortedOutput(output, image->GetNumberOfPoints()))
   {
-    const bool isDone = PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
-    missing += !isDone;
-    wrong += (PointArray(output, "TriangleId")->GetComponent(i, 0) >= 0) != isDone;
-    wrong += std::isnan(PointArray(output, "ContourParameter")->GetComponent(i, 0)) == isDone;
+    const vtkIdType outside = filter->GetNumberOfOutsidePoints();
+    EXPECT_GT(outside, 0);
+    EXPECT_LT(outside, image->GetNumberOfPoints());
+    vtkIdType wrong = 0;
+    vtkIdType missing = 0;
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+    {
+      const bool isDone = PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
+      missing += !isDone;
+      wrong += (PointArray(output, "TriangleId")->GetComponent(i, 0) >= 0) != isDone;
+      wrong += std::isnan(PointArray(output, "ContourParameter")->GetComponent(i, 0)) == isDone;
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(missing, outside);
   }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_EQ(missing, outside);
   filter->Modified();
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
