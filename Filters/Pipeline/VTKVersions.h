@@ -71,8 +71,8 @@ inline bool ShouldAbort(vtkAlgorithm* self)
   return versions::ShouldAbort(self, 0);
 }
 
-/// Whether GetPoint of an image reads an implicit array of points. Since VTK 9.5 it does, and rounds
-/// otherwise than TransformIndexToPhysicalPoint.
+/// Whether GetPoint of an image reads an implicit array of points. Since VTK 9.5 it does, and
+/// rounds otherwise than TransformIndexToPhysicalPoint.
 inline bool HasPointArray(vtkImageData* image)
 {
   return versions::HasPointArray(image, 0);
