@@ -15,6 +15,9 @@ namespace homeomorphism
 namespace
 {
 
+/// B <= tau q max(u W) <= tau (1 / 4) (16 / 81), at u = 1 / 3.
+constexpr double GreatestStripFunction = 4.0 / 81.0;
+
 /// B_k, its derivatives and the determinant of the chart at a point of the strip of edge k. The
 /// arguments are the coordinates of the point for k, the next corner and the previous one. Outside
 /// the strip B_k is continued by l_k beyond the edge and by 0 elsewhere.
@@ -100,8 +103,8 @@ struct StripEquation : RootBatch<Width, false>
   HOMEOMORPHISM_ALWAYS_INLINE void Set(
     int index, double k, double next, double previous, double, double, double, double tau)
   {
-    // B <= tau q max(u W) <= (1 / 4) (16 / 81).
     constexpr double bound = 0.05;
+    static_assert(bound > GreatestStripFunction, "the bracket contains the root");
     this->Start(index, 0.0, bound, StripFunction(k, next, previous, tau).Value());
   }
 
@@ -112,9 +115,12 @@ struct StripEquation : RootBatch<Width, false>
     const StripFunction function(
       k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau);
     // The error after a step is about its square times half the relative second derivative, which
-    // tau bounds. It is a fraction of the rounding error of a barycentric coordinate.
+    // tau bounds. It is a fraction of the rounding error of a barycentric coordinate. Below 2^-53
+    // steps do not change the root any more.
+    double enough = 0x1p-24 * tau * tau;
+    enough = enough > 0x1p-53 ? enough : 0x1p-53;
     this->Step(index, function.Residual(beta, k, kappa),
-      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), 0x1p-24 * tau * tau);
+      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), enough);
   }
 };
 
@@ -145,6 +151,32 @@ double DeterminantRatioOf(const StripFunction& function, const SmoothStrip& stri
 }
 
 } // namespace
+
+void LimitDeviation(
+  SmoothStrip& source, SmoothStrip& target, int edge, const TriangleShape& shape, double greatest)
+{
+  const auto length = [&shape, edge](double own, double next, double previous) {
+    Barycentric components;
+    components[edge] = own;
+    components[NextCorner(edge)] = next;
+    components[PreviousCorner(edge)] = previous;
+    const Vector2 offset = shape.FromBarycentric(components);
+    return std::hypot(offset.x, offset.y);
+  };
+  const double strays =
+    source.Tau * length(source.Kappa - 1.0, source.OffsetNext, source.OffsetPrevious) +
+    target.Tau * length(target.Kappa - 1.0, target.OffsetNext, target.OffsetPrevious);
+  if (GreatestStripFunction * strays <= greatest)
+  {
+    return;
+  }
+  const double difference = length(target.Kappa - source.Kappa,
+    target.OffsetNext - source.OffsetNext, target.OffsetPrevious - source.OffsetPrevious);
+  const double width =
+    std::min({ source.Tau, target.Tau, greatest / (GreatestStripFunction * difference) });
+  source.Tau = width;
+  target.Tau = width;
+}
 
 SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor, 3>& neighbors)
 {

@@ -84,6 +84,14 @@ struct SmoothStrip
   }
 };
 
+/// Narrows the strips of an edge of a triangle in both meshes of a pair where the Smooth map could
+/// stray farther than @a greatest from the piecewise linear one, in the units of @a shape, the
+/// target's triangle. Both strips then have the same width, tau. So B_k is the same function in
+/// both meshes, and the images differ by at most |D - L D'| max B_k, where D' is the source's
+/// offset, D the target's, L the affine map, and max B_k < 4/81 tau.
+void LimitDeviation(
+  SmoothStrip& source, SmoothStrip& target, int edge, const TriangleShape& shape, double greatest);
+
 /// The strips of the edges of a triangle. Element k belongs to the edge opposite corner k.
 using SmoothStrips = std::array<SmoothStrip, 3>;
 

@@ -216,6 +216,23 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   }
 }
 
+void ChartedTriangulation::LimitDeviation(
+  ChartedTriangulation& source, ChartedTriangulation& target, double maximumDeviation)
+{
+  const auto count = static_cast<vtkIdType>(source.Strips.size());
+  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+    for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
+    {
+      const TriangleShape& shape = target.Geometry.GetShape(t);
+      for (int k = 0; k < 3; ++k)
+      {
+        homeomorphism::LimitDeviation(
+          source.Strips[t][k], target.Strips[t][k], k, shape, maximumDeviation);
+      }
+    }
+  });
+}
+
 TriangularCoordinates ChartedTriangulation::ToCoordinates(
   TriangleIndex triangle, const Vector2& point) const
 {

@@ -40,6 +40,11 @@ public:
   ChartedTriangulation(const Triangulation& triangulation, const MeshGeometry& geometry,
     CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> mappedByLinear);
 
+  /// Keeps the Smooth map from @a source to @a target within @a maximumDeviation of the piecewise
+  /// linear map, in the target's normalized coordinates. Does nothing in other systems.
+  static void LimitDeviation(
+    ChartedTriangulation& source, ChartedTriangulation& target, double maximumDeviation);
+
   const MeshGeometry& GetGeometry() const { return this->Geometry; }
   CoordinateSystem GetSystem() const { return this->System; }
   /// The center of the triangles' contours: the centroid unless the system is Contour.

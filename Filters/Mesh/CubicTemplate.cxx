@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace homeomorphism
 {
@@ -22,6 +23,12 @@ constexpr double Slack = 0.5;
 double Length(const Vector2& v)
 {
   return std::sqrt(Dot(v, v));
+}
+
+void SortUnique(std::vector<std::int32_t>& numbers)
+{
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 Vector2 Normal(const Vector2& along)
@@ -242,51 +249,83 @@ CubicTemplate::CubicTemplate(
   parallelFor(points, [&](std::int64_t begin, std::int64_t end) {
     for (int point = static_cast<int>(begin); point < end; ++point)
     {
-      if (fans.First[point] < 0)
-      {
-        continue;
-      }
-      const PointFan fan = fans.Get(pair, point);
-      this->Boundary[point] = fan.Closed ? 0 : 1;
       double shortest = std::numeric_limits<double>::infinity();
-      double norm = 0.0;
+      const PointFan fan = fans.Get(pair, point);
       for (int t : fan.Triangles)
       {
         const int c = pair.GetCorner(t, point);
         const std::array<Vector2, 3> corners = pair.GetSourceCorners(t, c);
         shortest = std::min(
           { shortest, Length(corners[NextCorner(c)]), Length(corners[PreviousCorner(c)]) });
-        norm = std::max(norm, std::sqrt(SquaredNorm(pair.GetAffine(t))));
       }
       this->Radii[point] = EdgeShare * shortest;
-      // Half of what may be strayed; the other half belongs to the edges.
-      this->Radii[point] = std::min(this->Radii[point], 0.5 * options.MaximumDeviation / norm);
+      this->Boundary[point] = fan.Closed ? 0 : 1;
     }
   });
-  parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
-    for (int t = static_cast<int>(begin); t < end; ++t)
+  // Of the points, those that are not differentiable.
+  std::vector<std::unique_ptr<Exception>> exceptions(static_cast<std::size_t>(points));
+  std::vector<std::int32_t> changed(static_cast<std::size_t>(points));
+  std::iota(changed.begin(), changed.end(), 0);
+  std::vector<std::int32_t> triangles(pair.Triangles.size());
+  std::iota(triangles.begin(), triangles.end(), 0);
+  std::vector<double> factors(static_cast<std::size_t>(points), 1.0);
+  // Corners that stray too far are made smaller, until none does.
+  while (!changed.empty())
+  {
+    parallelFor(
+      static_cast<std::int64_t>(triangles.size()), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n)
+        {
+          this->SetHeights(triangles[n], options.MaximumDeviation);
+        }
+      });
+    parallelFor(
+      static_cast<std::int64_t>(changed.size()), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n)
+        {
+          const int point = changed[n];
+          if (fans.First[point] < 0)
+          {
+            continue;
+          }
+          exceptions[point] = this->FindDerivative(point, fans);
+          factors[point] = 1.0;
+          if (options.MaximumDeviation < std::numeric_limits<double>::max())
+          {
+            const double strays =
+              this->GetDeviation(fans.Get(pair, point), point, exceptions[point].get());
+            // Corners that are not too small for doubles can always be made smaller.
+            factors[point] = strays > options.MaximumDeviation && this->Radii[point] > 1e-300
+              ? std::min(0.5, 0.9 * options.MaximumDeviation / strays)
+              : 1.0;
+          }
+        }
+      });
+    // The corners' heights, and those of the neighbors' along the same edges, shrink as well.
+    std::vector<std::int32_t> next;
+    triangles.clear();
+    for (const std::int32_t point : changed)
     {
-      this->SetHeights(t, options.MaximumDeviation);
-    }
-  });
-  std::vector<std::int32_t> exceptions;
-  parallelFor(points, [&](std::int64_t begin, std::int64_t end) {
-    Exception unused;
-    for (int point = static_cast<int>(begin); point < end; ++point)
-    {
-      if (fans.First[point] >= 0)
+      if (factors[point] < 1.0)
       {
-        this->SetDerivative(point, fans, unused);
+        this->Radii[point] *= factors[point];
+        const PointFan fan = fans.Get(pair, point);
+        triangles.insert(triangles.end(), fan.Triangles.begin(), fan.Triangles.end());
       }
     }
-  });
-  for (int point = 0; point < points; ++point)
-  {
-    if (this->Kinds[point] != VertexKind::Differentiable)
+    SortUnique(triangles);
+    for (const std::int32_t t : triangles)
     {
-      Exception exception;
-      this->SetDerivative(point, fans, exception);
-      this->Exceptions.push_back(std::move(exception));
+      next.insert(next.end(), pair.Triangles[t].begin(), pair.Triangles[t].end());
+    }
+    SortUnique(next);
+    changed = std::move(next);
+  }
+  for (std::unique_ptr<Exception>& exception : exceptions)
+  {
+    if (exception)
+    {
+      this->Exceptions.push_back(std::move(*exception));
     }
   }
 }
@@ -351,7 +390,8 @@ VertexFan CubicTemplate::GetFan(int point, const PointFan& fan) const
 }
 
 //------------------------------------------------------------------------------
-void CubicTemplate::SetDerivative(int point, const PointFans& fans, Exception& exception)
+std::unique_ptr<CubicTemplate::Exception> CubicTemplate::FindDerivative(
+  int point, const PointFans& fans)
 {
   const PointFan triangles = fans.Get(this->Pair, point);
   VertexFan fan = this->GetFan(point, triangles);
@@ -393,23 +433,56 @@ void CubicTemplate::SetDerivative(int point, const PointFans& fans, Exception& e
     derivative = FindVertexDerivative(fan);
   }
   this->Derivatives[point] = derivative.Derivative;
+  this->Kinds[point] = VertexKind::Differentiable;
   if (derivative.Margin > 0.0)
   {
-    return;
+    return nullptr;
   }
-  exception.Point = point;
-  if (possible && FindVertexRings(fan, exception.Rings))
+  auto exception = std::make_unique<Exception>();
+  exception->Point = point;
+  if (possible && FindVertexRings(fan, exception->Rings))
   {
     this->Kinds[point] = VertexKind::Rings;
-    this->Derivatives[point] = exception.Rings.Center.Derivative;
+    this->Derivatives[point] = exception->Rings.Center.Derivative;
   }
   else
   {
     this->Kinds[point] = VertexKind::Exceptional;
-    exception.Rings.Outlines = { GetHomogeneousOutline(fan) };
+    exception->Rings.Outlines = { GetHomogeneousOutline(fan) };
   }
-  exception.Fan = std::move(fan);
-  exception.Triangles = triangles.Triangles;
+  exception->Fan = std::move(fan);
+  exception->Triangles = triangles.Triangles;
+  return exception;
+}
+
+//------------------------------------------------------------------------------
+double CubicTemplate::GetDeviation(const PointFan& fan, int point, const Exception* exception) const
+{
+  double greatest = 0.0;
+  for (const int t : fan.Triangles)
+  {
+    const Matrix2 affine = this->Pair.GetAffine(t);
+    const int corner = this->Pair.GetCorner(t, point);
+    if (exception)
+    {
+      this->VisitRings(*exception, t, [&](const CubicElement& element, double factor) {
+        double farthest = 0.0;
+        for (const Vector2& p : element.Points)
+        {
+          farthest = std::max(farthest, Length((element.Affine - affine) * p));
+        }
+        greatest = std::max(greatest, factor * (farthest + GreatestDisplacement(element)));
+      });
+      continue;
+    }
+    const TriangleCut cut = this->GetCut(t);
+    for (int element = 3 * corner; element < 3 * corner + 3; ++element)
+    {
+      greatest =
+        std::max(greatest, GreatestDisplacement(this->GetElement(cut, affine, t, element)));
+    }
+  }
+  return greatest;
 }
 
 //------------------------------------------------------------------------------
@@ -600,13 +673,18 @@ void CubicTemplate::Evaluate(
 void CubicTemplate::VisitRings(int triangle, int corner,
   const std::function<void(const CubicElement&, double factor)>& visit) const
 {
-  const int id = this->Pair.Triangles[triangle][corner];
-  const Exception& exception = this->GetException(id);
+  this->VisitRings(this->GetException(this->Pair.Triangles[triangle][corner]), triangle, visit);
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::VisitRings(const Exception& exception, int triangle,
+  const std::function<void(const CubicElement&, double factor)>& visit) const
+{
   const int sector =
     static_cast<int>(std::find(exception.Triangles.begin(), exception.Triangles.end(), triangle) -
       exception.Triangles.begin());
   const std::vector<VertexRings::Outline>& outlines = exception.Rings.Outlines;
-  const bool endless = this->Kinds[id] == VertexKind::Exceptional;
+  const bool endless = this->Kinds[exception.Point] == VertexKind::Exceptional;
   // One ring stands for all of an endless sequence.
   const std::size_t rings = endless ? 1 : outlines.size() - 1;
   for (std::size_t j = 0; j < rings; ++j)

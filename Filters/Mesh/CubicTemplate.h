@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace homeomorphism
@@ -147,7 +148,12 @@ private:
 
   const Exception& GetException(int point) const;
   void SetHeights(int triangle, double maximumDeviation);
-  void SetDerivative(int point, const PointFans& fans, Exception& exception);
+  /// Sets a point's derivative and kind. Returns what it needs if it is not differentiable.
+  std::unique_ptr<Exception> FindDerivative(int point, const PointFans& fans);
+  /// A bound of the distance from the piecewise linear map in the corners at a point.
+  double GetDeviation(const PointFan& fan, int point, const Exception* exception) const;
+  void VisitRings(const Exception& exception, int triangle,
+    const std::function<void(const CubicElement&, double factor)>& visit) const;
 
   const PlanarPair& Pair;
   std::vector<double> Radii;

@@ -232,11 +232,18 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
       result->Cubic = std::make_shared<const CubicHomeomorphism>(*result->Pair, options.Cubic);
     }
   }
+  std::array<std::shared_ptr<ChartedTriangulation>, 2> charts;
   for (const Domain domain : domains)
   {
-    result->Charts[int(domain)] = std::make_shared<const ChartedTriangulation>(
+    charts[int(domain)] = std::make_shared<ChartedTriangulation>(
       topology, result->Pair->GetGeometry(domain), options.System, options.Center, mappedByLinear);
   }
+  if (target && options.Cubic.MaximumDeviation < std::numeric_limits<double>::max())
+  {
+    ChartedTriangulation::LimitDeviation(*charts[0], *charts[1],
+      options.Cubic.MaximumDeviation * result->Pair->GetGeometry(Domain::Target).GetScale());
+  }
+  result->Charts = { charts[0], charts[1] };
   return std::shared_ptr<const Homeomorphism>(std::move(result));
 }
 

@@ -29,7 +29,7 @@ struct HomeomorphismOptions
   bool MaskInvalidTriangles = false;
   /// Let the Linear system map discordant triangles instead of refusing the meshes.
   bool DiscordantByLinear = false;
-  /// Of the Cubic system. The deviation is in the target's units.
+  /// Of the Cubic system. Its deviation, in the target's units, is the Smooth system's too.
   CubicMapOptions Cubic;
 
   bool operator==(const HomeomorphismOptions& other) const

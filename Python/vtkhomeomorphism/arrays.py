@@ -161,8 +161,8 @@ class Homeomorphism:
     cubic_bending : str
         Of the Cubic system: "least", which bends least, or "local", in closed form.
     maximum_deviation : float, optional
-        Of the Cubic system: the greatest distance of images from those of the Linear system, in the
-        target's units.
+        Of the Smooth and the Cubic system: the greatest distance of images from those of the Linear
+        system, in the target's units.
     fairness_refinement : int
         Of the Cubic system with least bending: how often triangles are cut into four first.
 
