@@ -204,7 +204,9 @@ std::shared_ptr<const Homeomorphism> vtkHomeomorphismAlgorithm::GetMap(
   if (map && map->GetCubic())
   {
     cubic = map->GetCubic()->GetMap().GetStatistics();
-    scale = map->GetPair().GetGeometry(Domain::Target).GetInverseScale();
+    // Of second derivatives, times the root of an area.
+    scale = map->GetPair().GetGeometry(Domain::Target).GetInverseScale() *
+      map->GetPair().GetGeometry(Domain::Source).GetScale();
     if (cubic.UncertifiedTriangles > 0)
     {
       vtkWarningMacro(<< "The Cubic map is not certified in " << cubic.UncertifiedTriangles

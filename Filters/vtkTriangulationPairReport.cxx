@@ -6,6 +6,7 @@
 #include "Construction/MapStatistics.h"
 #include "Construction/PairStatistics.h"
 #include "Pipeline/DiagnosticMessages.h"
+#include "Pipeline/Options.h"
 #include "Pipeline/Requests.h"
 #include "Pipeline/VTKVersions.h"
 
@@ -42,7 +43,7 @@ namespace
 
 constexpr double None = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 2> MeshNames{ "Source", "Target" };
-constexpr std::array<const char*, 3> SystemNames{ "Linear", "Contour", "Smooth" };
+constexpr std::array<const char*, 4> SystemNames{ "Linear", "Contour", "Smooth", "Cubic" };
 
 /// A table of one row.
 class Row
@@ -113,6 +114,41 @@ void AddCellArray(vtkPolyData* mesh, const Triangulation& triangulation, const c
       static_cast<typename Array::ValueType>(values[static_cast<std::size_t>(t)]));
   }
   mesh->GetCellData()->AddArray(array);
+}
+
+/// What the Cubic system knows of its map.
+struct CubicStatistics
+{
+  double BendingEnergy = None;
+  Extreme Certificate;
+  vtkIdType UncertifiedTriangles = -1;
+  vtkIdType ExceptionalInteriorVertices = -1;
+  vtkIdType ExceptionalBoundaryVertices = -1;
+};
+
+CubicStatistics MeasureCubic(const Homeomorphism& map)
+{
+  const CubicMapStatistics& known = map.GetCubic()->GetMap().GetStatistics();
+  const Triangulation& triangulation = map.GetPair().GetTriangulation();
+  CubicStatistics statistics;
+  // The energy of normalized coordinates, in those of the input.
+  const double rescale = map.GetPair().GetGeometry(Domain::Source).GetScale() /
+    map.GetPair().GetGeometry(Domain::Target).GetScale();
+  statistics.BendingEnergy = known.Bending.Energy * rescale * rescale;
+  statistics.UncertifiedTriangles = known.UncertifiedTriangles;
+  statistics.ExceptionalInteriorVertices =
+    static_cast<vtkIdType>(known.ExceptionalInteriorPoints.size());
+  statistics.ExceptionalBoundaryVertices =
+    static_cast<vtkIdType>(known.ExceptionalBoundaryPoints.size());
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    if (!triangulation.IsMasked(t))
+    {
+      statistics.Certificate.TakeSmaller(
+        map.GetCubic()->GetCertificate(t), triangulation.GetCellId(t));
+    }
+  }
+  return statistics;
 }
 
 /// What vtkJacobianContinuity finds.
@@ -186,6 +222,7 @@ int vtkTriangulationPairReport::Execute(
   options.System = homeomorphism::CoordinateSystem::Linear;
   options.MaskInvalidTriangles = true;
   options.DiscordantByLinear = true;
+  options.Cubic = GetOptions(this).Cubic;
   const std::shared_ptr<const Homeomorphism> linear =
     Homeomorphism::Make(meshes[0], meshes[1], options, defects);
   // Diagnostics of accepted meshes are remarks.
@@ -283,7 +320,9 @@ int vtkTriangulationPairReport::Execute(
   // What is left out is in the table of defects: no warnings.
   vtkNew<vtkCallbackCommand> ignore;
   ignore->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
-  for (int system = LINEAR; system <= SMOOTH; ++system)
+  const bool planar =
+    pair.GetGeometry(Domain::Source).IsPlanar() && pair.GetGeometry(Domain::Target).IsPlanar();
+  for (int system = LINEAR; system <= CUBIC; ++system)
   {
     if (homeomorphism::ShouldAbort(this))
     {
@@ -292,7 +331,9 @@ int vtkTriangulationPairReport::Execute(
     const std::string name = SystemNames[static_cast<std::size_t>(system)];
     MapSamples samples;
     SecondDifference second;
-    if (this->MeasureMaps)
+    CubicStatistics cubic;
+    const bool exists = system != CUBIC || planar;
+    if (this->MeasureMaps && exists)
     {
       options.System = static_cast<homeomorphism::CoordinateSystem>(system);
       options.Center = static_cast<homeomorphism::CenterPoint>(this->CenterPoint);
@@ -301,6 +342,11 @@ int vtkTriangulationPairReport::Execute(
         Homeomorphism::Make(meshes[0], meshes[1], options, known);
       samples = SampleMap(*map, *linear);
       second = MeasureSecondDifference(*map, meanEdges[0], meanEdges[1]);
+      if (map->GetCubic())
+      {
+        cubic = MeasureCubic(*map);
+        cubic.BendingEnergy = this->CubicBending == LEAST ? cubic.BendingEnergy : None;
+      }
       if (system == this->CoordinateSystem)
       {
         for (vtkPolyData* mesh : measured)
@@ -327,16 +373,24 @@ int vtkTriangulationPairReport::Execute(
     }
     row.Add(name + "SecondDifference", second.RootMeanSquare);
     row.Add(name + "SecondDifferenceSamples", second.Samples);
-    this->UpdateProgress(0.05 + 0.3 * system + 0.1);
+    if (system == CUBIC)
+    {
+      row.Add("CubicBendingEnergy", cubic.BendingEnergy);
+      row.Add("CubicCertificate", cubic.Certificate);
+      row.Add("CubicUncertifiedTriangles", cubic.UncertifiedTriangles);
+      row.Add("CubicExceptionalInteriorVertices", cubic.ExceptionalInteriorVertices);
+      row.Add("CubicExceptionalBoundaryVertices", cubic.ExceptionalBoundaryVertices);
+    }
+    this->UpdateProgress(0.05 + 0.23 * system + 0.08);
 
     Continuity continuity;
-    if (this->MeasureContinuity)
+    if (this->MeasureContinuity && exists)
     {
       vtkNew<vtkJacobianContinuity> measure;
       measure->SetSourceData(copies[0]);
       measure->SetTargetData(copies[1]);
+      CopyOptions(this, measure.Get());
       measure->SetCoordinateSystem(system);
-      measure->SetCenterPoint(this->CenterPoint);
       measure->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
       measure->SetMaskInvalidTriangles(true);
       measure->AddObserver(vtkCommand::WarningEvent, ignore);
@@ -348,7 +402,7 @@ int vtkTriangulationPairReport::Execute(
     row.Add(name + "Creases", continuity.Creases);
     row.Add(name + "UndecidedEdges", continuity.UndecidedEdges);
     row.Add(name + "LargestJump", continuity.LargestJump);
-    this->UpdateProgress(0.05 + 0.3 * (system + 1));
+    this->UpdateProgress(0.05 + 0.23 * (system + 1));
   }
   return 1;
 }

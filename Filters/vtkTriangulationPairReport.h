@@ -27,7 +27,7 @@
  * - `Invalid` (unsigned char): 1 for triangles that were left out.
  *
  * Output port 2 is a vtkTable of one row. Its columns begin with `Source` or `Target` (a mesh),
- * with `Linear`, `Contour` or `Smooth` (a map), or with neither (the pair). Counts are vtkIdType,
+ * with `Linear`, `Contour`, `Smooth` or `Cubic` (a map), or with neither (the pair). Counts are vtkIdType,
  * flags int (0 or 1), all others double. Cell ids are -1, and other values NaN, where there is
  * nothing to measure.
  *
@@ -58,6 +58,12 @@
  *   and target. 0 for affine maps. Planar pairs only.
  * - `SmoothDifferentiableEdges`, `SmoothCreases`, `SmoothUndecidedEdges`, `SmoothLargestJump`: what
  *   vtkJacobianContinuity finds at the interior edges. NaN and -1 without MeasureContinuity.
+ * - `CubicCertificate` and `-Cell`, the least certificate of a triangle (certified if it is
+ *   positive); `CubicBendingEnergy`, the integral of the squared second derivatives, in the
+ *   target's units per unit of the source, squared, NaN with CubicBending LOCAL, which does not
+ *   minimize it (of the other systems it is infinite); `CubicUncertifiedTriangles`;
+ *   `CubicExceptionalInteriorVertices` and `-BoundaryVertices`, the number of points without a
+ *   derivative. For pairs in planes only; NaN and -1 for others, as in all columns of Cubic.
  *
  * Output port 3 is a vtkTable with a row for each kind of defect: the columns described in
  * Documentation/diagnostics.md, and `Mesh` ("source", "target" or "pair"), `LeftOut` (1 if the
@@ -68,8 +74,9 @@
  * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
  *
  * See vtkHomeomorphismAlgorithm for the meshes and the options. CoordinateSystem is the system of
- * the cell arrays; the table has all. CenterPoint is that of Contour. The other options have no
- * effect.
+ * the cell arrays; the table has all. CenterPoint is that of Contour, CubicBending, CertificateMargin
+ * and FairnessRefinement are those of Cubic, MaximumDeviation is that of Smooth and Cubic. The other
+ * options have no effect.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkJacobianContinuity
  */

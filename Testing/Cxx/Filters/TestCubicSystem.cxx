@@ -130,13 +130,25 @@ TEST(CubicSystem, MapsThereAndBack)
 TEST(CubicSystem, IsDifferentiableAtEdgesAndVertices)
 {
   const MeshPair pair = MakePair(false, false);
-  vtkNew<vtkJacobianContinuity> measure;
-  measure->SetSourceData(pair.Source);
-  measure->SetTargetData(pair.Target);
-  measure->SetCoordinateSystemToCubic();
-  measure->Update();
-  EXPECT_EQ(measure->GetNumberOfCreases(), 0);
-  EXPECT_GT(measure->GetNumberOfDifferentiableEdges(), 0);
+  for (int bending : { vtkJacobianContinuity::LOCAL, vtkJacobianContinuity::LEAST })
+  {
+    vtkNew<vtkJacobianContinuity> measure;
+    measure->SetSourceData(pair.Source);
+    measure->SetTargetData(pair.Target);
+    measure->SetCoordinateSystemToCubic();
+    measure->SetCubicBending(bending);
+    measure->VerticesOn();
+    measure->Update();
+    const auto count = [&measure](int feature, int verdict) {
+      return measure->GetNumberOfFeatures(feature, verdict);
+    };
+    using Continuity = vtkJacobianContinuity;
+    EXPECT_EQ(count(Continuity::EDGE, Continuity::DIFFERENTIABLE), 96) << bending;
+    EXPECT_EQ(count(Continuity::EDGE, Continuity::CREASE), 0) << bending;
+    // Interior vertices and, where the boundary is straight or turns alike, the others.
+    EXPECT_EQ(count(Continuity::VERTEX, Continuity::DIFFERENTIABLE), 49) << bending;
+    EXPECT_EQ(count(Continuity::VERTEX, Continuity::CREASE), 0) << bending;
+  }
 }
 
 TEST(CubicSystem, TellsWhatItIs)

@@ -63,7 +63,10 @@ TEST(TriangulationPairReport, AnAffinePairHasOneDistortionAndDoesNotBend)
   EXPECT_NEAR(report->GetStatistic("SmallestStretch"), 0.5, 1e-12);
   EXPECT_NEAR(report->GetStatistic("SourceArea"), 25.0, 1e-12);
   EXPECT_NEAR(report->GetStatistic("TargetArea"), 37.5, 1e-12);
-  for (const char* name : { "Linear", "Smooth" })
+  EXPECT_NEAR(report->GetStatistic("CubicCertificate"), 1.0, 1e-12);
+  EXPECT_NEAR(report->GetStatistic("CubicBendingEnergy"), 0.0, 1e-20);
+  EXPECT_EQ(report->GetStatistic("CubicExceptionalBoundaryVertices"), 0.0);
+  for (const char* name : { "Linear", "Smooth", "Cubic" })
   {
     const std::string system = name;
     EXPECT_NEAR(report->GetStatistic((system + "SmallestDeterminant").c_str()), 1.5, 1e-11);
