@@ -9,10 +9,9 @@
  * about the edge), or of any vtkAbstractTransform (SetTransform; the mesh must then be planar).
  * Other features are measured on request; see FeatureTypes.
  *
- * Only values of the map are used. One-sided difference quotients over halving steps are
- * extrapolated to step 0 (Richardson). The error bound takes into account the disagreement of the
- * extrapolations and the rounding of the values. Steps are relative to the triangles. Bounds and
- * verdicts are estimates, not proofs; Documentation/differentiability.md has the limits.
+ * Only values of the map are used. One-sided difference quotients over halving steps, relative to
+ * the triangles, are extrapolated to step 0 (Richardson). Error bounds and verdicts are estimates,
+ * not proofs; Documentation/differentiability.md has the limits.
  *
  * Output port 0 has a polyline through the samples of each edge or other line, and a vertex cell
  * for each point feature; vertex cells come first. Cell arrays (double unless stated otherwise):
@@ -28,8 +27,8 @@
  * - `ConvergenceOrder`: the exponent with which the difference of the quotients on the two sides
  *   decreases with the step: 1 if differentiable, 0 at a crease, NaN if lost in rounding;
  * - `Verdict` (int): see Verdicts;
- * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles; the same id twice
- *   within a triangle; the second is -1 at boundary edges and vertices;
+ * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles, equal within a
+ *   triangle; the second is -1 at boundary edges and vertices;
  * - `FeatureType` (int): see FeatureTypes;
  * - `SecondDerivativeJump`, `SecondDerivativeJumpError` (times the steps' length over the norm of
  *   the Jacobian), `SecondDerivativeVerdict` (int): the same for the second derivative across the
@@ -107,11 +106,9 @@ public:
   ///@}
 
   ///@{
-  /// The measurement: SamplesPerEdge is the number of samples of a line, evenly spaced, and of
-  /// directions within each sector at a center or vertex (5 by default, 1 to 1000). Resolution is
-  /// the relative jump up to which a map is differentiable, a thousand times that for second
-  /// derivatives (1e-7 by default; estimates are usually accurate to 1e-9). SecondDerivatives says
-  /// whether second derivatives across the lines are compared, too (off by default).
+  /// SamplesPerEdge: the number of evenly spaced samples of a line, and of directions within each
+  /// sector at a point. Resolution: the relative jump up to which a map is differentiable, a
+  /// thousand times that for second derivatives, which are compared with SecondDerivatives.
   vtkHomeomorphismOptionMacro(SamplesPerEdge, int, 5, 1, 1000);
   vtkHomeomorphismOptionMacro(Resolution, double, 1e-7, 0.0, 1.0);
   vtkHomeomorphismSwitchMacro(SecondDerivatives, false);
@@ -128,11 +125,8 @@ public:
   vtkIdType GetNumberOfFeatures(int featureType, int verdict);
   ///@}
 
-  ///@{
   /// The measured lines and points, and the triangulation (output ports 0 and 1).
-  vtkPolyData* GetOutput() { return this->GetOutput(0); }
-  vtkPolyData* GetOutput(int port);
-  ///@}
+  vtkPolyData* GetOutput(int port = 0);
 
   void ReduceStatistics(vtkMultiProcessController* controller) override;
   vtkMTimeType GetMTime() override;
