@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Makes a test chart (chart.ppm) and a random pair of meshes over it (source.off, target.off).
+"""Makes a test chart (chart.ppm) and landmarks on it that are moved at random (landmarks.csv).
 
     chart.py FOLDER
 """
@@ -36,43 +36,19 @@ def points(generator):
             for row in range(CELLS + 1) for column in range(CELLS + 1)]
 
 
-def smallest_angle(triangle):
-    """Negative for a triangle that is turned over."""
-    angles = []
-    for k in range(3):
-        (ax, ay), (bx, by), (cx, cy) = (triangle[(k + i) % 3] for i in range(3))
-        ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
-        angles.append(math.atan2(ux * vy - uy * vx, ux * vx + uy * vy))
-    return min(angles)
-
-
-def triangles(*meshes):
-    """Each cell of the grid, cut so that the smallest angle in all meshes is largest."""
-    result = []
-    for row in range(CELLS):
-        for column in range(CELLS):
-            a = row * (CELLS + 1) + column
-            b, c, d = a + 1, a + CELLS + 2, a + CELLS + 1
-            cuts = [[(a, b, c), (a, c, d)], [(a, b, d), (b, c, d)]]
-            result += max(cuts, key=lambda cut: min(
-                smallest_angle([mesh[i] for i in triangle]) for mesh in meshes for triangle in cut))
-    return result
-
-
-def write_off(name, mesh, cells):
+def write_landmarks(name, source, target):
+    """In pixels from the upper left corner of the image, y down."""
     with open(name, "w", encoding="ascii") as file:
-        file.write(f"OFF\n{len(mesh)} {len(cells)} 0\n")
-        file.writelines(f"{x!r} {y!r} 0\n" for x, y in mesh)
-        file.writelines("3 %d %d %d\n" % cell for cell in cells)
+        file.write("source_x,source_y,target_x,target_y\n")
+        for pair in zip(source, target):
+            file.write(",".join(repr(c) for x, y in pair for c in (x + 0.5, SIZE - 0.5 - y)) + "\n")
 
 
 def main():
     folder = sys.argv[1]
     generator = random.Random(12)
     source, target = points(generator), points(generator)
-    cells = triangles(source, target)
-    write_off(os.path.join(folder, "source.off"), source, cells)
-    write_off(os.path.join(folder, "target.off"), target, cells)
+    write_landmarks(os.path.join(folder, "landmarks.csv"), source, target)
     with open(os.path.join(folder, "chart.ppm"), "wb") as file:
         file.write(chart())
 

@@ -6,8 +6,10 @@
 
     scan.py write FOLDER [WIDTH HEIGHT]     scan.tif, positions.tif, control.points, control-2.points, roads.gpkg
     scan.py compare FOLDER RECTIFIED.tif    how far a rectified positions.tif is from the truth
+    scan.py layers BEFORE.gpkg AFTER.gpkg   the largest difference, relative to the extent
+    scan.py draw FOLDER                     scan.png: the scan and all-points.tif, rectified.tif, with the true streets
 
-The sheet is bent by a known map, by 27 pixels beyond the best affine map at most. The control points are exact
+The sheet is bent by a known map, by 30 pixels beyond the best affine map at most. The control points are exact
 except for two, which are mistyped by 30 pixels; four rows are disabled. The bands of positions.tif are each pixel's own
 coordinates: a rectified one shows where each pixel came from.
 """
@@ -183,10 +185,54 @@ def compare(folder, rectified):
           f"{numpy.median(found):.3f}, 95 %: {numpy.quantile(found, 0.95):.3f}, largest {found.max():.2f}")
 
 
+def layers(before, after):
+    import geopandas
+
+    first, second = (geopandas.read_file(name) for name in (before, after))
+    extent = numpy.ptp(numpy.reshape(first.total_bounds, (2, 2)), axis=0).max()
+    largest = max(numpy.abs(numpy.subtract(a.coords, b.coords)).max() for a, b in zip(first.geometry, second.geometry))
+    print(f"{after} differs from {before} by {largest:.2g} m, {largest / extent:.2g} of the extent")
+
+
+def draw(folder):
+    import geopandas
+    import matplotlib
+    import rasterio
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+    figure, axes = pyplot.subplots(1, 3, figsize=(15, 4.3), layout="constrained")
+    roads = geopandas.read_file(os.path.join(folder, "roads.gpkg"))
+    titles = ("the scan and its control points", "rectified with all of them", "rectified without the suspicious two")
+    for panel, title, name in zip(axes, titles, ("scan.tif", "all-points.tif", "rectified.tif")):
+        with rasterio.open(os.path.join(folder, name)) as file:
+            shape = (file.height * 1000 // file.width, 1000)
+            picture = numpy.moveaxis(file.read(out_shape=(file.count, *shape)), 0, 2)
+            corners = [file.transform * p for p in ((0, file.height), (file.width, 0))]
+            sheet = Sheet(file.width, file.height) if name == "scan.tif" else sheet
+        panel.imshow(picture, extent=(corners[0][0], corners[1][0], corners[0][1], corners[1][1]))
+        panel.set(title=title, xticks=[], yticks=[])
+        pixels, ground = sheet.control_points()
+        points = pixels if name == "scan.tif" else ground
+        wrong = list(MISTYPED)
+        panel.plot(*numpy.delete(points, wrong, axis=0).T, "+", color="#0b5d1e", markersize=7)
+        if name != "rectified.tif":
+            panel.plot(*points[wrong].T, "o", color="none", markeredgecolor="red", markersize=13, markeredgewidth=2)
+        if name != "scan.tif":
+            roads.plot(ax=panel, color="#00e5ff", linewidth=1.2)
+    figure.savefig(os.path.join(folder, "scan.png"), dpi=80)
+
+
 if __name__ == "__main__":
     if len(sys.argv) in (3, 5) and sys.argv[1] == "write":
         write(sys.argv[2], *map(int, sys.argv[3:]))
     elif len(sys.argv) == 4 and sys.argv[1] == "compare":
         compare(*sys.argv[2:])
+    elif len(sys.argv) == 4 and sys.argv[1] == "layers":
+        layers(*sys.argv[2:])
+    elif len(sys.argv) == 3 and sys.argv[1] == "draw":
+        draw(sys.argv[2])
     else:
         sys.exit(__doc__)

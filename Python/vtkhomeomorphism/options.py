@@ -70,8 +70,9 @@ def pair_files(names, others=0):
         click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
                      help="Of xmorph's meshes that do not fill their pictures: the size of its working picture "
                           "(resulting_size in a session's file)."),
-        click.option("--scan", default="", metavar="FILE",
-                     help="Of landmarks in an image's pixels: the image, whose rectangle is the source's domain."),
+        click.option("--scan", default=(), multiple=True, metavar="FILE",
+                     help="Of landmarks in an image's pixels: the image, whose rectangle is the source's domain. Given "
+                          "again, the target's image."),
         click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
     )
 
@@ -87,7 +88,7 @@ def pair_files(names, others=0):
                 target_array=target_array, target_uv=target_uv, input_format=input_format,
                 working_size=read_size(working_size), scan=scan, without=without, crs=None,
             )
-            inputs.grids = lambda marks: (scan_grid(inputs), None)
+            inputs.grids = lambda marks: scan_grids(inputs)
             if list(files).count("-") > 1:
                 raise Failure("Only one of the files can come from standard input.", USAGE)
             return command(inputs=inputs, **rest)
@@ -97,12 +98,13 @@ def pair_files(names, others=0):
     return decorate
 
 
-def scan_grid(inputs):
-    """The pixels of the image of --scan, or None."""
-    if not inputs.scan:
-        return None
-    with Input(inputs.scan) as file:
-        return read(file).grid
+def scan_grids(inputs):
+    """The pixels of the images of --scan, None where not given."""
+    grids = [None, None]
+    for side, name in enumerate(inputs.scan[:2]):
+        with Input(name) as file:
+            grids[side] = read(file).grid
+    return grids
 
 
 def read_pair(inputs):

@@ -145,8 +145,11 @@ def _reproject(points, before, after):
         raise Failure(f"Cannot take the landmarks from {before} to {after}: {error}", USAGE) from None
 
 
-def _box(points):
-    return numpy.column_stack((points.min(axis=0), points.max(axis=0))).ravel()
+def _frame(grid, points, margin):
+    """The rectangle of the pixels' centers, so that borders go to borders, and of landmarks beyond them, enlarged."""
+    points = numpy.vstack((points, numpy.reshape(grid.hanging().bounds, (2, 2)).T))
+    low, high = points.min(axis=0), points.max(axis=0)
+    return numpy.column_stack((low - margin * (high - low), high + margin * (high - low))).ravel()
 
 
 def from_landmarks(marks, name, options, **more):
@@ -158,14 +161,16 @@ def from_landmarks(marks, name, options, **more):
     for side, grid in enumerate(grids):
         if grid or (side == 0 and marks.image_coordinates):
             points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
-    if grids[0] and not more.get("outlines"):
-        # The pixels' centers, so that borders go to borders, and landmarks beyond them.
-        more["frame"] = [grid and _box(numpy.vstack((p, numpy.reshape(grid.hanging().bounds, (2, 2)).T)))
-                         for grid, p in zip(grids, points)]
-    try:
-        made = isomorphic_triangulation(*points, **more)
-    except ValueError as error:
-        raise Failure(f"{name}: {error}", REFUSED) from None
+    # Landmarks may be on a border on one side only: then both borders are moved outwards.
+    for margin in (0.0, 0.01):
+        if grids[0] and not more.get("outlines"):
+            more["frame"] = [grid and _frame(grid, p, margin) for grid, p in zip(grids, points)]
+        try:
+            made = isomorphic_triangulation(*points, **more)
+            break
+        except ValueError as error:
+            if margin or not all(grids):
+                raise Failure(f"{name}: {error}", REFUSED) from None
     angles = made.report["smallest_angles"]
     inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
            f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "

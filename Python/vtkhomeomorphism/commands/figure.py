@@ -78,7 +78,7 @@ def command(inputs, output, force, output_format, settings, all_systems, grid, c
     if image:
         with Input(image) as file:
             raster = images.read(file)
-        inputs.grids = lambda marks: (raster.grid, None if marks.crs else raster.grid)
+        inputs.grids = lambda marks: (raster.grid, None if marks.crs else options.scan_grids(inputs)[1] or raster.grid)
     both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     if image:
         if both.landmarks:

@@ -49,7 +49,7 @@ def command(inputs, output, force, output_format, image_format, settings, invers
             opened.append(images.read(file))
             own = opened[0].grid
             if own.placed:
-                return options.scan_grid(inputs) or (images.Grid(*size) if inverse and size else None), None
+                return options.scan_grids(inputs)[0] or (images.Grid(*size) if inverse and size else None), None
             if marks.crs and not inverse:
                 return own, None
             if marks.image_coordinates and not inverse:

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Landmarks for Examples/run, and what becomes of the usual way to triangulate them.
+
+    landmarks.py extract FOLDER LANDMARKS.csv
+        the points of gtkmorph's meshes image1.png.mesh and image2.png.mesh, in pixels, without their cells
+    landmarks.py folds LANDMARKS.csv PAIR.vtp IMAGE PICTURE.png
+        the Delaunay triangulation of the source's landmarks drawn over the target's, folded triangles in red, and the
+        target of the pair that dhm triangulate made (y upwards from 0 at the upper edge of the image)
+"""
+
+import os
+import sys
+
+import matplotlib
+import numpy
+
+matplotlib.use("Agg")
+from matplotlib import image, pyplot, tri  # noqa: E402
+
+
+def extract(folder, output):
+    columns = []
+    for name in ("image1.png", "image2.png"):
+        rows, size = image.imread(os.path.join(folder, name)).shape[:2]
+        # M2, the numbers of columns and rows, x y label of each point, more.
+        with open(os.path.join(folder, name + ".mesh"), encoding="ascii") as file:
+            words = file.read().split()[1:]
+        count = int(words[0]) * int(words[1])
+        points = numpy.array(words[2 : 2 + 3 * count], float).reshape(count, 3)[:, :2]
+        # The mesh ends at the centers of the last pixels.
+        columns.append(points * (numpy.array([size, rows]) - 1) / points.max(axis=0) + 0.5)
+    numpy.savetxt(output, numpy.hstack(columns), delimiter=",", fmt="%.3f", comments="",
+                  header="source_x,source_y,target_x,target_y")
+
+
+def doubled_areas(points, triangles):
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+
+
+def read_pair(path):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(path)
+    reader.Update()
+    mesh = reader.GetOutput()
+    points = [vtk_to_numpy(a)[:, :2] for a in (mesh.GetPoints().GetData(), mesh.GetPointData().GetArray("Target"))]
+    return points, vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def folds(landmarks, pair, picture, output):
+    values = numpy.genfromtxt(landmarks, delimiter=",", names=True)
+    source, target = (numpy.column_stack((values[s + "_x"], -values[s + "_y"])) for s in ("source", "target"))
+    for name, first, second in (("source", source, target), ("target", target, source)):
+        triangles = tri.Triangulation(*first.T).triangles
+        areas = doubled_areas(second, triangles)
+        print(f"{landmarks}: of the {len(triangles)} Delaunay triangles of the {name}'s {len(first)} landmarks, "
+              f"{(areas < 0).sum()} fold in the other domain and {(areas == 0).sum()} have no area there")
+    ours, made = read_pair(pair)
+    bad = [int((doubled_areas(points, made) * doubled_areas(ours[0], made) <= 0).sum()) for points in ours]
+    print(f"{pair}: of {len(made)} triangles, {max(bad)} fold")
+
+    triangles = tri.Triangulation(*source.T).triangles
+    folded = doubled_areas(target, triangles) <= 0
+    panels = (("Delaunay triangles of the source, reused", target, triangles, folded),
+              ("made for both domains", ours[1], made, numpy.zeros(len(made), bool)))
+    pixels = image.imread(picture)
+    rows, columns = pixels.shape[:2]
+    views = [(0, columns, -rows, 0)]
+    if folded.any():
+        # Around the place with the most folded triangles.
+        centers = target[triangles[folded]].mean(axis=1)
+        near = numpy.hypot(*(centers[:, None] - centers).transpose(2, 0, 1)) < 0.12 * rows
+        x, y = centers[near.sum(axis=1).argmax()]
+        r = 0.11 * rows
+        views.append((x - r, x + r, y - r, y + r))
+    figure, axes = pyplot.subplots(len(views), 2, figsize=(9, 6.4 * rows / columns * (1 if len(views) == 1 else 1.25)),
+                                   squeeze=False, layout="constrained",
+                                   gridspec_kw={"height_ratios": [rows / columns, 1][: len(views)]})
+    for row, view in zip(axes, views):
+        for panel, (title, points, cells, red) in zip(row, panels):
+            panel.imshow(pixels, extent=views[0], cmap="gray", alpha=0.75)
+            panel.triplot(*points.T, cells, color="#1b4f9c", linewidth=0.6 if view == views[0] else 1.2)
+            if red.any():
+                panel.tripcolor(*points.T, cells[red], facecolors=numpy.ones(red.sum()), cmap="autumn", vmin=1, vmax=2,
+                                alpha=0.75, edgecolor="red", linewidth=1)
+            panel.set(xlim=view[:2], ylim=view[2:], xticks=[], yticks=[])
+            if view == views[0]:
+                panel.set_title(f"{title}: {red.sum()} folded")
+    figure.savefig(output, dpi=90)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 4 and sys.argv[1] == "extract":
+        extract(*sys.argv[2:])
+    elif len(sys.argv) == 6 and sys.argv[1] == "folds":
+        folds(*sys.argv[2:])
+    else:
+        sys.exit(__doc__)
