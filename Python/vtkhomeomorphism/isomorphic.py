@@ -63,7 +63,8 @@ def _usual(residuals):
 
 def _smooth_frame(source, target, rectangle, trusted, smooth):
     """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images
-    under the thin-plate spline through the trusted landmarks (or the affine map that fits them best)."""
+    under the quadratic polynomial that fits the trusted landmarks best, corrected by a thin-plate spline
+    (or under the affine map that fits them best)."""
     low = numpy.minimum(rectangle[::2], source.min(axis=0))
     high = numpy.maximum(rectangle[1::2], source.max(axis=0))
     low, high = low - 0.01 * (high - low), high + 0.01 * (high - low)
@@ -73,18 +74,25 @@ def _smooth_frame(source, target, rectangle, trusted, smooth):
     trusted = trusted[:: 1 + len(trusted) // 1000]
     middle, size = (low + high) / 2, numpy.hypot(*(high - low))
     a, b = (source[trusted] - middle) / size, (rim - middle) / size
+    values = target[trusted] - target[trusted[0]]
 
-    def columns(points):
-        squares = ((points[:, None] - a) ** 2).sum(axis=2)[:, : len(a) if smooth else 0]
-        bending = squares * numpy.log(numpy.maximum(squares, 1e-300))
-        return numpy.hstack((bending, numpy.ones((len(points), 1)), points))
+    def columns(points, bends):
+        x, y = points.T
+        return numpy.column_stack((numpy.ones(len(x)), x, y) + ((x * x, x * y, y * y) if bends else ()))
 
-    own = columns(a)
+    def bending(points):
+        squares = numpy.maximum(((points[:, None] - a) ** 2).sum(axis=2), 1e-300)
+        return numpy.hstack((squares * numpy.log(squares), columns(points, False)))
+
+    # What bends the sheet as a whole goes on beyond the landmarks.
+    bends = smooth and len(a) >= 12
+    weights = numpy.linalg.lstsq(columns(a, bends), values, rcond=None)[0]
+    images = columns(b, bends) @ weights + target[trusted[0]]
     if smooth:
-        own = numpy.vstack((own, numpy.hstack((own[:, -3:].T, numpy.zeros((3, 3))))))
-    values = numpy.vstack((target[trusted] - target[trusted[0]], numpy.zeros((len(own) - len(a), 2))))
-    weights = numpy.linalg.lstsq(own, values, rcond=None)[0]
-    return rim, columns(b) @ weights + target[trusted[0]]
+        system = numpy.vstack((bending(a), numpy.hstack((columns(a, False).T, numpy.zeros((3, 3))))))
+        rest = numpy.vstack((values - columns(a, bends) @ weights, numpy.zeros((3, 2))))
+        images += bending(b) @ numpy.linalg.lstsq(system, rest, rcond=None)[0]
+    return rim, images
 
 
 def _with_frame(source, target, rectangle, make):
@@ -142,7 +150,7 @@ def isomorphic_triangulation(
         Polygonal lines of point ids that must become edges.
     frame : pair of (least x, largest x, least y, largest y)
         Rectangles around source and target, for example those of images. If the target's is None, the
-        source's, enlarged by 1 %, goes where a thin-plate spline through the landmarks that are not
+        source's, enlarged by 1 %, goes where a smooth map through the landmarks that are not
         suspicious takes it (points of shape (n, 2), without outlines).
     domain : {"automatic", "outline", "frame", "convex_hull"}
         "automatic": the inside of the outlines if there are any, otherwise a frame.
