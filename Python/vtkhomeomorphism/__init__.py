@@ -18,6 +18,7 @@ The package provides
 True
 """
 
+import importlib
 from typing import TYPE_CHECKING
 
 from .vtkFiltersHomeomorphism import (
@@ -48,12 +49,7 @@ __all__ = [
 
 def __getattr__(name):
     # The VTK classes do not need numpy.
-    if name == "Homeomorphism":
-        from .arrays import Homeomorphism
-
-        return Homeomorphism
-    if name == "isomorphic_triangulation":
-        from .isomorphic import isomorphic_triangulation
-
-        return isomorphic_triangulation
+    modules = {"Homeomorphism": ".arrays", "isomorphic_triangulation": ".isomorphic"}
+    if name in modules:
+        return getattr(importlib.import_module(modules[name], __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command dhm: maps files from one triangulated domain to another."""
 
-import importlib
 import os
 import signal
 import sys
@@ -10,39 +9,12 @@ import sys
 import click
 
 from . import __version__, options
+from .commands import check, convert, coordinates, figure, map, morph, refine, triangulate, warp
 from .files import FILE, USAGE, Failure, quote
-
-COMMANDS = {
-    "check": "Report whether two meshes define a map, and the properties of the map.",
-    "map": "Map tables, vector data, meshes and VTK's files from the source's domain to the target's.",
-    "warp": "Warp an image or a raster from the source's domain to the target's.",
-    "morph": "Make intermediate frames of images or data between the source and the target.",
-    "figure": "Draw a grid or the contours on the source, and mapped to the target.",
-    "coordinates": "Attach triangular coordinates (e, p, c) in a mesh to the points of data.",
-    "triangulate": "Make a pair of meshes from landmarks, outlines and constraint lines.",
-    "refine": "Make a finer pair whose piecewise linear map approximates the Smooth map, for PROJ and others.",
-    "convert": "Write a pair in another format.",
-}
-
-
-class Commands(click.Group):
-    """A group whose commands are modules, imported on use."""
-
-    def list_commands(self, context):
-        return list(COMMANDS)
-
-    def get_command(self, context, name):
-        if name not in COMMANDS:
-            context.fail(f'There is no command "{quote(name)}"; the commands are {", ".join(COMMANDS)}')
-        return importlib.import_module(f".commands.{name}", __package__).command
-
-    def format_commands(self, context, formatter):
-        with formatter.section("Commands"):
-            formatter.write_dl(COMMANDS.items())
+from .vtkfiles import capture_messages
 
 
 @click.group(
-    cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="""
     A pair of meshes is one file that has both (PROJ's triangulation files, or a mesh with the target's positions as a
@@ -71,14 +43,11 @@ def dhm():
     exact inverse."""
 
 
-def fail(message, status):
-    print("dhm: " + message, file=sys.stderr)
-    return status
+for module in (check, convert, coordinates, figure, map, morph, refine, triangulate, warp):
+    dhm.add_command(module.command)
 
 
 def main():
-    from .vtkfiles import capture_messages
-
     # Interrupts end long computations at once.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     capture_messages()
@@ -91,17 +60,18 @@ def main():
         sys.stdout.flush()
         return 0
     except Failure as failure:
-        return fail(str(failure), failure.status)
+        message, status = str(failure), failure.status
     except click.ClickException as error:
-        context = getattr(error, "ctx", None)
-        command = context.command_path if context else "dhm"
-        return fail(f"{error.format_message().rstrip('.')}. See {command} --help.", USAGE)
+        command = error.ctx.command_path if getattr(error, "ctx", None) else "dhm"
+        message, status = f"{error.format_message().rstrip('.')}. See {command} --help.", USAGE
     except MemoryError:
-        return fail("There is not enough memory.", FILE)
+        message, status = "There is not enough memory.", FILE
     except OSError as error:
         # Standard output is full or closed by its reader.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return fail(f"Cannot write to standard output: {error.strerror or quote(error)}.", FILE)
+        message, status = f"Cannot write to standard output: {error.strerror or quote(error)}.", FILE
+    print("dhm: " + message, file=sys.stderr)
+    return status
 
 
 if __name__ == "__main__":

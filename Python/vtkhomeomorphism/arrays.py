@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import inspect
+import itertools
 import math
 import operator
 from typing import Optional, Tuple
@@ -43,17 +45,30 @@ def _choose(names: dict, value: str, what: str) -> int:
         raise ValueError(f"{what} must be one of {', '.join(names)}, not {value!r}") from None
 
 
-def _name_of(names: dict, value: int) -> str:
-    return next(name for name, number in names.items() if number == value)
-
-
-def configure(algorithm, system: int, center: int, discordant_by_linear: bool):
-    """Sets the coordinate system in a filter of the module."""
-    algorithm.SetCoordinateSystem(system)
-    algorithm.SetCenterPoint(center)
+def configure(
+    algorithm,
+    system: str = "smooth",
+    *,
+    center: str = "centroid",
+    discordant_by_linear: bool = False,
+    tolerance: float = 0.0,
+    cubic_bending: str = "least",
+    maximum_deviation: Optional[float] = None,
+    fairness_refinement: int = 0,
+):
+    """Sets the options of the map, those of Homeomorphism, in a filter of the module."""
+    algorithm.SetCoordinateSystem(_choose(SYSTEMS, system, "system"))
+    algorithm.SetCenterPoint(_choose(CENTERS, center, "center"))
     algorithm.SetDiscordantTriangles(
         algorithm.USE_LINEAR if discordant_by_linear else algorithm.REFUSE
     )
+    algorithm.SetTolerance(tolerance)
+    algorithm.SetCubicBending(_choose(BENDINGS, cubic_bending, "cubic_bending"))
+    if maximum_deviation is not None:
+        if not maximum_deviation > 0:
+            raise ValueError(f"maximum_deviation must be positive, not {maximum_deviation!r}")
+        algorithm.SetMaximumDeviation(maximum_deviation)
+    algorithm.SetFairnessRefinement(fairness_refinement)
 
 
 def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
@@ -76,6 +91,18 @@ def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
     return result, dimension
 
 
+def as_cells(polygons) -> vtkCellArray:
+    """The cells of an array of point ids of shape (m, k), or of a list of polygons."""
+    if isinstance(polygons, numpy.ndarray):
+        sizes, ids = numpy.full(len(polygons), polygons.shape[1]), polygons.ravel()
+    else:
+        sizes, ids = list(map(len, polygons)), list(itertools.chain(*polygons))
+    arrays = (numpy.concatenate(([0], numpy.cumsum(sizes))), ids)
+    cells = vtkCellArray()
+    cells.SetData(*(numpy_to_vtkIdTypeArray(numpy.array(a, numpy.int64), deep=True) for a in arrays))
+    return cells
+
+
 def _as_triangles(triangles, points: int) -> vtkCellArray:
     array = numpy.asarray(triangles)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
@@ -88,14 +115,7 @@ def _as_triangles(triangles, points: int) -> vtkCellArray:
             f"triangles must have point numbers from 0 to {points - 1}; "
             f"they go from {array.min()} to {array.max()}"
         )
-    count = len(array)
-    connectivity = numpy.ascontiguousarray(array, numpy.int64).reshape(-1)
-    offsets = numpy.arange(0, 3 * count + 1, 3, dtype=numpy.int64)
-    cells = vtkCellArray()
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(offsets, deep=1), numpy_to_vtkIdTypeArray(connectivity, deep=1)
-    )
-    return cells
+    return as_cells(array)
 
 
 def _rebuild(source, target, triangles, system, options):
@@ -117,26 +137,24 @@ def _cast(values: numpy.ndarray, dtype) -> numpy.ndarray:
     return result
 
 
-class _Messages:
-    """Collects the errors of an algorithm instead of printing them."""
+def update(algorithm):
+    """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them."""
+    errors = []
 
-    def __init__(self, algorithm):
-        self.errors = []
+    def collect(caller, event, text=""):
+        # Without VTK's prefix, the position in the C++ source.
+        errors.append(text.split("): ", 1)[-1].strip())
 
-        def collect(caller, event, text=""):
-            self.errors.append(text)
-
-        collect.CallDataType = "string0"
-        algorithm.AddObserver("ErrorEvent", collect)
-        # Skip the executive's message that the algorithm failed.
-        algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
-
-    def raise_if_any(self):
-        if self.errors:
-            text = "\n".join(self.errors).strip()
-            self.errors.clear()
-            # Remove VTK's prefix, the position in the C++ source.
-            raise ValueError(text.split("): ", 1)[-1].strip())
+    collect.CallDataType = "string0"
+    # Skip the executive's message that the algorithm failed.
+    observers = ((algorithm, collect), (algorithm.GetExecutive(), lambda *_: None))
+    tags = [(sender, sender.AddObserver("ErrorEvent", observer)) for sender, observer in observers]
+    algorithm.Update()
+    for sender, tag in tags:
+        sender.RemoveObserver(tag)
+    if errors:
+        raise ValueError("\n".join(errors))
+    return algorithm.GetOutputDataObject(0)
 
 
 class Homeomorphism:
@@ -149,7 +167,7 @@ class Homeomorphism:
         distance from it and is preserved.
     triangles : array of int of shape (m, 3)
         Point ids of the triangles, the same in both.
-    system : {"smooth", "linear", "contour"}
+    system : {"smooth", "linear", "contour", "cubic"}
         The coordinate system. See vtkDifferentiableHomeomorphism.
     center : {"centroid", "incenter"}
         Start of the contours of the Contour system.
@@ -172,58 +190,28 @@ class Homeomorphism:
     triangles. An object must not be used by several threads at a time; each call is itself parallel.
     """
 
-    def __init__(
-        self,
-        source,
-        target,
-        triangles,
-        system: str = "smooth",
-        *,
-        center: str = "centroid",
-        discordant_by_linear: bool = False,
-        tolerance: float = 0.0,
-        cubic_bending: str = "least",
-        maximum_deviation: Optional[float] = None,
-        fairness_refinement: int = 0,
-    ):
-        self._meshes = []
-        dimensions = []
+    def __init__(self, source, target, triangles, system: str = "smooth", **options):
+        self._meshes, self._dimensions = [], []
         for points, what in ((source, "source"), (target, "target")):
             # A copy, so that validated points cannot change.
             vtk_points, dimension = _as_points(numpy.array(points), what)
             mesh = vtkPolyData()
             mesh.SetPoints(vtk_points)
-            dimensions.append(dimension)
+            self._dimensions.append(dimension)
             self._meshes.append(mesh)
-        if self._meshes[0].GetNumberOfPoints() != self._meshes[1].GetNumberOfPoints():
+        sizes = [mesh.GetNumberOfPoints() for mesh in self._meshes]
+        if sizes[0] != sizes[1]:
             raise ValueError(
-                f"source has {self._meshes[0].GetNumberOfPoints()} points, "
-                f"target {self._meshes[1].GetNumberOfPoints()}: they must correspond one to one"
+                f"source has {sizes[0]} points, target {sizes[1]}: they must correspond one to one"
             )
-        cells = _as_triangles(triangles, self._meshes[0].GetNumberOfPoints())
+        cells = _as_triangles(triangles, sizes[0])
         for mesh in self._meshes:
             mesh.SetPolys(cells)
-        self._dimensions = dimensions
-        self._settings = (
-            _choose(SYSTEMS, system, "system"),
-            _choose(CENTERS, center, "center"),
-            discordant_by_linear,
-        )
-        if maximum_deviation is not None and not maximum_deviation > 0:
-            raise ValueError(f"maximum_deviation must be positive, not {maximum_deviation!r}")
-        self._cubic = {
-            "cubic_bending": cubic_bending,
-            "maximum_deviation": maximum_deviation,
-            "fairness_refinement": fairness_refinement,
-        }
-        self._bending = _choose(BENDINGS, cubic_bending, "cubic_bending")
-        self._filter = vtkDifferentiableHomeomorphism()
-        self._set_up(self._filter)
-        self._filter.SetTolerance(tolerance)
+        self._system, self._options = system, options
+        self._filter = self._set_up(vtkDifferentiableHomeomorphism())
         self._filter.TransformActiveAttributesOff()
         self._filter.BlankOutsideOff()
         self._filter.SetOutputPointsPrecision(self._filter.DOUBLE_PRECISION)
-        self._messages = _Messages(self._filter)
         # Report invalid meshes at once.
         self._run(numpy.empty((0, 3)), False)
 
@@ -233,22 +221,16 @@ class Homeomorphism:
         for them. Options of `isomorphic_triangulation` and of this class are understood."""
         from .isomorphic import isomorphic_triangulation
 
-        own = {
-            name: options.pop(name)
-            for name in ("center", "discordant_by_linear", "tolerance")
-            if name in options
-        }
+        names = inspect.signature(configure).parameters
+        own = {name: options.pop(name) for name in list(options) if name in names}
         pair = isomorphic_triangulation(source, target, **options)
         return cls(pair.source, pair.target, pair.triangles, system, **own)
 
     def _set_up(self, algorithm):
         algorithm.SetSourceData(self._meshes[0])
         algorithm.SetTargetData(self._meshes[1])
-        configure(algorithm, *self._settings)
-        algorithm.SetCubicBending(self._bending)
-        if self._cubic["maximum_deviation"] is not None:
-            algorithm.SetMaximumDeviation(self._cubic["maximum_deviation"])
-        algorithm.SetFairnessRefinement(self._cubic["fairness_refinement"])
+        configure(algorithm, self._system, **self._options)
+        return algorithm
 
     def __reduce__(self):
         arrays = [
@@ -256,14 +238,7 @@ class Homeomorphism:
             for mesh, dimension in zip(self._meshes, self._dimensions)
         ]
         triangles = vtk_to_numpy(self._meshes[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        system, center, discordant_by_linear = self._settings
-        options = {
-            "center": _name_of(CENTERS, center),
-            "discordant_by_linear": discordant_by_linear,
-            "tolerance": self._filter.GetTolerance(),
-            **self._cubic,
-        }
-        return _rebuild, (*arrays, triangles, _name_of(SYSTEMS, system), options)
+        return _rebuild, (*arrays, triangles, self._system, self._options)
 
     def _run(self, points, inverse: bool):
         vtk_points, dimension = _as_points(points, "points")
@@ -271,9 +246,7 @@ class Homeomorphism:
         data.SetPoints(vtk_points)
         self._filter.SetDataObject(data)
         self._filter.SetInverse(inverse)
-        self._filter.Update()
-        self._messages.raise_if_any()
-        return self._filter.GetOutputDataObject(0), dimension
+        return update(self._filter), dimension
 
     def _map(self, points, inverse: bool) -> numpy.ndarray:
         output, dimension = self._run(points, inverse)
@@ -311,17 +284,12 @@ class Homeomorphism:
     def coordinates(self, points):
         """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0
         outside), p and c (NaN outside); four arrays of shape (n,)."""
-        algorithm = vtkTriangularCoordinates()
-        messages = _Messages(algorithm)
-        algorithm.SetInputData(0, self._meshes[0])
-        configure(algorithm, *self._settings)
+        algorithm = self._set_up(vtkTriangularCoordinates())
         algorithm.GenerateLinesOff()
         data = vtkPolyData()
         data.SetPoints(_as_points(points, "points")[0])
         algorithm.SetDataObject(data)
-        algorithm.Update()
-        messages.raise_if_any()
-        arrays = algorithm.GetOutputDataObject(0).GetPointData()
+        arrays = update(algorithm).GetPointData()
         return tuple(
             numpy.array(vtk_to_numpy(arrays.GetArray(name)))
             for name in ("TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter")
@@ -331,13 +299,9 @@ class Homeomorphism:
         """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict
         of arrays with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`,
         `EdgeTriangles`, ...; see vtkJacobianContinuity)."""
-        algorithm = vtkJacobianContinuity()
-        messages = _Messages(algorithm)
-        self._set_up(algorithm)
+        algorithm = self._set_up(vtkJacobianContinuity())
         algorithm.SetSamplesPerEdge(samples)
-        algorithm.Update()
-        messages.raise_if_any()
-        arrays = algorithm.GetOutput().GetCellData()
+        arrays = update(algorithm).GetCellData()
         return {
             arrays.GetArrayName(i): numpy.array(vtk_to_numpy(arrays.GetArray(i)))
             for i in range(arrays.GetNumberOfArrays())
@@ -405,21 +369,16 @@ class Homeomorphism:
         )
         values.SetName("Values")
         vtk_image.GetPointData().SetScalars(values)
-        algorithm = vtkResampleThroughHomeomorphism()
-        messages = _Messages(algorithm)
-        self._set_up(algorithm)
+        algorithm = self._set_up(vtkResampleThroughHomeomorphism())
         algorithm.SetDataObject(vtk_image)
         algorithm.SetInverse(inverse)
         algorithm.BlankOutsideOff()
         algorithm.TransformActiveAttributesOff()
-        algorithm.SetTolerance(self._filter.GetTolerance())
         algorithm.SetSamplingDimensions(out_columns, out_rows)
         algorithm.SetSamplingBounds(
             0.0, spacing * (out_columns - 1), 0.0, spacing * (out_rows - 1)
         )
-        algorithm.Update()
-        messages.raise_if_any()
-        output = algorithm.GetOutputDataObject(0).GetPointData()
+        output = update(algorithm).GetPointData()
         warped = numpy.array(vtk_to_numpy(output.GetArray("Values"))).reshape(
             (out_rows, out_columns) + array.shape[2:]
         )

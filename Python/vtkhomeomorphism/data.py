@@ -9,8 +9,9 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import images, meshes, options, tables, vectors, vtkfiles
-from .files import PICTURES, REFUSED, TABLES, USAGE, VECTORS, Failure, Input, Output, count, inform
-from .mapping import MASK, arrays_of, as_data, named_array
+from .arrays import as_cells
+from .files import PICTURES, TABLES, USAGE, VECTORS, Failure, Input, Output, count, dotted, inform
+from .mapping import MASK, add_array, arrays_of, as_data
 
 READ = tuple(dict.fromkeys(TABLES + VECTORS + meshes.READ + vtkfiles.FORMATS + PICTURES))
 WRITE = TABLES + VECTORS + vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
@@ -20,16 +21,15 @@ def data_options(command):
     """The output and the options of data; the command takes `data`, a Data."""
 
     @functools.wraps(command)
-    def wrapped(output, force, output_format, columns, data_format, require_inside, crs=None, **rest):
-        return command(data=Data(output, force, output_format, columns, data_format, require_inside, crs), **rest)
+    def wrapped(output, force, output_format, columns, require_inside, crs=None, **rest):
+        output = Output(output, output_format, force, WRITE, "data")
+        return command(data=Data(output, columns, require_inside, crs), **rest)
 
     return options.add(
         options.output("The result: of the data's kind (images become .vts), or - for standard output.", "csv"),
         click.option("--columns", default="", metavar="LIST",
                      help="Names or numbers (from 1) of a table's coordinate columns, separated by commas (default: "
                           "usual names, such as x,y,z, E,N or lon,lat; of a table without names, the first two)."),
-        click.option("--data-format", default="csv", metavar="EXTENSION", show_default=True,
-                     help="Format of data from standard input."),
         click.option("--require-inside", is_flag=True,
                      help="Write nothing and fail (status 1) if a point is outside the domain."),
     )(wrapped)
@@ -38,26 +38,25 @@ def data_options(command):
 class Data:
     """Data that is read, processed and written."""
 
-    def __init__(self, output, force, output_format, columns, data_format, require_inside, crs):
-        self.output = Output(output, output_format, force, WRITE, "data")
-        self.columns, self.data_format, self.require_inside, self.crs = columns, data_format, require_inside, crs
+    def __init__(self, output, columns, require_inside, crs):
+        self.output, self.columns, self.require_inside, self.crs = output, columns, require_inside, crs
 
-    def process(self, name, work, moves, shift=None, densify=0.0, known_crs=None):
+    def process(self, name, format, work, moves, shift=None, densify=0.0, known_crs=(None, None)):
         """Reads the data, processes it and writes it.
 
         work : object with map_points(points) -> images, arrays and map_data(data) -> data, and the count `outside`
         moves : whether points move
         shift : that of a triangulation file, whose map uses heights as the third coordinate
         """
-        input = Input(name, self.data_format, "--data-format")
+        input = Input(name, format or "csv")
         kind, target = input.format, self.output.format
         if kind not in READ:
-            raise Failure(f"Cannot read {input.name} as data: the formats are .{', .'.join(READ)}.", USAGE)
+            raise Failure(f"Cannot read {input.name} as data: the formats are {dotted(READ)}.", USAGE)
         if (target in TABLES) > (kind in TABLES):
             raise Failure(f"Only points of a table can be written as one (.{target}), {input.name} is a .{kind}.", USAGE)
-        if (target in VECTORS) > (kind in VECTORS) or kind in VECTORS and target not in VECTORS:
+        if (target in VECTORS) != (kind in VECTORS):
             raise Failure(f"Vector data stays vector data: .{kind} cannot be written as .{target}; the formats are "
-                          f".{', .'.join(VECTORS)}.", USAGE)
+                          f"{dotted(VECTORS)}.", USAGE)
         if target in meshes.FLAT_WRITE and not moves:
             raise Failure(f"Coordinates are arrays of points, which a .{target} file does not have: write a .vtp.", USAGE)
         with input:
@@ -66,43 +65,41 @@ class Data:
             elif kind in TABLES:
                 self._process_table(input, work, moves, shift)
             else:
-                self._process_vtk(input, work, moves, shift)
+                raster = images.read(input) if kind in PICTURES else None
+                data = raster.grid.to_vtk(raster.all()) if raster else meshes.read_data(input)
+                self._write(self._map_data(work, data, shift), work.outside)
 
     def _report(self, outside, noun="point", extra="", mark=f"marked 0 in {MASK}"):
         if outside:
             message = f"{count(outside, noun)} {'is' if outside == 1 else 'are'} outside the domain{extra}"
             if self.require_inside:
-                raise Failure(message + ".", REFUSED)
+                raise Failure(message + ".")
             inform(f"{message}: {mark}.")
 
     def _process_table(self, input, work, moves, shift):
-        table = tables.Table(input, self.columns, with_height=bool(shift and shift.offsets is not None))
+        table = tables.Table(input, self.columns, with_height=bool(shift and shift.heights))
         points = table.coordinates
         wrong = ~numpy.isfinite(points).all(axis=1)
-        extra = ""
-        if wrong.any():
-            extra = (f" (of {wrong.sum()}, the coordinates are not finite numbers; the first is point "
-                     f"{int(wrong.argmax())}, counted from 0)")
-        if self.output.format in TABLES:
-            images, arrays = work.map_points(points)
-            mark = f"marked 0 in {MASK}"
-            if "Fallback" in arrays:
-                mark += f"; {int(arrays['Fallback'].sum())} of them are mapped by the file's fallback strategy " \
-                        f'"{shift.fallback}", marked 1 in Fallback'
-            self._report(work.outside, extra=extra, mark=mark)
-            if moves:
-                table.move(images)
-            for name, values in arrays.items():
-                table.add(name, values)
-            with self.output as output:
-                table.write(output)
+        extra = f" (of {wrong.sum()}, the coordinates are not finite numbers; the first is point {wrong.argmax()}, counted " \
+                "from 0)" if wrong.any() else ""
+        if self.output.format not in TABLES:
+            data = as_data(points)
+            data.SetVerts(as_cells(numpy.arange(len(points))[:, None]))
+            table.add_columns_to(data)
+            self._write(self._map_data(work, data, shift), work.outside, extra)
             return
-        data = as_data(points)
-        data.SetVerts(meshes.as_cells(numpy.arange(len(points))[:, None]))
-        table.add_columns_to(data)
-        result = self._map_data(work, data, shift)
-        self._report(work.outside, extra=extra)
-        self._write(result)
+        moved, arrays = work.map_points(points)
+        mark = f"marked 0 in {MASK}"
+        if "Fallback" in arrays:
+            mark += f"; {arrays['Fallback'].sum()} of them are mapped by the file's fallback strategy \"{shift.fallback}\", " \
+                    "marked 1 in Fallback"
+        self._report(work.outside, extra=extra, mark=mark)
+        if moves:
+            table.move(moved)
+        for name, values in arrays.items():
+            table.add(name, values)
+        with self.output as output:
+            table.write(output)
 
     def _map_data(self, work, data, shift):
         """Maps VTK data; for a triangulation file, with heights as the third coordinate."""
@@ -112,26 +109,16 @@ class Data:
         moved, arrays = work.map_points(points)
         flat = vtkPolyData()
         flat.ShallowCopy(data)
-        flat.SetPoints(meshes.as_points(points * [1, 1, 0]))
+        flat.SetPoints(meshes.as_points(points[:, :2]))
         result = work.map_data(flat)
         # Points outside keep their coordinates.
-        moved = numpy.where(numpy.isnan(moved), points, moved)
-        result.SetPoints(meshes.as_points(moved))
+        result.SetPoints(meshes.as_points(numpy.where(numpy.isnan(moved), points, moved)))
         if "Fallback" in arrays:
-            result.GetPointData().AddArray(named_array(arrays["Fallback"], "Fallback"))
+            add_array(result, "Fallback", arrays["Fallback"])
         return result
 
-    def _process_vtk(self, input, work, moves, shift):
-        if input.format in PICTURES:
-            raster = images.read(input)
-            data = raster.grid.to_vtk(raster.window((0, raster.grid.width), (0, raster.grid.height)))
-        else:
-            data = vtkfiles.read(input) if input.format in vtkfiles.FORMATS else meshes.read(input)
-        result = self._map_data(work, data, shift)
-        self._report(work.outside)
-        self._write(result)
-
-    def _write(self, result):
+    def _write(self, result, outside, extra=""):
+        self._report(outside, extra=extra)
         if self.output.format in meshes.FLAT_WRITE and (arrays_of(result).get(MASK, numpy.ones(1)) == 0).any():
             raise Failure(f"Points are outside the domain, which a .{self.output.format} file cannot mark: write a .vtp.")
         with self.output as output:
@@ -139,14 +126,13 @@ class Data:
 
     def _process_vectors(self, input, work, densify, known_crs):
         layers = vectors.read(input)
-        crs_in, crs_out = known_crs or (None, None)
         for name, layer in layers.items():
-            if crs_in and layer.crs and not _same_crs(layer.crs, crs_in):
+            if known_crs[0] and layer.crs and layer.crs != known_crs[0]:
                 inform(f"{input.name}, layer {name}: its coordinate reference system is {layer.crs.to_string()}, but "
-                       f"the map is from {crs_in}.")
+                       f"the map is from {known_crs[0]}.")
         result, outside = vectors.map_layers(layers, lambda points: work.map_points(points)[0], densify)
         self._report(outside, "feature", mark=f"its geometry is empty, and it is marked 1 in {vectors.MARK}")
-        crs = crs_out if self.crs is None else self.crs
+        crs = known_crs[1] if self.crs is None else self.crs
         if crs is not None:
             try:
                 for layer in result.values():
@@ -157,10 +143,3 @@ class Data:
                 raise Failure(f"The coordinate reference system {crs} is not known: {error}", USAGE) from None
         with self.output as output:
             vectors.write(result, output)
-
-
-def _same_crs(crs, name):
-    try:
-        return crs.equals(name)
-    except Exception:
-        return True

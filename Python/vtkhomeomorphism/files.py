@@ -3,13 +3,13 @@
 """Input and output files, including standard input and output. Outputs are written completely or not at all."""
 
 import contextlib
-import errno
+import importlib
 import os
 import shutil
 import signal
-
 import sys
 import tempfile
+import uuid
 
 REFUSED, USAGE, FILE = 1, 2, 3
 """Exit statuses: the data are refused, the command line is wrong, a file cannot be read or written."""
@@ -42,20 +42,22 @@ def inform(message):
 
 def progress(items, text):
     """The items, with a progress bar on a terminal if tqdm is installed."""
-    if _quiet or not sys.stderr.isatty():
-        return items
     try:
         import tqdm
     except ImportError:
         return items
-    return tqdm.tqdm(items, desc=text, leave=False)
+    return tqdm.tqdm(items, desc=text, leave=False, disable=_quiet or None)
 
 
 def quote(text, length=80):
     """A text shortened to one line, for messages."""
-    text = " ".join(str(text).split())
-    text = "".join(c if c.isprintable() else "?" for c in text)
+    text = "".join(c if c.isprintable() else "?" for c in " ".join(str(text).split()))
     return text if len(text) <= length else text[:length] + " ..."
+
+
+def quote_message(message, file):
+    """A library's message, in which the input or output has the name that the user gave it."""
+    return quote(str(message).replace(file.path, file.name), 300)
 
 
 def count(number, noun, plural=None):
@@ -67,18 +69,17 @@ def format_of(name):
     return os.path.splitext(name)[1][1:].lower()
 
 
-def import_extra(module, package, purpose):
-    """Imports an optional library. Raises Failure with the name of its package."""
-    import importlib
+def dotted(formats):
+    return ", ".join("." + name for name in formats)
 
+
+def import_extra(module, purpose):
+    """Imports an optional library. Raises Failure with the name of its package."""
     try:
         return importlib.import_module(module)
     except ImportError:
-        raise Failure(
-            f"{purpose} needs {module}: install Debian's package {package}, "
-            f"or run pip install {module.split('.')[0]}.",
-            FILE,
-        ) from None
+        text = f"{purpose} needs {module}: install Debian's package python3-{module}, or run pip install {module}."
+        raise Failure(text, FILE) from None
 
 
 _folders = set()
@@ -96,9 +97,11 @@ def scratch_folder(parent=None):
     """A temporary folder that is removed even if the process is interrupted."""
     signals = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     before = {number: signal.signal(number, _clean_up_and_stop) for number in signals}
-    folder = tempfile.mkdtemp(prefix=".dhm-unfinished-", dir=parent)
+    folder = os.path.join(parent or tempfile.gettempdir(), f".dhm-unfinished-{uuid.uuid4().hex}")
+    # Known before it exists, so that interrupts never leave it.
     _folders.add(folder)
     try:
+        os.mkdir(folder, 0o700)
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -108,35 +111,28 @@ def scratch_folder(parent=None):
 
 
 class Input:
-    """A file to read; `-` is standard input, of the given format, kept in a temporary file while open."""
+    """A file to read, as a context; `-` is standard input, of the given format, kept in a temporary file."""
 
-    def __init__(self, name, stdin_format="", option=""):
+    def __init__(self, name, standard_format=""):
         if not name:
             raise Failure("The name of an input file is empty.", USAGE)
         self.standard = name == "-"
         self.name = "standard input" if self.standard else name
-        self.format = stdin_format if self.standard else format_of(name)
-        self.option = option
-        self._stack = contextlib.ExitStack()
+        self.format = standard_format if self.standard else format_of(name)
+        self.path = name
 
     def __enter__(self):
-        if not self.standard:
-            try:
-                with open(self.name, "rb"):
-                    pass
-            except IsADirectoryError:
-                raise Failure(f"Cannot read {self.name}: it is a folder.", FILE) from None
-            except OSError as error:
-                raise Failure(f"Cannot read {self.name}: {error.strerror}.", FILE) from None
-            self.path = self.name
-            return self
-        folder = self._stack.enter_context(scratch_folder())
-        self.path = os.path.join(folder, "input." + self.format)
+        self._stack = contextlib.ExitStack()
         try:
-            with open(self.path, "wb") as file:
-                shutil.copyfileobj(sys.stdin.buffer, file)
+            if self.standard:
+                self.path = os.path.join(self._stack.enter_context(scratch_folder()), "input." + self.format)
+                with open(self.path, "wb") as file:
+                    shutil.copyfileobj(sys.stdin.buffer, file)
+            open(self.path, "rb").close()
+        except IsADirectoryError:
+            raise Failure(f"Cannot read {self.name}: it is a folder.", FILE) from None
         except OSError as error:
-            raise Failure(f"Cannot keep standard input: {error.strerror}.", FILE) from None
+            raise Failure(f"Cannot read {self.name}: {error.strerror}.", FILE) from None
         return self
 
     def __exit__(self, *exception):
@@ -144,63 +140,51 @@ class Input:
 
     def fail(self, message):
         """Raises the failure to read this file."""
-        hint = f" It was read as .{self.format} ({self.option} names another format)." if self.standard else ""
+        hint = f" It was read as .{self.format} (--input-format names another format)." if self.standard else ""
         raise Failure(f"{self.name}: {message}{hint}", FILE) from None
 
-
-def replace_path(message, input):
-    """The message of a library, with the name of the file as the user gave it."""
-    return quote(str(message).replace(input.path, input.name), 300)
+    def fail_by(self, error):
+        """The same, with the message of a library."""
+        self.fail(f"it cannot be read as .{self.format}: {quote_message(error, self) or type(error).__name__}")
 
 
 class Output:
     """A file to write, as a context: `path` is a temporary file that takes the output's name when the context
     ends without an exception, together with the files beside it. `-` is standard output."""
 
-    def __init__(self, name, stdout_format="", force=False, formats=(), what="data"):
+    def __init__(self, name, standard_format="", force=False, formats=(), what="data"):
         if not name:
             raise Failure("The name of the output is empty.", USAGE)
-        self.standard = name == "-"
-        self.name = "standard output" if self.standard else name
-        self.format = stdout_format if self.standard else format_of(name)
+        self.name = "standard output" if name == "-" else name
+        self.special = name == "-" or os.path.exists(name) and not os.path.isfile(name)
+        self.format = standard_format if name == "-" else format_of(name) or self.special and standard_format
         self.force = force
-        if not self.format and os.path.exists(name) and not os.path.isfile(name):
-            # A pipe or a device.
-            self.format = stdout_format
-        if formats and self.format not in formats:
+        if self.format not in formats:
             found = f"has the extension .{self.format}" if self.format else "has no extension"
-            raise Failure(
-                f"Cannot write {what} to {self.name}: the name {found}; "
-                f"the formats are {', '.join('.' + known for known in formats)}.",
-                USAGE,
-            )
-        self.target = os.path.realpath(name)
-        self.special = self.standard or (os.path.exists(name) and not os.path.isfile(name))
-        if os.path.isdir(self.target) and not self.standard:
+            raise Failure(f"Cannot write {what} to {self.name}: the name {found}; the formats are {dotted(formats)}.", USAGE)
+        self.target = name if self.special else os.path.realpath(name)
+        if os.path.isdir(name):
             raise Failure(f"Cannot write {name}: it is a folder.", FILE)
+        self.folder = None if self.special else os.path.dirname(self.target)
         if not self.special:
-            self._require_new()
+            self._require_new(self.target)
             try:
-                os.listdir(os.path.dirname(self.target))
+                # Found out before the work.
+                tempfile.TemporaryFile(dir=self.folder).close()
             except OSError as error:
-                raise Failure(f"Cannot write {name}: {error.strerror}.", FILE) from None
-            if not os.access(os.path.dirname(self.target), os.W_OK):
-                raise Failure(f"Cannot write {name}: Permission denied.", FILE)
+                raise self._failure(error) from None
 
-    def _require_new(self):
-        if os.path.exists(self.target) and not self.force:
-            raise Failure(f"{self.name} exists. Use --force to replace it.", FILE)
+    def _require_new(self, path):
+        if os.path.exists(path) and not self.force:
+            raise Failure(f"{path if path != self.target else self.name} exists. Use --force to replace it.", FILE)
 
     def __enter__(self):
         self._stack = contextlib.ExitStack()
         try:
-            folder = self._stack.enter_context(
-                scratch_folder(None if self.special else os.path.dirname(self.target))
-            )
+            folder = self._stack.enter_context(scratch_folder(self.folder))
         except OSError as error:
             raise self._failure(error) from None
-        base = "output." + self.format if self.special else os.path.basename(self.target)
-        self.path = os.path.join(folder, base)
+        self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
         return self
 
     def __exit__(self, kind, exception, traceback):
@@ -209,43 +193,31 @@ class Output:
                 if kind is None:
                     self._commit()
                 elif isinstance(exception, OSError):
-                    raise self._failure(exception) from None
+                    raise exception
             except OSError as error:
                 raise self._failure(error) from None
 
     def _failure(self, error):
-        if self.standard:
+        if self.name == "standard output":
             # Python flushes what is left when it closes standard output, and would end with another status.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE)
 
     def _commit(self):
         if self.special:
-            with open(self.path, "rb") as file:
-                if self.standard:
-                    shutil.copyfileobj(file, sys.stdout.buffer)
-                    sys.stdout.buffer.flush()
-                else:
-                    with open(self.name, "wb") as device:
-                        shutil.copyfileobj(file, device)
+            standard = self.name == "standard output"
+            with open(self.path, "rb") as file, contextlib.ExitStack() as stack:
+                goal = sys.stdout.buffer if standard else stack.enter_context(open(self.target, "wb"))
+                shutil.copyfileobj(file, goal)
+                goal.flush()
             return
-        if not os.path.exists(self.path):
-            raise OSError(errno.EIO, "nothing was written")
-        folder = os.path.dirname(self.path)
-        # Rename accompanying files first, so that the output exists only if it is complete.
-        for name in sorted(os.listdir(folder), key=lambda name: name == os.path.basename(self.path)):
-            goal = os.path.join(os.path.dirname(self.target), name)
-            if self.force:
-                os.replace(os.path.join(folder, name), goal)
-                continue
-            try:
-                os.link(os.path.join(folder, name), goal)
-            except FileExistsError:
-                raise Failure(f"{goal} exists. Use --force to replace it.", FILE) from None
-            except OSError:
-                # A file system without hard links.
-                self._require_new()
-                os.replace(os.path.join(folder, name), goal)
+        os.stat(self.path)
+        # Files beside the output come first, so that it exists only if it is complete.
+        folder, main = os.path.split(self.path)
+        for name in sorted(os.listdir(folder), key=lambda name: name == main):
+            goal = os.path.join(self.folder, name)
+            self._require_new(goal)
+            os.replace(os.path.join(folder, name), goal)
 
     def write_bytes(self, data):
         with open(self.path, "wb") as file:

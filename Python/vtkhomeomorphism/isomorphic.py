@@ -11,7 +11,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from .arrays import _as_points, _choose, _Messages
+from .arrays import _as_points, _choose, update
 from .vtkFiltersHomeomorphism import vtkIsomorphicTriangulation
 
 QUALITIES = {
@@ -195,9 +195,7 @@ def isomorphic_triangulation(
     algorithm.SetMaximumNumberOfAddedPoints(-1 if maximum_added_points is None else maximum_added_points)
     algorithm.SetMaximumTriangleSize(maximum_triangle_size)
     algorithm.SetLeaveOutConflictingSegments(leave_out_conflicting_segments)
-    messages = _Messages(algorithm)
-    algorithm.Update()
-    messages.raise_if_any()
+    update(algorithm)
     outputs = [algorithm.GetOutput(0), algorithm.GetOutput(1)]
     triangles = vtk_to_numpy(outputs[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
     residuals = vtk_to_numpy(outputs[0].GetPointData().GetArray("LandmarkResidual"))

@@ -3,15 +3,15 @@
 """Use of the filters by the commands: settings, errors, and the additions of PROJ's triangulation files to the map
 (heights, points outside, the distance from the piecewise linear map on the ground)."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import meshes
-from .arrays import CENTERS, SYSTEMS, configure
-from .files import REFUSED, Failure, inform
+from .arrays import configure, update
+from .files import Failure, inform
 from .vtkfiles import take_messages
 from .vtkFiltersHomeomorphism import vtkDifferentiableHomeomorphism
 
@@ -23,46 +23,43 @@ class Settings:
     """The options of the map."""
 
     system: str = ""
-    """A key of SYSTEMS. If empty, Smooth; for triangulation files Linear, which is their official meaning."""
-    incenter: bool = False
-    linear_where_discordant: bool = False
+    """A key of SYSTEMS. If empty, the default of the command and the pair."""
     mask_invalid: bool = False
-    tolerance: float = 0.0
+    options: dict = field(default_factory=dict)
+    """Further options of arrays.configure."""
 
-    def system_for(self, pair):
-        return self.system or ("linear" if pair.shift else "smooth")
+    def choose(self, pair, default="smooth"):
+        """The settings with a system: for triangulation files Linear, which is their official meaning, otherwise the
+        default, but Smooth where Cubic is the default of a surface. Informs of a system that the user did not choose."""
+        if self.system:
+            return self
+        system, why = default, ""
+        if pair.shift:
+            system, why = "linear", ", the official meaning of a triangulation file"
+        elif default == "cubic" and not pair.is_planar():
+            system, why = "smooth", ", because cubic maps meshes in a plane only"
+        inform(f"The coordinate system is {system}{why} (--system).")
+        return replace(self, system=system)
 
-    def apply(self, algorithm, system=""):
-        center = CENTERS["incenter" if self.incenter else "centroid"]
-        configure(algorithm, SYSTEMS[system or self.system or "smooth"], center, self.linear_where_discordant)
+    def apply(self, algorithm):
+        configure(algorithm, self.system or "smooth", **self.options)
         algorithm.SetMaskInvalidTriangles(self.mask_invalid)
-        if hasattr(algorithm, "SetTolerance"):
-            algorithm.SetTolerance(self.tolerance)
 
 
 def run(algorithm, name=""):
     """Updates a filter. Raises Failure with its errors, and passes its warnings on."""
     take_messages()
-    errors = []
-
-    def collect(caller, event, text=""):
-        errors.append(text.split("): ", 1)[-1].strip())
-
-    collect.CallDataType = "string0"
-    tags = [
-        (algorithm, algorithm.AddObserver("ErrorEvent", collect)),
-        (algorithm.GetExecutive(), algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)),
-    ]
-    algorithm.Update()
-    for item, tag in tags:
-        item.RemoveObserver(tag)
     prefix = name + ": " if name else ""
-    if errors or algorithm.GetErrorCode() != 0:
-        raise Failure(prefix + "\n".join(errors or [take_messages()]), REFUSED)
+    try:
+        result = update(algorithm)
+    except ValueError as error:
+        raise Failure(f"{prefix}{error}") from None
     warnings = take_messages()
+    if algorithm.GetErrorCode() != 0:
+        raise Failure(prefix + warnings)
     if warnings:
         inform(prefix + warnings)
-    return algorithm.GetOutputDataObject(0)
+    return result
 
 
 def as_data(points):
@@ -79,23 +76,25 @@ def arrays_of(data):
     return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName() != "vtkGhostType"}
 
 
+def add_array(data, name, values):
+    """Adds a point array."""
+    array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
+    array.SetName(name)
+    data.GetPointData().AddArray(array)
+
+
 class PointMap:
     """The map of a pair, for points and data."""
 
     def __init__(self, pair, settings, inverse=False):
         self.pair, self.settings, self.inverse = pair, settings, inverse
-        self.system = settings.system_for(pair)
         self.outside = 0
-        self.filter = self._make(self.system)
-
-    def _make(self, system):
-        algorithm = vtkDifferentiableHomeomorphism()
-        self.settings.apply(algorithm, system)
-        algorithm.SetSourceData(self.pair.source)
-        algorithm.SetTargetData(self.pair.target)
-        algorithm.SetInverse(self.inverse)
-        algorithm.SetOutputPointsPrecision(algorithm.DOUBLE_PRECISION)
-        return algorithm
+        self.filter = vtkDifferentiableHomeomorphism()
+        settings.apply(self.filter)
+        self.filter.SetSourceData(pair.source)
+        self.filter.SetTargetData(pair.target)
+        self.filter.SetInverse(inverse)
+        self.filter.SetOutputPointsPrecision(self.filter.DOUBLE_PRECISION)
 
     def map_data(self, data):
         """A data object with moved points, whose point arrays include the mask and others requested of the filter."""
@@ -106,7 +105,7 @@ class PointMap:
             from . import report
 
             # All kinds of defects; the filter reports the first only.
-            report.refuse(self.pair)
+            report.require_map(self.pair)
             raise
         self.outside = self.filter.GetNumberOfOutsidePoints()
         return result
@@ -117,97 +116,59 @@ class PointMap:
         triangulation file, the third coordinate is a height."""
         shift = self.pair.shift
         with_ids = self.filter.GetComputeTriangleId()
-        if shift:
-            self.filter.ComputeTriangleIdOn()
+        self.filter.SetComputeTriangleId(with_ids or shift is not None)
         result = self.map_data(as_data(points[:, :2] if shift else points))
+        self.filter.SetComputeTriangleId(with_ids)
         arrays = arrays_of(result)
-        mask = arrays[MASK] != 0
         images = meshes.points_of(result)[:, : points.shape[1]].copy()
-        images[~mask] = numpy.nan
+        images[arrays[MASK] == 0] = numpy.nan
         if shift:
-            self._shift(points, images, mask, arrays)
-            self.filter.SetComputeTriangleId(with_ids)
-            if not with_ids:
-                del arrays["TriangleId"]
-            self._report_deviation(points, images)
+            cells = arrays["TriangleId"] if with_ids else arrays.pop("TriangleId")
+            self._shift(points, images, cells.astype(numpy.int64), arrays)
+            if self.settings.system != "linear" and len(points):
+                self._report_deviation(points, images)
         return images, arrays
 
-    def _shift(self, points, images, mask, arrays):
+    def _shift(self, points, images, cells, arrays):
         """Maps heights and points outside like PROJ."""
-        shift, cells = self.pair.shift, arrays["TriangleId"].astype(numpy.int64)
-        flat = points[:, :2]
+        shift, flat = self.pair.shift, points[:, :2]
         if shift.fallback != "none":
-            outside = numpy.flatnonzero(~mask & numpy.isfinite(flat).all(axis=1))
-            nearest = shift.nearest(flat[outside], self.inverse)
-            outside, nearest = outside[nearest >= 0], nearest[nearest >= 0]
-            cells[outside] = nearest
-            weights = shift.weights(flat[outside], nearest, self.inverse)
-            images[outside, :2] = shift.interpolate(
-                shift.source if self.inverse else shift.target, weights, nearest
-            )
-            arrays["Fallback"] = numpy.zeros(len(points), numpy.uint8)
-            arrays["Fallback"][outside] = 1
+            outside = numpy.flatnonzero((arrays[MASK] == 0) & numpy.isfinite(flat).all(axis=1))
+            cells[outside] = shift.nearest(flat[outside], self.inverse)
+            outside = outside[cells[outside] >= 0]
+            values = shift.source if self.inverse else shift.target
+            images[outside, :2] = shift.interpolate(values, flat[outside], cells[outside], self.inverse)
+            arrays["Fallback"] = numpy.isin(numpy.arange(len(points)), outside).astype(numpy.uint8)
+        inside = cells >= 0
         if not shift.horizontal:
-            images[cells >= 0, :2] = flat[cells >= 0]
+            images[inside, :2] = flat[inside]
         if points.shape[1] == 3:
-            images[:, 2] = numpy.where(cells >= 0, points[:, 2], numpy.nan)
+            images[:, 2] = numpy.where(inside, points[:, 2], numpy.nan)
             if shift.offsets is not None:
-                inside = numpy.flatnonzero(cells >= 0)
                 # By the position in the source, in both directions.
-                places = images if self.inverse else points
-                weights = shift.weights(places[inside, :2], cells[inside])
-                change = shift.interpolate(shift.offsets, weights, cells[inside])
+                origins = (images if self.inverse else points)[inside, :2]
+                change = shift.interpolate(shift.offsets, origins, cells[inside])
                 images[inside, 2] += -change if self.inverse else change
 
     def _report_deviation(self, points, images):
         """Informs of the largest distance from Linear, the official meaning of a triangulation file, in meters if
         the coordinate reference system is known."""
-        if not self.pair.shift or self.system == "linear" or not len(points):
-            return
         linear = PointMap(self.pair, replace(self.settings, system="linear"), self.inverse).map_points(points[:, :2])[0]
         distances, unit = ground_distances(images[:, :2], linear, self.pair.shift.crs(self.inverse))
         if numpy.isfinite(distances).any():
-            worst = int(numpy.nanargmax(distances))
-            inform(
-                f"{self.system.capitalize()} is farthest from Linear, the official meaning of {self.pair.names[0]}, at "
-                f"point {worst}: {distances[worst]:.4g} {unit}."
-            )
+            worst = numpy.nanargmax(distances)
+            inform(f"{self.settings.system.capitalize()} is farthest from Linear, the official meaning of "
+                   f"{self.pair.names[0]}, at point {worst}: {distances[worst]:.4g} {unit}.")
 
 
 def ground_distances(a, b, crs):
-    """Distances of points, and their unit: meters, if the coordinate reference system can be looked up by pyproj or
-    is one of the usual geographic codes."""
-    difference = a - b
-    geographic, factor = False, None
-    if crs:
-        try:
-            import pyproj
+    """Distances of points, and their unit: meters, if pyproj knows the coordinate reference system."""
+    try:
+        import pyproj
 
-            axis = pyproj.CRS(crs).axis_info[0]
-            geographic = pyproj.CRS(crs).is_geographic
-            factor = axis.unit_conversion_factor
-        except Exception:
-            geographic = str(crs).upper().startswith(("EPSG:4", "OGC:CRS84")) and numpy.nanmax(numpy.abs(b)) <= 360
-    if geographic:
-        # Degrees on a sphere of the earth's mean radius.
-        difference = numpy.radians(difference) * 6371008.8
-        difference[:, 0] *= numpy.cos(numpy.radians(b[:, 1]))
-        return numpy.hypot(*difference.T), "meters"
-    distances = numpy.hypot(*difference.T)
-    return (distances, "units of the target") if factor is None else (distances * factor, "meters")
-
-
-def flat_copy(data, z=None):
-    """A copy of a point set with z = 0, or with the given z."""
-    result = data.NewInstance()
-    result.ShallowCopy(data)
-    points = meshes.points_of(data).copy()
-    points[:, 2] = 0 if z is None else z
-    result.SetPoints(meshes.as_points(points))
-    return result
-
-
-def named_array(values, name):
-    array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    return array
+        crs = pyproj.CRS(crs)
+        if crs.is_geographic:
+            return crs.get_geod().inv(*a.T, *b.T)[2], "meters"
+        return numpy.hypot(*(a - b).T) * crs.axis_info[0].unit_conversion_factor, "meters"
+    except Exception:
+        return numpy.hypot(*(a - b).T), "units of the target"

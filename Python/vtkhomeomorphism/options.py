@@ -8,73 +8,53 @@ from types import SimpleNamespace
 
 import click
 
-from .arrays import SYSTEMS
+from .arrays import BENDINGS, SYSTEMS
 from .files import PICTURES, USAGE, VECTORS, Failure, Input, format_of, set_quiet
 from .images import read, read_size
 from .landmarks import is_landmark_file
 from .mapping import Settings
 
 
-class Number(click.ParamType):
-    """A finite number, at least `least`, or greater if `above`."""
-
-    name = "number"
-
-    def __init__(self, least=0.0, above=False, most=math.inf, whole=False):
-        self.least, self.above, self.most, self.whole = least, above, most, whole
+class Number(click.FloatRange):
+    """A finite number within limits."""
 
     def convert(self, value, param, context):
-        if not isinstance(value, str):
-            # A default.
-            return value
-        try:
-            number = (int if self.whole else float)(value)
-        except ValueError:
-            number = math.nan
-        if not (self.least <= number <= self.most and math.isfinite(number)) or (self.above and number == self.least):
-            limit = f" to {self.most:g}" if self.most < math.inf else ""
-            kind = "a whole number" if self.whole else "a number"
-            self.fail(f'"{value}" is not {kind} {"above" if self.above else "from"} {self.least:g}{limit}')
+        number = super().convert(value, param, context)
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number", param, context)
         return number
 
 
-def quiet(command):
-    return click.option(
-        "-q", "--quiet", is_flag=True, expose_value=False, help="Print errors only.",
-        callback=lambda context, param, value: set_quiet(value),
-    )(command)
+POSITIVE = Number(min=0, min_open=True)
 
 
 def add(*options):
     """A decorator that adds options in the order of the help text."""
-
-    def decorate(command):
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return decorate
+    return lambda command: functools.reduce(lambda result, option: option(result), reversed(options), command)
 
 
-def pair_files(names, others=0):
-    """The arguments SOURCE [TARGET] ..., and the options for reading the pair. The command takes `inputs`, with the
-    files of the pair, the other files, and the options."""
-    options = add(
-        click.argument("files", nargs=-1, metavar=names),
-        click.option("--target-array", default="Target", metavar="NAME", show_default=True,
-                     help="Point array with the target's positions, where one file has both meshes."),
-        click.option("--target-uv", is_flag=True,
-                     help="Take an OBJ file's texture coordinates (vt, without seams) as the target."),
-        click.option("--input-format", default="", metavar="EXTENSION",
-                     help="Format of standard input (-), json by default."),
-        click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
-                     help="Of xmorph's meshes that do not fill their pictures: the size of its working picture "
-                          "(resulting_size in a session's file)."),
-        click.option("--scan", default=(), multiple=True, metavar="FILE",
-                     help="Of landmarks in an image's pixels: the image, whose rectangle is the source's domain. Given "
-                          "again, the target's image."),
-        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
+quiet = click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Print errors only.",
+                     callback=lambda context, param, value: set_quiet(value))
+force = click.option("-f", "--force", is_flag=True, help="Replace files that exist.")
+inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the target's domain to the source's.")
+mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles instead of refusing the meshes.")
+format_option = click.option("--input-format", default="", metavar="EXTENSION",
+                             help="Format of standard input (-): json of a pair, csv of data, png of an image by default.")
+
+
+def output(help, default):
+    """The options --output, --force and --output-format."""
+    return add(
+        click.option("-o", "--output", required=True, metavar="FILE", help=help), force,
+        click.option("--output-format", default=default, metavar="EXTENSION", show_default=True,
+                     help="Format of standard output (-)."),
     )
+
+
+def pair_files(names):
+    """The arguments SOURCE [TARGET] ..., and the options for reading the pair. The command takes `inputs`, with the
+    files of the pair, the other file if there is one, and the options."""
+    others = int(names.startswith("SOURCE [TARGET] "))
 
     def decorate(command):
         @functools.wraps(command)
@@ -83,17 +63,31 @@ def pair_files(names, others=0):
                 files = files[::-1]
             if not 1 + others <= len(files) <= 2 + others:
                 raise click.UsageError(f"The files are {names}; found {len(files)}")
+            if files.count("-") > 1:
+                raise Failure("Only one of the files can come from standard input.", USAGE)
             inputs = SimpleNamespace(
-                pair=files[: len(files) - others], others=files[len(files) - others :], names=names,
-                target_array=target_array, target_uv=target_uv, input_format=input_format,
-                working_size=read_size(working_size), scan=scan, without=without, crs=None,
+                pair=files[: len(files) - others], other="".join(files[len(files) - others :]), names=names,
+                target_array=target_array, target_uv=target_uv, format=input_format, working_size=read_size(working_size),
+                scan=scan, without=without, crs=None,
             )
             inputs.grids = lambda marks: scan_grids(inputs)
-            if list(files).count("-") > 1:
-                raise Failure("Only one of the files can come from standard input.", USAGE)
             return command(inputs=inputs, **rest)
 
-        return options(wrapped)
+        return add(
+            click.argument("files", nargs=-1, metavar=names),
+            click.option("--target-array", default="Target", metavar="NAME", show_default=True,
+                         help="Point array with the target's positions, where one file has both meshes."),
+            click.option("--target-uv", is_flag=True,
+                         help="Take an OBJ file's texture coordinates (vt, without seams) as the target."),
+            click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
+                         help="Of xmorph's meshes that do not fill their pictures: the size of its working picture "
+                              "(resulting_size in a session's file)."),
+            click.option("--scan", default=(), multiple=True, metavar="FILE",
+                         help="Of landmarks in an image's pixels: the image, whose rectangle is the source's domain. Given "
+                              "again, the target's image."),
+            click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
+            format_option,
+        )(wrapped)
 
     return decorate
 
@@ -114,53 +108,44 @@ def read_pair(inputs):
     try:
         return pair.read(inputs.pair, inputs)
     except Failure as failure:
-        if failure.status == USAGE and inputs.others:
+        if failure.status == USAGE and inputs.other:
             last = inputs.names.split()[-1]
-            raise Failure(
-                f"{failure} (The files are {inputs.names}: {inputs.others[-1]} was taken for {last}.)", USAGE
-            ) from None
+            hint = f"(The files are {inputs.names}: {inputs.other} was taken for {last}.)"
+            raise Failure(f"{failure} {hint}", USAGE) from None
         raise
 
 
-def map_settings(default, mask=True):
+def map_settings(default):
     """Options of the map; the command takes `settings`."""
-    options = [
-        click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False), default=None,
-                     help=f"Coordinate system: smooth (twice continuously differentiable except at vertices), cubic (continuously "
-                          f"differentiable at vertices too, least bending; meshes in planes), contour "
-                          f"(the published construction) or linear (piecewise linear). Default: {default}."),
-        click.option("--incenter", is_flag=True, help="Start the contours of Contour at the incenter."),
-        click.option("--linear-where-discordant", is_flag=True,
-                     help="Map discordant triangles by Linear (Contour only) instead of refusing them."),
-        click.option("--tolerance", type=Number(), default=0.0, metavar="NUMBER",
-                     help="Greatest distance from the domain of a point that is mapped like the nearest point of the domain, "
-                          "relative to the domain's diagonal (default: rounding only)."),
-    ]
-    if mask:
-        options.append(click.option("--mask-invalid", is_flag=True,
-                                    help="Mask invalid triangles instead of refusing the meshes."))
 
     def decorate(command):
         @functools.wraps(command)
-        def wrapped(system, incenter, linear_where_discordant, tolerance, mask_invalid=False, **rest):
-            settings = Settings(system or "", incenter, linear_where_discordant, mask_invalid, tolerance)
-            return command(settings=settings, **rest)
+        def wrapped(system, incenter, linear_where_discordant, bending, max_deviation, fairness, tolerance, mask_invalid,
+                    **rest):
+            options = {"center": "incenter" if incenter else "centroid", "discordant_by_linear": linear_where_discordant,
+                       "cubic_bending": bending, "maximum_deviation": max_deviation, "fairness_refinement": fairness,
+                       "tolerance": tolerance}
+            return command(settings=Settings(system or "", mask_invalid, options), **rest)
 
-        return add(*options)(wrapped)
+        return add(
+            click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
+                         help="Coordinate system: linear (piecewise), contour (the published construction), smooth (twice "
+                              "continuously differentiable except at vertices) or cubic (continuously differentiable at "
+                              f"vertices too; meshes in planes). Default: {default}."),
+            click.option("--bending", type=click.Choice(list(BENDINGS)), default="least", show_default=True,
+                         help="Cubic: bend least, or depend on near vertices only."),
+            click.option("--max-deviation", type=POSITIVE, metavar="DISTANCE",
+                         help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
+            click.option("--fairness", type=click.IntRange(0, 4), default=0, metavar="LEVELS", show_default=True,
+                         help="Cubic: how often triangles are divided into four, to bend less."),
+            click.option("--incenter", is_flag=True, help="Contour: start the contours at the incenter."),
+            click.option("--linear-where-discordant", is_flag=True,
+                         help="Contour: map discordant triangles by Linear instead of refusing them."),
+            click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
+                         help="Greatest distance from the domain of a point that is mapped like the nearest point of the "
+                              "domain, relative to the domain's diagonal (default: rounding only)."),
+            mask_option,
+        )(wrapped)
 
     return decorate
 
-
-def output(help, default=""):
-    """The options --output, --force and, with a default, --output-format."""
-    options = [
-        click.option("-o", "--output", required=True, metavar="FILE", help=help),
-        click.option("-f", "--force", is_flag=True, help="Replace files that exist."),
-    ]
-    if default:
-        options.append(click.option("--output-format", default=default, metavar="EXTENSION", show_default=True,
-                                    help="Format of standard output (-)."))
-    return add(*options)
-
-
-inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the target's domain to the source's.")

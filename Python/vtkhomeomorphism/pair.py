@@ -6,12 +6,13 @@ from dataclasses import dataclass, field, replace
 from typing import Optional
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import meshes, tinshift, xmorph
-from .files import FILE, REFUSED, USAGE, Failure, Input, count, format_of, import_extra, inform, replace_path
+from .files import FILE, USAGE, Failure, Input, count, format_of, import_extra, inform, quote_message
 from .landmarks import Landmarks, LandmarkFileError, is_landmark_file, read_landmarks
+from .mapping import add_array
 
 FORMATS = ("json", "vtp", "vtk")
 """Formats that hold both meshes."""
@@ -51,9 +52,12 @@ class Pair:
             return self.names[side]
         return f"the {('source', 'target')[side]} of {self.names[0]}"
 
-    def is_flat(self):
-        """Whether both meshes have the same z everywhere."""
-        return all((numpy.ptp(meshes.points_of(mesh)[:, 2]) == 0) for mesh in self.meshes)
+    def is_planar(self):
+        """Whether the meshes are in planes, to the rounding of their coordinates."""
+        from .report import Report
+
+        report = Report(self)
+        return bool(report["SourcePlanar"] == report["TargetPlanar"] == 1)
 
     def require_flat(self):
         for mesh, name in zip(self.meshes, self.names):
@@ -62,45 +66,32 @@ class Pair:
 
 
 def read(files, options):
-    """The pair in one file or two. `options` has target_array, target_uv, input_format and working_size."""
-    if list(files).count("-") > 1:
-        raise Failure("Only one of the files can come from standard input.", USAGE)
+    """The pair in one file or two. `options` has target_array, target_uv, format and working_size."""
     if len(files) == 1:
         return _read_one(files[0], options)
-    formats = [options.input_format if name == "-" else format_of(name) for name in files]
+    formats = [options.format or "json" if name == "-" else format_of(name) for name in files]
     if "json" in formats:
-        raise Failure(
-            f"{files[formats.index('json')]} is a triangulation file, which has both source and target: give it alone.",
-            USAGE,
-        )
-    if ("mesh" == formats[0]) != ("mesh" == formats[1]):
+        name = files[formats.index("json")]
+        raise Failure(f"{name} is a triangulation file, which has both source and target: give it alone.", USAGE)
+    if formats.count("mesh") == 1:
         raise Failure("Either both files are meshes of xmorph (.mesh) or neither: they are triangulated together.", USAGE)
-    if formats[0] == "mesh":
+    if "mesh" in formats:
         return _read_xmorph(files, options)
-    pair = Pair([read_mesh(name, options.input_format) for name in files], list(files))
+    pair = Pair([read_mesh(name, options.format) for name in files], list(files))
     if formats == ["stl", "stl"]:
         _join_points(pair)
     return pair
 
 
-def _open(name, input_format):
-    return Input(name, input_format or "json", "--input-format")
-
-
 def _read_one(name, options):
-    with _open(name, options.input_format) as file:
+    with Input(name, options.format or "json") as file:
         names = [file.name, file.name]
         if file.format in ("csv", "points", "json") and is_landmark_file(file.path):
             return from_landmarks(read_landmark_file(file, options), file.name, options)[0]
         if file.format == "json":
-            try:
-                shift = tinshift.read(file.path)
-            except tinshift.Invalid as error:
-                file.fail(str(error))
-            if len(shift.triangles) == 0:
-                file.fail("it has no triangles.")
-            pair = [meshes.make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
-            return Pair(pair, names, shift=shift, metadata=shift.metadata)
+            shift = _read_by(tinshift.read, file)
+            both = [meshes.make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
+            return Pair(both, names, shift=shift, metadata=shift.metadata)
         if options.target_uv:
             if file.format != "obj":
                 raise Failure(f"--target-uv: only .obj files have texture coordinates, {file.name} does not.", USAGE)
@@ -109,14 +100,11 @@ def _read_one(name, options):
     positions = source.GetPointData().GetArray(options.target_array)
     if positions is None or positions.GetNumberOfComponents() not in (2, 3):
         more = " or take its texture coordinates (--target-uv)" if format_of(name) == "obj" else ""
-        raise Failure(
-            f'{names[0]} has no point array "{options.target_array}" of 2 or 3 components with the target\'s positions: '
-            f"give the target's file, too, or name the array (--target-array){more}.",
-            USAGE,
-        )
-    target = meshes.make_mesh(vtk_to_numpy(positions), source.GetPolys())
-    target.SetVerts(source.GetVerts())
-    target.SetLines(source.GetLines())
+        raise Failure(f'{names[0]} has no point array "{options.target_array}" of 2 or 3 components with the target\'s '
+                      f"positions: give the target's file, too, or name the array (--target-array){more}.", USAGE)
+    target = vtkPolyData()
+    target.CopyStructure(source)
+    target.SetPoints(meshes.as_points(vtk_to_numpy(positions)))
     return Pair([source, target], names)
 
 
@@ -125,7 +113,7 @@ def read_landmark_file(file, options):
     try:
         marks = read_landmarks(file.path).without([name for name in options.without.split(",") if name])
     except LandmarkFileError as error:
-        raise Failure(f"{replace_path(error, file)}.", FILE) from None
+        raise Failure(f"{quote_message(error, file)}.", FILE) from None
     if marks.left_out:
         names = ", ".join(f"{name} ({reason})" for name, reason in marks.left_out[:10])
         inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}"
@@ -136,7 +124,7 @@ def read_landmark_file(file, options):
 
 
 def _reproject(points, before, after):
-    rasterio = import_extra("rasterio", "python3-rasterio", f"Taking landmarks from {before} to {after}")
+    rasterio = import_extra("rasterio", f"Taking landmarks from {before} to {after}")
     from rasterio.warp import transform
 
     try:
@@ -170,7 +158,7 @@ def from_landmarks(marks, name, options, **more):
             break
         except ValueError as error:
             if margin or not all(grids):
-                raise Failure(f"{name}: {error}", REFUSED) from None
+                raise Failure(f"{name}: {error}") from None
     angles = made.report["smallest_angles"]
     inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
            f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "
@@ -185,24 +173,21 @@ def from_landmarks(marks, name, options, **more):
     return Pair([meshes.make_mesh(p, made.triangles) for p in made[:2]], [name, name], landmarks=marks), made
 
 
-def read_mesh(name, input_format=""):
+def read_mesh(name, format=""):
     """A single mesh; for a triangulation file, the source."""
-    with _open(name, input_format) as file:
-        if file.format not in ("json", "mesh"):
-            return meshes.read(file)
+    with Input(name, format or "json") as file:
+        if file.format == "json":
+            shift = _read_by(tinshift.read, file)
+            return meshes.make_mesh(shift.source, shift.triangles)
         if file.format == "mesh":
-            grid = _upright(_read_grid(file))
+            grid = _upright(_read_by(xmorph.read, file))
             return meshes.make_mesh(grid.reshape(-1, 2), xmorph.triangulate(grid, grid))
-        try:
-            shift = tinshift.read(file.path)
-        except tinshift.Invalid as error:
-            file.fail(str(error))
-        return meshes.make_mesh(shift.source, shift.triangles)
+        return meshes.read(file)
 
 
-def _read_grid(file):
+def _read_by(reader, file):
     try:
-        return xmorph.read(file.path)
+        return reader(file.path)
     except ValueError as error:
         file.fail(str(error))
 
@@ -216,8 +201,8 @@ def _upright(grid, bottom=None):
 def _read_xmorph(files, options):
     grids, extents = [], []
     for name in files:
-        with _open(name, options.input_format) as file:
-            grid = _read_grid(file)
+        with Input(name, options.format) as file:
+            grid = _read_by(xmorph.read, file)
         end = None
         if options.working_size:
             # Tenths of pixels.
@@ -237,15 +222,9 @@ def _join_points(pair):
     """Merges points that coincide in both meshes, for meshes whose triangles do not share points."""
     points = [meshes.points_of(mesh) for mesh in pair.meshes]
     triangles = [meshes.triangles_of(mesh) for mesh in pair.meshes]
-    if points[0].shape != points[1].shape or not numpy.array_equal(*triangles):
-        return
-    _, first, joined = numpy.unique(numpy.hstack(points), axis=0, return_index=True, return_inverse=True)
-    # In the order of their first points.
-    order = numpy.argsort(first)
-    rank = numpy.empty_like(order)
-    rank[order] = numpy.arange(len(order))
-    cells = rank[joined.ravel()][triangles[0]]
-    pair.meshes = [meshes.make_mesh(p[first[order]], cells) for p in points]
+    if points[0].shape == points[1].shape and numpy.array_equal(*triangles):
+        _, kept, joined = numpy.unique(numpy.hstack(points), axis=0, return_index=True, return_inverse=True)
+        pair.meshes = [meshes.make_mesh(p[kept], joined.ravel()[triangles[0]]) for p in points]
 
 
 def fit_to_pictures(pair, sizes):
@@ -254,11 +233,8 @@ def fit_to_pictures(pair, sizes):
         return
     for side, (size, end) in enumerate(zip(sizes, pair.extents)):
         if end is None or not (numpy.asarray(end) > 0).all():
-            raise Failure(
-                f"{pair.names[side]} does not fill its picture, and does not say how large that is: give the size of "
-                "xmorph's working picture (--working-size; in a session's file, resulting_size).",
-                USAGE,
-            )
+            raise Failure(f"{pair.names[side]} does not fill its picture, and does not say how large that is: give the size "
+                          "of xmorph's working picture (--working-size; in a session's file, resulting_size).", USAGE)
         # Xmorph's units end at the last pixel.
         factors = (numpy.array(size) - 1) / end
         points = meshes.points_of(pair.meshes[side])
@@ -267,20 +243,15 @@ def fit_to_pictures(pair, sizes):
 
 def write(pair, output, target_array="Target"):
     """Writes both meshes to one file of one of FORMATS."""
+    points = [meshes.points_of(mesh) for mesh in pair.meshes]
     if output.format != "json":
         both = vtkPolyData()
         both.ShallowCopy(pair.source)
-        positions = numpy_to_vtk(meshes.points_of(pair.target), deep=True)
-        positions.SetName(target_array)
-        both.GetPointData().AddArray(positions)
+        add_array(both, target_array, points[1])
         meshes.write(both, output)
         return
-    points = [meshes.points_of(mesh) for mesh in pair.meshes]
     for name, array in zip(pair.names, points):
         if array[:, 2].any():
-            raise Failure(
-                f"A triangulation file (.json) holds x and y only, but z is not 0 everywhere in {name}.", REFUSED
-            )
+            raise Failure(f"A triangulation file (.json) holds x and y only, but z is not 0 everywhere in {name}.")
     shift = pair.shift or tinshift.Shift(*(array[:, :2] for array in points), meshes.triangles_of(pair.source))
-    shift.metadata = pair.metadata
-    output.write_text(tinshift.text_of(shift))
+    output.write_text(tinshift.text_of(replace(shift, metadata=pair.metadata)))

@@ -2,33 +2,37 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of vtkTriangulationPairReport in words, and validation of pairs."""
 
+import re
 from dataclasses import replace
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import meshes
-from .files import Failure
+from .arrays import SYSTEMS
+from .files import Failure, quote
 from .vtkFiltersHomeomorphism import vtkTriangulationPairReport
 from .vtkfiles import take_messages
 
-WORDS = {
-    "PointCountsDiffer": "the meshes have different numbers of points",
-    "CellCountsDiffer": "the meshes have different numbers of triangles",
-    "TooManyTriangles": "there are more triangles than can be numbered",
-    "NotTriangles": "not triangles ({}); ParaView's Triangulate makes triangles of them",
-    "BadConnectivity": "points that do not exist ({})",
-    "ConnectivityDiffers": "triangles with other points in the target than in the source ({})",
-    "RepeatedCorner": "triangles with a point twice ({})",
-    "NotFinite": "coordinates that are not finite numbers ({})",
-    "DegenerateTriangle": "triangles without area ({})",
-    "NonManifoldEdge": "non-manifold edges, with more than two triangles ({})",
-    "NonOrientable": "a surface that is not orientable",
-    "Flipped": "flipped triangles ({})",
-    "Overlapping": "overlapping triangles ({})",
-    "Discordant": "discordant triangles ({})",
+ADVICE = {
+    "UseSameMesh": "give the same mesh twice, with different coordinates",
+    "SplitMeshes": "split the meshes",
+    "Triangulate": "ParaView's Triangulate makes triangles of them",
+    "ReadAgain": "the file is corrupt",
+    "UseSourceCells": "give the target the source's cells",
+    "RepairOrMask": "repair them, or leave them out with --mask-invalid",
+    "CutOpen": "cut the surface open along edges, in both meshes alike",
+    "MovePointsOrMask": "move points, or leave them out with --mask-invalid",
+    "UseOtherSystem": "use another --system, or --linear-where-discordant",
+    "UseSmoothSystem": "use --system smooth",
+    "FlattenOrUseTolerance": "project the mesh onto its plane, or use --tolerance",
 }
-"""Kinds of defects, and how many and where."""
+"""What to do, by the remedies of the table of defects."""
+
+
+def in_words(name, separator=" "):
+    """NonManifoldEdge becomes non manifold edge."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z0-9])|(?<=[0-9])(?=[A-Z])", separator, name).lower()
 
 
 class Report:
@@ -43,57 +47,62 @@ class Report:
         self.filter.SetMeasureContinuity(continuity)
         self.filter.Update()
         take_messages()
-        self.valid = self.filter.GetValid()
+        self.valid = bool(self.filter.GetValid())
         self.measured = bool(self["Measured"])
 
     def __getitem__(self, column):
         return self.filter.GetStatistic(column)
 
-    def cells(self, side, name):
-        """A cell array of the source (0) or the target (1), or None."""
-        array = self.filter.GetOutput(side).GetCellData().GetArray(name)
-        return None if array is None else vtk_to_numpy(array)
-
     def cells_where(self, side, name, value=1):
-        """Ids of the polygons whose cell array has a value. (Polygons follow vertices and lines in a mesh's cells.)"""
-        array = self.cells(side, name)
-        return [] if array is None else numpy.flatnonzero(array == value).tolist()
+        """Ids of the polygons of the source (0) or the target (1) whose cell array has a value."""
+        array = self.filter.GetOutput(side).GetCellData().GetArray(name)
+        return [] if array is None else numpy.flatnonzero(vtk_to_numpy(array) == value).tolist()
 
-    @property
-    def defects(self):
-        """A dict for each kind of defect."""
+    def problems(self):
+        """The defects, a dict for each kind and mesh, with all cell ids and a message."""
         table = self.filter.GetDefects()
-        columns = {table.GetColumnName(i): table.GetColumn(i) for i in range(table.GetNumberOfColumns())}
-        return [
-            {"kind": columns["Kind"].GetValue(i), "mesh": columns["Mesh"].GetValue(i),
-             "count": int(columns["Count"].GetValue(i)), "first_cell": int(columns["FirstCell"].GetValue(i))}
-            for i in range(table.GetNumberOfRows())
-        ]
+        ids = table.GetFieldData().GetAbstractArray("Ids")
+        result = []
+        for i in range(table.GetNumberOfRows()):
+            kind, domain, remedy, outcome, count, first = (
+                table.GetValueByName(i, name).ToString() for name in ("Kind", "Domain", "Remedy", "Outcome", "Count", "FirstId")
+            )
+            cells = [int(ids.GetValue(k)) for k in range(int(first), int(first) + int(count))] if ids else []
+            where = f"in the {domain}: " if domain in ("source", "target") else ""
+            which = f" ({len(cells)} cells: {quote(', '.join(map(str, cells[:10])), 100)}{', ...' if len(cells) > 10 else ''})"
+            message = f"{where}{in_words(kind)}{which if cells else ''}: {ADVICE.get(remedy, in_words(remedy))}"
+            if outcome != "accepted":
+                result.append({"kind": kind, "mesh": domain, "count": len(cells), "cells": cells, "message": message})
+        return result
 
-    def sentences(self):
-        """The defects in words."""
-        for defect in self.defects:
-            first = f", the first is cell {defect['first_cell']}" if defect["first_cell"] >= 0 else ""
-            text = WORDS.get(defect["kind"], defect["kind"]).format(f"{defect['count']}{first}")
-            yield text if defect["mesh"] not in ("source", "target") else f"in the {defect['mesh']} {text}"
-
-
-def refuse(pair, can_mask=True):
-    """Raises Failure with all defects of a pair; returns if it has none."""
-    report = Report(pair)
-    if report.valid:
-        return
-    advice = " The option --mask-invalid leaves invalid triangles out." if can_mask and report.measured else ""
-    raise Failure(f"{pair.name}: not a valid pair: {'; '.join(report.sentences())}.{advice}")
+    def statistics(self):
+        """The filter's statistics for JSON: a dict, with one each of the source, the target and the systems, in it.
+        Values that occur in a cell are dicts with value and cell; what was not measured is left out."""
+        table = self.filter.GetStatistics()
+        values = {table.GetColumnName(i): self[table.GetColumnName(i)] for i in range(table.GetNumberOfColumns())}
+        values = {name: value for name, value in values.items() if numpy.isfinite(value) and value != -1}
+        groups = {"Source": "source", "Target": "target", **{name.capitalize(): name for name in SYSTEMS}}
+        result = {}
+        for name, value in values.items():
+            if name.endswith("Cell") and name[:-4] in values:
+                continue
+            group = next((g for g in groups if name.startswith(g) and name != g), "")
+            member = int(value) if value.is_integer() else value
+            if name + "Cell" in values:
+                member = {"value": value, "cell": int(values[name + "Cell"])}
+            into = result.setdefault(groups[group], {}) if group else result
+            into[in_words(name[len(group) :], "_")] = member
+        return result
 
 
 def require_map(pair, mask_invalid=False):
-    """The pair, without its invalid triangles on request. Raises Failure if it does not define a map."""
+    """The pair, without its invalid triangles on request. Raises Failure, with all defects, if it does not define a
+    map."""
     report = Report(pair)
     if report.valid:
         return pair
     if not mask_invalid or not report.measured:
-        refuse(pair)
+        raise Failure(f"{pair.name}: not a valid pair: {'; '.join(p['message'] for p in report.problems())}.")
     kept = numpy.setdiff1d(numpy.arange(pair.source.GetNumberOfPolys()), report.cells_where(0, "Invalid"))
     triangles = meshes.triangles_of(pair.source)[kept]
     shift = pair.shift and replace(pair.shift, triangles=triangles)

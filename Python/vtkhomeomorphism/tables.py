@@ -1,17 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of points as text. All fields keep their text, to the last digit, except changed coordinates."""
+"""Tables of points as text, by pandas. All fields keep their text, to the last digit, except changed coordinates."""
 
 import csv
-import itertools
-import math
 import re
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkStringArray
 
-from .files import USAGE, Failure, quote
+from .files import USAGE, Failure, import_extra, quote
 
 USUAL_NAMES = [
     names.split()
@@ -23,7 +21,6 @@ USUAL_NAMES = [
 ]
 """What coordinates are called; the first that a table has are taken."""
 HEIGHT_NAMES = ("z", "h", "height", "altitude", "alt", "elevation", "elev", "hoehe", "höhe")
-_QUOTED_OR_TAB = re.compile(r'("(?:[^"]|"")*")|\t')
 
 
 def _number(text):
@@ -32,13 +29,7 @@ def _number(text):
         value = float(text)
     except ValueError:
         return None
-    if "_" in text or (math.isinf(value) and "inf" not in text.lower()):
-        return None
-    return value
-
-
-def _simple(name):
-    return name.strip().lower()
+    return None if "_" in text or (abs(value) == numpy.inf and "inf" not in text.lower()) else value
 
 
 class Table:
@@ -51,181 +42,156 @@ class Table:
     """
 
     def __init__(self, input, columns="", with_height=False):
-        self._input = input
-        with open(input.path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
-            lines = iter(file)
-            self.comments = []
-            skipped = 0
-            first = ""
-            for first in lines:
-                skipped += 1
+        self.input, self.comments, self.names = input, [], None
+        self.pandas = import_extra("pandas", f"Reading {input.name}")
+        self.encoding = {"encoding": "utf-8-sig", "errors": "surrogateescape"}
+        with open(input.path, **self.encoding) as file:
+            for self.skipped, first in enumerate(file):
                 if first.startswith("#"):
-                    self.comments.append(first.rstrip("\r\n"))
+                    self.comments.append(first)
                 elif first.strip():
                     break
-                first = ""
-            counts = {c: first.count(c) for c in ",;\t"}
-            self.separator = max(counts, key=counts.get) if any(counts.values()) else " "
-            lines = itertools.chain([first] if first else [], lines)
-            if self.separator == " ":
-                # Tabs are separators too, except within quotes.
-                lines = (_QUOTED_OR_TAB.sub(lambda m: m[1] or " ", line).strip() + "\n" for line in lines)
-            reader = csv.reader(lines, delimiter=self.separator, skipinitialspace=self.separator == " ", strict=True)
-            self.rows, numbers = [], []
-            begin = skipped
-            try:
-                for row in reader:
-                    if row and (len(row) > 1 or row[0].strip()):
-                        self.rows.append(row)
-                        numbers.append(begin)
-                    begin = skipped + reader.line_num
-            except csv.Error as error:
-                input.fail(f"line {begin}: {error}.")
-        if not self.rows:
+            else:
+                input.fail("it has no points.")
+        counts = {c: first.count(c) for c in ",;\t"}
+        self.separator = max(counts, key=counts.get) if any(counts.values()) else " "
+        try:
+            self.frame = self.pandas.read_csv(
+                input.path, sep=self.separator if self.separator != " " else r"\s+", header=None, dtype=str,
+                na_filter=False, skiprows=self.skipped, encoding="utf-8-sig", encoding_errors="surrogateescape",
+            )
+        except self.pandas.errors.ParserError as error:
+            unfinished = re.search(r"starting at row (\d+)", str(error))
+            where = f"line {self._line(int(unfinished[1]))}: " if unfinished else ""
+            input.fail(where + quote(error) + ".")
+        self.first = self.frame.iloc[0].tolist()
+        self.columns = self._choose_named(columns) if columns else self._choose(with_height)
+        self._take_header(bool(columns))
+        if not len(self.frame):
             input.fail("it has no points.")
-        width = len(self.rows[0])
-        for row, number in zip(self.rows, numbers):
-            if len(row) != width:
-                input.fail(f"line {number}: {len(row)} columns, but the first line has {width}.")
-        self._choose(columns, with_height)
-        self._header(numbers, bool(columns))
-        if not self.rows:
-            input.fail("it has no points.")
-        self.coordinates = numpy.empty((len(self.rows), len(self.columns)))
-        for k, column in enumerate(self.columns):
-            texts = [row[column] for row in self.rows]
-            try:
-                values = numpy.array(list(map(float, texts)))
-                suspicious = numpy.isinf(values).any() or any("_" in text for text in texts)
-            except ValueError:
-                suspicious = True
-            if suspicious:
-                values = [_number(text) for text in texts]
-                if None in values:
-                    self._fail_at(values.index(None), numbers, column)
-            self.coordinates[:, k] = values
-
-    def _choose(self, columns, with_height):
-        first = self.rows[0]
-        self.names = None
-        if columns:
-            self._choose_named(columns)
-            return
-        for names in USUAL_NAMES:
-            found = [self._find(name) for name in names]
-            if None not in found:
-                self.columns, self.names = found, first
-                break
-        else:
-            if len(first) < 2:
-                self._input.fail("it has only one column: points need two coordinates.")
-            self.columns = [0, 1] + [2] * (with_height and len(first) > 2 and _number(first[2]) is not None)
-        if with_height and self.names and len(self.columns) == 2:
-            self.columns += [place for place in map(self._find, HEIGHT_NAMES) if place is not None][:1]
+        self.coordinates = numpy.column_stack([self._numbers(column) for column in self.columns])
 
     def _find(self, name):
         """The column with a name. Names may differ in case only."""
-        first = self.rows[0]
-        if name in first:
-            return first.index(name)
-        simple = [_simple(field) for field in first]
-        return simple.index(_simple(name)) if _simple(name) in simple else None
+        simple = [field.strip().lower() for field in self.first]
+        for fields, wanted in ((self.first, name), (simple, name.strip().lower())):
+            if wanted in fields:
+                return fields.index(wanted)
+        return None
+
+    def _choose(self, with_height):
+        for names in USUAL_NAMES:
+            found = [self._find(name) for name in names]
+            if None not in found:
+                self.names = self.first
+                heights = [self._find(name) for name in HEIGHT_NAMES] if with_height and len(found) == 2 else []
+                return found + [column for column in heights if column is not None][:1]
+        if len(self.first) < 2:
+            self.input.fail("it has only one column: points need two coordinates.")
+        return [0, 1] + [2] * (with_height and len(self.first) > 2 and _number(self.first[2]) is not None)
 
     def _choose_named(self, columns):
-        first, self.columns = self.rows[0], []
+        chosen = []
         for name in columns.split(","):
             # A number is not a name: in a table without names it may be a coordinate.
             is_number = re.fullmatch(r"\s*\d+\s*", name)
-            place = int(name) - 1 if is_number else self._find(name)
-            if place is None or not 0 <= place < len(first):
-                raise Failure(
-                    f'{self._input.name} has no column "{name}" (--columns): its first line has '
-                    f"{len(first)} columns, {self._list()}.",
-                    USAGE,
-                )
-            if place in self.columns:
-                raise Failure(f'Two coordinates cannot come from the same column, "{name}" (--columns).', USAGE)
-            self.columns.append(place)
-            if not is_number:
-                self.names = first
-        if len(self.columns) not in (2, 3):
+            column = int(name) - 1 if is_number else self._find(name)
+            if column is None or not 0 <= column < len(self.first) or column in chosen:
+                raise Failure(f'{self.input.name} has no other column "{name}" (--columns): its first line has '
+                              f"{len(self.first)} columns, {self._list()}.", USAGE)
+            chosen.append(column)
+            self.names = self.names if is_number else self.first
+        if len(chosen) not in (2, 3):
             raise Failure("Two or three coordinate columns are needed (--columns).", USAGE)
+        return chosen
 
-    def _header(self, numbers, chosen):
-        first = self.rows[0]
-        if self.names is None and None in [_number(first[column]) for column in self.columns[:2]]:
-            if self._has_decimal_commas(first):
-                self._fail_at(0, numbers, self.columns[0])
-            if all(_number(first[column]) is None for column in self.columns):
+    def _take_header(self, chosen):
+        texts = [self.first[column] for column in self.columns]
+        if self.names is None and None in map(_number, texts[:2]):
+            if self._has_decimal_commas(0):
+                self._fail_at(0, self.columns[0])
+            if all(_number(text) is None for text in texts):
                 if not chosen:
-                    self._input.fail(
-                        f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x "
-                        "and y: name them (--columns)."
-                    )
-                self.names = first
+                    self.input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such "
+                                    "as x and y: name them (--columns).")
+                self.names = self.first
         if self.names is not None:
-            del self.rows[0], numbers[0]
+            self.frame = self.frame.iloc[1:].reset_index(drop=True)
 
     def _list(self):
-        first = self.rows[0]
-        return quote(", ".join(f'"{name}"' for name in first[:20]) + (", ..." if len(first) > 20 else ""), 300)
+        return quote(", ".join(f'"{name}"' for name in self.first), 300)
+
+    def _numbers(self, column):
+        texts = self.frame[column]
+        try:
+            values = texts.to_numpy().astype(float)
+            suspicious = numpy.isinf(values).any() or texts.str.contains("_", regex=False).any()
+        except ValueError:
+            suspicious = True
+        if suspicious:
+            values = list(map(_number, texts))
+            if None in values:
+                self._fail_at(values.index(None), column)
+        return values
 
     def _has_decimal_commas(self, row):
+        fields = self.frame.iloc[row]
         if self.separator != ",":
-            return any("," in field and _number(field.replace(",", ".", 1)) is not None for field in row)
+            return any("," in field and _number(field.replace(",", ".", 1)) is not None for field in fields)
         # If the separator was guessed wrong, one field contains two numbers.
-        parts = [re.split("[; \t]", field.strip("; \t"), 1) for field in row]
+        parts = [re.split("[; \t]", field.strip("; \t"), 1) for field in fields]
         return any(len(part) == 2 and None not in map(_number, part) for part in parts)
 
-    def _fail_at(self, row, numbers, column):
-        if self._has_decimal_commas(self.rows[row]):
-            self._input.fail(
-                f"line {numbers[row]}: its numbers have decimal commas: write them with points, such as 0.5."
-            )
+    def _line(self, row):
+        """The line of the file where a row of the frame begins, header included."""
+        with open(self.input.path, newline="", **self.encoding) as file:
+            lines = file.read().splitlines(keepends=True)[self.skipped :]
+        reader, begin = csv.reader(lines, delimiter=self.separator), 0
+        for fields in reader:
+            row -= any(field.strip() for field in fields)
+            if row < 0:
+                break
+            begin = reader.line_num
+        return self.skipped + begin + 1
+
+    def _fail_at(self, row, column):
+        line = self._line(row + (self.names is not None))
+        if self._has_decimal_commas(row):
+            self.input.fail(f"line {line}: its numbers have decimal commas: write them with points, such as 0.5.")
         hint = "" if self.names else " (--columns names the columns of the coordinates)"
-        self._input.fail(
-            f"line {numbers[row]}: expected a coordinate in column {column + 1}, "
-            f'found "{quote(self.rows[row][column])}"{hint}.'
-        )
+        self.input.fail(f'line {line}: expected a coordinate in column {column + 1}, '
+                        f'found "{quote(self.frame.iloc[row][column])}"{hint}.')
 
     def move(self, points):
         """Replaces the coordinates. Unchanged ones keep their text."""
         for k, column in enumerate(self.columns):
-            changed = numpy.flatnonzero(points[:, k] != self.coordinates[:, k])
-            for i, value in zip(changed.tolist(), points[changed, k].tolist()):
-                self.rows[i][column] = repr(value)
+            texts = self.frame[column].to_numpy(copy=True)
+            changed = points[:, k] != self.coordinates[:, k]
+            texts[changed] = list(map(repr, points[changed, k].tolist()))
+            self.frame[column] = texts
         self.coordinates = points
 
     def add(self, name, values):
         """Adds columns from an array of shape (n,) or (n, k), replacing those with the same names."""
-        values = numpy.asarray(values)
         if values.ndim == 2:
             for k in range(values.shape[1]):
                 self.add(f"{name}_{k}", values[:, k])
             return
-        texts = map(repr, values.tolist())
-        if self.names is not None and name in self.names:
-            place = self.names.index(name)
-            for row, text in zip(self.rows, texts):
-                row[place] = text
-            return
-        if self.names is not None:
-            self.names = self.names + [name]
-        for row, text in zip(self.rows, texts):
-            row.append(text)
+        known = self.names is not None and name in self.names
+        if self.names is not None and not known:
+            self.names = [*self.names, name]
+        self.frame[self.names.index(name) if known else self.frame.shape[1]] = list(map(repr, values.tolist()))
 
     def add_columns_to(self, data):
         """Adds the columns that are not coordinates to the point arrays of a data set, as numbers if all values are."""
         arrays = data.GetPointData()
-        for column in range(len(self.rows[0])):
-            if column in self.columns:
-                continue
+        for column in self.frame.columns.difference(self.columns):
             name = self.names[column] if self.names else ""
             name = name if name.strip() else f"Column{column + 1}"
             while arrays.HasArray(name):
                 name += f"_{column + 1}"
-            texts = [row[column] for row in self.rows]
-            values = [_number(text) if text.strip() else math.nan for text in texts]
+            texts = self.frame[column].tolist()
+            values = [_number(text) if text.strip() else numpy.nan for text in texts]
             if None not in values:
                 array = numpy_to_vtk(numpy.array(values), deep=True)
             else:
@@ -237,17 +203,14 @@ class Table:
 
     def write(self, output):
         """Writes the table with its original separator."""
-        rows = itertools.chain([self.names] if self.names is not None else [], self.rows)
         with open(output.path, "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
-            file.writelines(comment + "\n" for comment in self.comments)
-            options = {"delimiter": self.separator, "lineterminator": "\n"}
-            plain, quoted = csv.writer(file, **options), csv.writer(file, quoting=csv.QUOTE_ALL, **options)
-            first = next(rows)
-            # What would be taken for a comment or a byte order mark is quoted, and what would not be taken for a
-            # field between blanks.
-            (quoted if first[0][:1] in ("#", "\ufeff") else plain).writerow(first)
-            if self.separator != " ":
-                plain.writerows(rows)
-                return
-            for row in rows:
-                (quoted if any(not field or "\t" in field for field in row) else plain).writerow(row)
+            file.writelines(self.comments)
+            # What would be taken for a comment or a byte order mark is quoted, and fields between blanks.
+            header = self.names or self.frame.iloc[0].tolist()
+            quoted = header[0][:1] in ("#", "\ufeff")
+            if self.separator == " ":
+                quoted |= self.frame.apply(lambda texts: texts.str.contains("^$|\t")).any(axis=None)
+            style = {"quoting": csv.QUOTE_ALL if quoted else csv.QUOTE_MINIMAL}
+            if self.names:
+                csv.writer(file, delimiter=self.separator, lineterminator="\n", **style).writerow(self.names)
+            self.frame.to_csv(file, sep=self.separator, header=False, index=False, **style)

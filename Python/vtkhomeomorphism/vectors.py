@@ -3,11 +3,9 @@
 """Vector data (GeoPackage, GeoJSON, Shapefile, FlatGeobuf) by geopandas: geometries are mapped vertex by vertex,
 attributes and layers are kept."""
 
-import math
-
 import numpy
 
-from .files import FILE, Failure, import_extra, replace_path
+from .files import FILE, Failure, import_extra, quote_message
 
 DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "shp": "ESRI Shapefile", "fgb": "FlatGeobuf"}
 MARK = "outside"
@@ -29,11 +27,11 @@ def _read(path):
 
 def read(input):
     """The layers of a file by name, GeoDataFrames."""
-    import_extra("geopandas", "python3-geopandas", f"Reading {input.name}")
+    import_extra("geopandas", f"Reading {input.name}")
     try:
         return _read(input.path)
     except Exception as error:
-        input.fail(f"it cannot be read as .{input.format}: {replace_path(error, input)}")
+        input.fail_by(error)
 
 
 def write(layers, output):
@@ -45,30 +43,23 @@ def write(layers, output):
             options = {"layer": name} if output.format == "gpkg" else {}
             layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
         # Read again, because GDAL does not tell when a disk is full at the end.
-        complete = list(map(len, _read(output.path).values())) == list(map(len, layers.values()))
+        written = [len(layer) for layer in _read(output.path).values()]
     except OSError:
         raise
     except Exception as error:
-        raise Failure(f"Cannot write {output.name}: {replace_path(error, output)}", FILE) from None
-    if not complete:
+        raise Failure(f"Cannot write {output.name}: {quote_message(error, output)}", FILE) from None
+    if written != [len(layer) for layer in layers.values()]:
         raise Failure(f"Cannot write {output.name}: features are missing in what was written.", FILE)
 
 
-def _densify(step):
-    """Divides segments so that none is longer than a step."""
-
-    def divide(x, y, z=None):
-        points = numpy.column_stack((x, y) if z is None else (x, y, z))
-        if len(points) < 2:
-            return (x, y) if z is None else (x, y, z)
-        pieces = []
-        for a, b in zip(points[:-1], points[1:]):
-            parts = max(1, math.ceil(math.hypot(*(b - a)[:2]) / step))
-            t = numpy.arange(parts)[:, None] / parts
-            pieces.append(a + t * (b - a))
-        return tuple(numpy.vstack(pieces + [points[-1:]]).T)
-
-    return divide
+def divide(points, step):
+    """A polygonal line of shape (n, 2) or (n, 3), with points added so that no segment is longer than a step."""
+    lengths = numpy.hypot(*numpy.diff(points[:, :2], axis=0).T)
+    parts = numpy.maximum(1, numpy.ceil(lengths / step)).astype(int)
+    begins = numpy.repeat(numpy.arange(len(parts)), parts)
+    t = (numpy.arange(len(begins)) - numpy.repeat(numpy.cumsum(parts) - parts, parts)) / parts[begins]
+    between = points[begins] + t[:, None] * (points[begins + 1] - points[begins])
+    return numpy.vstack((between, points[-1:]))
 
 
 def map_layers(layers, map_points, densify=0.0):
@@ -76,40 +67,32 @@ def map_layers(layers, map_points, densify=0.0):
     images, NaN outside. Returns the layers, and the number of features that are not entirely inside the domain."""
     from shapely.ops import transform
 
-    divided, chunks = {}, []
+    collected, begin, outside = [], 0, 0
 
-    def collect(x, y, z=None):
-        chunks.append(numpy.column_stack((x, y, numpy.zeros(len(x)) if z is None else z)))
-        return (x, y) if z is None else (x, y, z)
+    def collect(*coordinates):
+        points = numpy.column_stack(coordinates)
+        points = divide(points, densify) if densify and len(points) > 1 else points
+        collected.append(numpy.column_stack((points, numpy.zeros((len(points), 3 - points.shape[1])))))
+        return tuple(points.T)
 
-    for name, layer in layers.items():
-        shapes = [s if s is None or not densify else transform(_densify(densify), s) for s in layer.geometry]
-        divided[name] = shapes
-        for shape in shapes:
-            if shape is not None and not shape.is_empty:
-                transform(collect, shape)
-    images = map_points(numpy.vstack(chunks) if chunks else numpy.empty((0, 3)))
-    begin, outside = 0, 0
-
-    def replace(x, y, z=None):
+    def replace(*coordinates):
         nonlocal begin
-        part = images[begin : begin + len(x)]
-        begin += len(x)
-        if numpy.isnan(part[:, :2]).any():
-            lost.append(True)
-            part = numpy.nan_to_num(part)
-        return tuple(part[:, : 2 if z is None else 3].T)
+        begin, end = begin + len(coordinates[0]), begin
+        return tuple(images[end:begin, : len(coordinates)].T)
 
+    divided = {name: [s if s is None or s.is_empty else transform(collect, s) for s in layer.geometry]
+               for name, layer in layers.items()}
+    images = map_points(numpy.vstack(collected) if collected else numpy.empty((0, 3)))
+    lost = numpy.isnan(images[:, :2]).any(axis=1)
+    images[lost] = 0.0
     result = {}
     for name, layer in layers.items():
         shapes, marks = [], []
         for shape in divided[name]:
-            lost = []
-            if shape is not None and not shape.is_empty:
-                mapped = transform(replace, shape)
-                shape = type(shape)() if lost else mapped
-            shapes.append(shape)
-            marks.append(int(bool(lost)))
+            first = begin
+            mapped = shape if shape is None or shape.is_empty else transform(replace, shape)
+            marks.append(int(lost[first:begin].any()))
+            shapes.append(type(shape)() if marks[-1] else mapped)
         outside += sum(marks)
         result[name] = layer.set_geometry(shapes, crs=layer.crs)
         if any(marks):

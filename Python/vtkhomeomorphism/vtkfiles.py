@@ -60,46 +60,41 @@ def _read(path, format):
     reader.SetFileName(path)
     reader.Update()
     data = reader.GetOutputDataObject(0)
-    errors = take_messages()
-    if not errors and (data is None or reader.GetErrorCode() != 0):
-        errors = f"it cannot be read as .{format}."
-    return data, errors or _find_bad_cell(data)
+    failed = data is None or reader.GetErrorCode() != 0
+    return data, take_messages() or ("it cannot be read." if failed else _find_bad_cell(data))
 
 
 def leaves_of(data):
     """The data sets of a tree, or the data set itself."""
-    if isinstance(data, vtkCompositeDataSet):
-        iterator = data.NewIterator()
-        iterator.InitTraversal()
-        while not iterator.IsDoneWithTraversal():
-            yield iterator.GetCurrentDataObject()
-            iterator.GoToNextItem()
-    elif isinstance(data, vtkDataSet):
-        yield data
+    if not isinstance(data, vtkCompositeDataSet):
+        return [data] if isinstance(data, vtkDataSet) else []
+    leaves, iterator = [], data.NewIterator()
+    iterator.InitTraversal()
+    while not iterator.IsDoneWithTraversal():
+        leaves.append(iterator.GetCurrentDataObject())
+        iterator.GoToNextItem()
+    return leaves
 
 
 def _find_bad_cell(data):
     """A defect of the point ids of cells. VTK's readers do not check them, and invalid ids would be read out of bounds."""
     for leaf in leaves_of(data):
         first = 0
-        for name in ("Verts", "Lines", "Polys", "Strips", "Cells"):
-            if not isinstance(leaf, vtkUnstructuredGrid if name == "Cells" else vtkPolyData):
-                continue
+        names = ("Verts", "Lines", "Polys", "Strips") if isinstance(leaf, vtkPolyData) else ("Cells",)
+        for name in names if isinstance(leaf, (vtkPolyData, vtkUnstructuredGrid)) else ():
             cells = getattr(leaf, "Get" + name)()
             if cells is None or cells.GetNumberOfCells() == 0:
                 continue
             ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
-            if offsets[0] != 0 or (numpy.diff(offsets) < 0).any() or offsets[-1] != len(ids):
+            sizes = numpy.diff(offsets)
+            if offsets[0] != 0 or (sizes < 0).any() or offsets[-1] != len(ids):
                 return "the offsets that say where each cell's points begin are wrong."
             bad = (ids < 0) | (ids >= leaf.GetNumberOfPoints())
             if bad.any():
-                place = int(bad.argmax())
-                cell = first + int(numpy.searchsorted(offsets, place, "right")) - 1
-                return f"cell {cell} has the point {ids[place]}, but points go from 0 to {leaf.GetNumberOfPoints() - 1}."
-            short = numpy.diff(offsets) < (3 if name in ("Polys", "Strips") else 0)
-            if short.any():
-                cell = int(short.argmax())
-                return f"cell {first + cell} is a polygon of {numpy.diff(offsets)[cell]} points."
+                cell = first + int(numpy.searchsorted(offsets, bad.argmax(), "right")) - 1
+                return f"cell {cell} has the point {ids[bad.argmax()]}, but points go from 0 to {leaf.GetNumberOfPoints() - 1}."
+            if name in ("Polys", "Strips") and sizes.min() < 3:
+                return f"cell {first + sizes.argmin()} is a polygon of {sizes.min()} points."
             first += cells.GetNumberOfCells()
     return ""
 
@@ -116,12 +111,8 @@ def read(input):
     if child.returncode not in (0, 1):
         input.fail("VTK's reader crashes: the file is damaged or has been cut off.")
     if child.returncode == 1:
-        text = child.stdout.decode("utf-8", "replace")
-        input.fail(quote(text.replace(input.path, input.name) or "it cannot be read.", 300))
-    data, errors = _read(input.path, input.format)
-    if errors:
-        input.fail(quote(errors, 300))
-    return data
+        input.fail_by(child.stdout.decode("utf-8", "replace"))
+    return _read(input.path, input.format)[0]
 
 
 def extension_for(data):
@@ -134,16 +125,14 @@ def write(data, output):
     of VTK 9.1 crash and others do not report an error.)"""
     right = extension_for(data)
     if output.format not in ("vtk", right):
-        raise Failure(
-            f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}.",
-            USAGE,
-        )
+        text = f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}."
+        raise Failure(text, USAGE)
     take_messages()
     if output.format == "vtk":
         writer = legacy.vtkGenericDataObjectWriter()
         writer.SetFileTypeToBinary()
     else:
-        _require_names(data, output)
+        _require_names(data)
         writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
         # VTK before 9.4 cannot read appended data with every version of expat.
         writer.SetDataModeToBinary()
@@ -157,34 +146,22 @@ def write(data, output):
     output.write_bytes(text if isinstance(text, bytes) else text.encode())
 
 
-def _require_names(data, output):
+def _require_names(data):
     for leaf in leaves_of(data):
         for attributes in (leaf.GetPointData(), leaf.GetCellData(), leaf.GetFieldData()):
             for i in range(attributes.GetNumberOfArrays()):
                 name = attributes.GetAbstractArray(i).GetName() or ""
                 if set(name) & set("&<>\"'"):
-                    raise Failure(
-                        f"The name of the array {quote(name)} has a character that VTK's XML files cannot hold "
-                        f"(& < > \" '): rename it, or write a .vtk.",
-                    )
-
-
-def main(path, format):
-    capture_messages()
-    sys.stderr = open(os.devnull, "w")
-    try:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    except ImportError:
-        pass
-    try:
-        errors = _read(path, format)[1]
-    except MemoryError:
-        errors = "it asks for more memory than there is."
-    sys.stdout.buffer.write(errors.encode("utf-8", "replace"))
-    return 1 if errors else 0
+                    raise Failure(f"The name of the array {quote(name)} has a character that VTK's XML files cannot hold "
+                                  "(& < > \" '): rename it, or write a .vtk.")
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    capture_messages()
+    sys.stderr = open(os.devnull, "w")
+    try:
+        found = _read(*sys.argv[1:])[1]
+    except MemoryError:
+        found = "it asks for more memory than there is."
+    sys.stdout.buffer.write(found.encode("utf-8", "replace"))
+    sys.exit(1 if found else 0)

@@ -12,26 +12,21 @@ LARGEST = 10000
 def read(path):
     """The grid's points, of shape (rows, columns, 2). Raises ValueError, naming the line."""
     with open(path, encoding="utf-8", errors="replace") as file:
-        lines = file.read().split("\n")
+        lines = [line.split()[:2] for line in file.read().split("\n")]
 
-    def fail(number, expected):
-        raise ValueError(f"line {number + 1}: expected {expected}.")
-
-    if lines[0].split()[:1] != ["M2"]:
-        fail(0, 'M2, the first line of an xmorph mesh')
-    try:
-        columns, rows = (int(word) for word in lines[1].split()[:2])
-    except (ValueError, IndexError):
-        columns = rows = 0
-    if not (2 <= columns <= LARGEST and 2 <= rows <= LARGEST):
-        fail(1, f"the numbers of columns and rows, 2 to {LARGEST}")
-    points = []
-    for i in range(2, 2 + columns * rows):
+    def numbers(line, kind, expected):
         try:
-            x, y = (float(word) for word in lines[i].split()[:2])
+            first, second = map(kind, lines[line])
+            return first, second
         except (ValueError, IndexError):
-            fail(i, f"x and y of point {i - 2}")
-        points.append((x, y))
+            raise ValueError(f"line {line + 1}: expected {expected}.") from None
+
+    if lines[0][:1] != ["M2"]:
+        raise ValueError("line 1: expected M2, the first line of an xmorph mesh.")
+    columns, rows = numbers(1, int, "the numbers of columns and rows")
+    if not (2 <= columns <= LARGEST and 2 <= rows <= LARGEST):
+        raise ValueError(f"line 2: expected the numbers of columns and rows, 2 to {LARGEST}.")
+    points = [numbers(i, float, f"x and y of point {i - 2}") for i in range(2, 2 + columns * rows)]
     return numpy.array(points).reshape(rows, columns, 2)
 
 
@@ -60,14 +55,11 @@ def triangulate(first, second):
     """Divides each quadrilateral along the diagonal with the larger smallest angle in both grids (y upwards)."""
     if first.shape != second.shape:
         raise ValueError("the two meshes do not have the same numbers of columns and rows.")
-    rows, columns = first.shape[:2]
-    a = (numpy.arange(rows - 1)[:, None] * columns + numpy.arange(columns - 1)).ravel()
-    b, d = a + 1, a + columns
-    c = d + 1
-    cuts = [
-        numpy.stack([numpy.stack(t, axis=1) for t in cut], axis=1)
-        for cut in (((a, b, c), (a, c, d)), ((a, b, d), (b, c, d)))
-    ]
+    columns = first.shape[1]
+    # The corners a, b and below them d, c.
+    a = numpy.arange(first[..., 0].size).reshape(first.shape[:2])[:-1, :-1].ravel()
+    b, c, d = a + 1, a + columns + 1, a + columns
+    cuts = [numpy.stack(corners, axis=1).reshape(-1, 2, 3) for corners in ((a, b, c, a, c, d), (a, b, d, b, c, d))]
     along_ac, along_bd = (
         numpy.minimum(_smallest_angle(first, cut), _smallest_angle(second, cut)).min(axis=1) for cut in cuts
     )

@@ -101,8 +101,8 @@ def test_standard_input(dhm, pair):
     assert out == expected
     assert b"<VTKFile" in dhm("map", "pair.json", "-", "-o", "-", "--output-format", "vtp", input=points).out
     dhm.refuse(FILE, "check", "-", input=off, says=("standard input", "--input-format"))
-    dhm.refuse(FILE, "map", "pair.json", "-", "-o", "n.csv", input=off, says=("standard input", "--data-format"))
-    dhm.refuse(FILE, "warp", "pair.json", "-", "-o", "n.png", input=off, says=("standard input", "--image-format"))
+    dhm.refuse(FILE, "map", "pair.json", "-", "-o", "n.csv", input=off, says=("standard input", "--input-format"))
+    dhm.refuse(FILE, "warp", "pair.json", "-", "-o", "n.png", input=off, says=("standard input", "--input-format"))
     dhm.refuse(FILE, "check", "-", input=text[:500], says=("standard input", "line"))
     dhm.refuse(FILE, "check", "-", says="standard input")
     dhm.refuse(USAGE, "map", "-", "-", "-o", "new.csv", says="standard input")
@@ -287,7 +287,7 @@ def test_command_line(dhm, pair):
         dhm.refuse(USAGE, command, says=f"dhm {command} --help")
         dhm.refuse(USAGE, command, "--no-such-option", "a.json", says=("--no-such-option", f"dhm {command} --help"))
     assert dhm("--version").out.decode().startswith("dhm ")
-    dhm.refuse(USAGE, "chekc", "pair.json", says=('"chekc"', "check", "--help"))
+    dhm.refuse(USAGE, "chekc", "pair.json", says=("chekc", "--help"))
     dhm.refuse(USAGE, "check", "a.json", "b.json", "c.json", says="SOURCE [TARGET]")
     dhm.refuse(USAGE, "map", "pair.json", "points.csv", says="--output")
     dhm.refuse(USAGE, "map", "pair.json", "-o", "new.csv", says="SOURCE [TARGET] DATA")

@@ -57,7 +57,7 @@ def test_finland_is_checked(dhm):
     report = json.loads(dhm("check", "--json", FINLAND).out)
     assert report["valid"] and report["opposite_windings"] == 148
     assert (report["source"]["points"], report["source"]["triangles"]) == (767, 1450)
-    assert report["systems"]["Smooth"]["creases"] == report["systems"]["Smooth"]["not_positive"] == 0
+    assert report["smooth"]["creases"] == report["smooth"]["not_positive"] == 0
 
 
 @cases
@@ -110,7 +110,7 @@ def test_inputs_that_crashed_or_were_misread(dhm, arguments, status, says):
 def test_deviations_are_named(dhm):
     """A mark that is wrong by 18 cm, in a needle: the report names what Smooth makes of it."""
     report = json.loads(dhm("check", "--json", CASES / "needle_shift.json").out)
-    largest = report["systems"]["Smooth"]["deviation_from_linear"]["value"]
+    largest = report["smooth"]["deviation_from_linear"]["value"]
     assert largest > 0.05
     vertices = numpy.array(json.loads((CASES / "needle_shift.json").read_text())["vertices"])
     triangles = numpy.array(json.loads((CASES / "needle_shift.json").read_text())["triangles"])

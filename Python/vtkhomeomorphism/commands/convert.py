@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """dhm convert"""
 
-import contextlib
-
 import click
 
 from .. import meshes, options, pair, report
@@ -30,26 +28,21 @@ def describe(metadata, input_crs, output_crs):
                 "array; with --target-output the source alone: .vtp .vtk .obj .off .ply.", "json")
 @click.option("--target-output", default="", metavar="FILE", help="Write the target to a separate file.")
 @crs_options
-@click.option("--mask-invalid", is_flag=True, help="Drop invalid triangles from a triangulation file.")
+@options.mask_option
 @options.quiet
 def command(inputs, output, force, output_format, target_output, output_array, input_crs, output_crs, mask_invalid):
     """Write a pair in another format."""
     if target_output == output:
         raise Failure(f"Source and target cannot both be written to {output} (--target-output).", USAGE)
-    formats = meshes.WRITE if target_output else pair.FORMATS
-    hint = "" if target_output else " (with --target-output also .obj, .off and .ply)"
-    first = Output(output, output_format, force, formats, "a pair" + hint)
-    second = target_output and Output(target_output, output_format, force, meshes.WRITE, "a mesh")
     both = options.read_pair(inputs)
     describe(both.metadata, input_crs, output_crs)
-    if first.format == "json" and not target_output:
-        # PROJ does not check this.
-        both = report.require_map(both, mask_invalid)
-    with contextlib.ExitStack() as stack:
-        path = stack.enter_context(first)
-        if second:
-            other = stack.enter_context(second)
-            meshes.write(both.source, path)
-            meshes.write(both.target, other)
-        else:
-            pair.write(both, path, output_array)
+    if target_output:
+        outputs = [Output(name, output_format, force, meshes.WRITE, "a mesh") for name in (output, target_output)]
+        with outputs[0] as first, outputs[1] as second:
+            meshes.write(both.source, first)
+            meshes.write(both.target, second)
+        return
+    what = "a pair (with --target-output also .obj, .off and .ply)"
+    with Output(output, output_format, force, pair.FORMATS, what) as place:
+        # PROJ does not check triangulation files.
+        pair.write(report.require_map(both, mask_invalid) if place.format == "json" else both, place, output_array)

@@ -32,16 +32,15 @@ class Coordinates:
 
 @click.command("coordinates")
 @click.argument("files", nargs=2, metavar="MESH DATA")
-@click.option("--input-format", default="json", metavar="EXTENSION", show_default=True,
-              help="Format of a mesh from standard input.")
+@options.format_option
 @data_options
 @options.map_settings("smooth")
 @options.quiet
 def command(files, input_format, data, settings):
-    """Attach triangular coordinates (e, p, c) in a mesh to the points of data.
+    """Attach triangular coordinates in a mesh to points.
 
     MESH is the triangulation (of a triangulation file the source), DATA as for dhm map. The arrays: TriangleId,
     EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1 on the
     edge), vtkValidPointMask."""
     mesh = pair.read_mesh(files[0], input_format)
-    data.process(files[1], Coordinates(mesh, settings, files[0]), moves=False)
+    data.process(files[1], input_format, Coordinates(mesh, settings, files[0]), moves=False)

@@ -10,13 +10,13 @@ from ..mapping import PointMap
 
 
 @click.command("map")
-@options.pair_files("SOURCE [TARGET] DATA", others=1)
+@options.pair_files("SOURCE [TARGET] DATA")
 @data_options
 @options.map_settings("smooth; for a PROJ triangulation file linear, which is its official meaning")
 @options.inverse
 @click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (vector data; "
               "default: what the triangulation file says, or the data's own).")
-@click.option("--densify", type=options.Number(above=True), default=0.0, metavar="LENGTH",
+@click.option("--densify", type=options.POSITIVE, metavar="LENGTH",
               help="Divide the segments of vector data so that none is longer.")
 @click.option("-j", "--jacobian", is_flag=True, help="Add the derivative at each point: Jacobian, 9 numbers row by row.")
 @click.option("--determinant", is_flag=True, help="Add the ratio of areas at each point: JacobianDeterminant.")
@@ -36,15 +36,15 @@ def command(inputs, data, settings, inverse, densify, jacobian, determinant, tri
     PROJ triangulation file, heights (a third coordinate) and the fallback strategy are those of PROJ."""
     inputs.crs = None if inverse else data.crs
     pair = options.read_pair(inputs)
-    work = PointMap(pair, settings, inverse)
+    work = PointMap(pair, settings.choose(pair), inverse)
     work.filter.SetComputeJacobian(jacobian)
     work.filter.SetComputeJacobianDeterminant(determinant)
     work.filter.SetComputeTriangleId(triangle_id)
     work.filter.SetTransformAllInputVectors(transform_all_vectors)
     work.filter.SetTransformActiveAttributes(not keep_vectors)
     shift = pair.shift
-    crs = (shift.crs(inverse, output=False), shift.crs(inverse)) if shift else None
+    crs = (shift.crs(inverse, output=False), shift.crs(inverse)) if shift else (None, None)
     if pair.landmarks and pair.landmarks.crs:
         # Pixels have no coordinate reference system.
         crs = (pair.landmarks.crs, "") if inverse else (None, pair.landmarks.crs)
-    data.process(inputs.others[0], work, moves=True, shift=shift, densify=densify, known_crs=crs)
+    data.process(inputs.other, inputs.format, work, True, shift, densify, crs)

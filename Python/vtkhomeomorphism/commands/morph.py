@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import click
 import numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .. import images, meshes, options, pair, vtkfiles
-from ..files import PICTURES, REFUSED, TABLES, USAGE, Failure, Input, Output, count, format_of, inform, progress
+from ..files import PICTURES, TABLES, USAGE, Failure, Input, Output, count, format_of, inform, progress
 from ..mapping import PointMap, run
 from ..vtkFiltersHomeomorphism import vtkInBetweenTriangulation
 from .warp import background_option
@@ -20,47 +21,41 @@ PATHS = {"straight": vtkInBetweenTriangulation.STRAIGHT, "rotating": vtkInBetwee
 
 def frame_names(pattern, number):
     """File names, with %d or %03d replaced by the number of the frame."""
-    places = re.findall(r"%0?[1-9]?d", pattern)
-    if len(places) != 1:
+    parts = re.split(r"(%0?[1-9]?d)", pattern)
+    if len(parts) != 3:
         raise Failure(f"The output's name must have one place for the frame's number, such as frame-%03d.png: {pattern}.",
                       USAGE)
-    before, after = pattern.split(places[0])
-    return [before + places[0] % k + after for k in range(number)]
+    return [parts[0] + parts[1] % k + parts[2] for k in range(number)]
 
 
-class InBetween:
-    """The intermediate meshes. Raises Failure if a triangle is folded in one of the frames."""
-
-    def __init__(self, both, settings, path, times):
-        self.name = both.name
-        self.filter = vtkInBetweenTriangulation()
-        self.filter.SetSourceData(both.source)
-        self.filter.SetTargetData(both.target)
-        self.filter.SetMaskInvalidTriangles(settings.mask_invalid)
-        self.filter.SetPath(PATHS[path])
-        folded = [k for k, t in enumerate(times) if self.at(t) is not None and self.filter.GetNumberOfFoldedTriangles()]
-        found = self.filter
-        if found.GetMirrored():
-            raise Failure(f"{both.name}: the target is a mirror image of the source: all triangles fold on the way.")
-        number = found.GetNumberOfFoldingTriangles()
-        if not number:
-            return
-        where = (f"{both.name}: {count(number, 'triangle folds', 'triangles fold')} on the way (cell "
-                 f"{found.GetFirstFoldingTriangle()} first, from {found.GetFirstFoldTime():.4g} on; the last until "
-                 f"{found.GetLastFoldTime():.4g})")
-        if folded:
-            raise Failure(f"{where}, and frame {folded[0]} (at {times[folded[0]]:.4g}) has folded triangles. Put a mesh "
-                          "in between and morph in two steps.", REFUSED)
-        inform(where + ", but in none of the frames.")
-
-    def at(self, time):
-        self.filter.SetTime(time)
-        result = run(self.filter, self.name)
+def make_meshes(both, mask_invalid, path, times):
+    """The intermediate meshes. Raises Failure if a triangle is folded in one of them."""
+    filter = vtkInBetweenTriangulation()
+    filter.SetSourceData(both.source)
+    filter.SetTargetData(both.target)
+    filter.SetMaskInvalidTriangles(mask_invalid)
+    filter.SetPath(PATHS[path])
+    result, folded = [], []
+    for time in times:
+        filter.SetTime(time)
         # The next output of the filter must be a separate object.
-        copy = result.NewInstance()
-        copy.ShallowCopy(result)
-        copy.GetCellData().RemoveArray("Folded")
-        return copy
+        mesh = vtkPolyData()
+        mesh.ShallowCopy(run(filter, both.name))
+        mesh.GetCellData().RemoveArray("Folded")
+        result.append(mesh)
+        folded += [time] * (filter.GetNumberOfFoldedTriangles() > 0)
+    if filter.GetMirrored():
+        raise Failure(f"{both.name}: the target is a mirror image of the source: all triangles fold on the way.")
+    number = filter.GetNumberOfFoldingTriangles()
+    if number:
+        where = (f"{both.name}: {count(number, 'triangle folds', 'triangles fold')} on the way (cell "
+                 f"{filter.GetFirstFoldingTriangle()} first, from {filter.GetFirstFoldTime():.4g} on; the last until "
+                 f"{filter.GetLastFoldTime():.4g})")
+        if folded:
+            raise Failure(f"{where}, and frame {times.index(folded[0])} (at {folded[0]:.4g}) has folded triangles. Put a "
+                          "mesh in between and morph in two steps.")
+        inform(where + ", but in none of the frames.")
+    return result
 
 
 def blend(first, second, t):
@@ -75,80 +70,73 @@ def blend(first, second, t):
 @options.pair_files("SOURCE [TARGET]")
 @click.option("-o", "--output", required=True, metavar="FILES", help="Name of the frames, with %d or %03d for the "
               "number: frame-%03d.png.")
-@click.option("-f", "--force", is_flag=True, help="Replace files that exist.")
+@options.force
 @click.option("--source-image", default="", metavar="FILE", help="Image over the source.")
 @click.option("--target-image", default="", metavar="FILE", help="Image over the target; with both, one fades into the "
               "other.")
 @click.option("--data", default="", metavar="FILE", help="Data over the source, instead of images (default: the source "
               "mesh).")
-@click.option("-n", "--frames", type=options.Number(2, most=100000, whole=True), default=11, metavar="NUMBER",
-              show_default=True, help="Number of frames, the first and the last included.")
+@click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER", show_default=True,
+              help="Number of frames, the first and the last included.")
 @click.option("--path", type=click.Choice(list(PATHS)), default="best", show_default=True,
               help="Paths of points: straight, rotating with the mesh as a whole, or the path with fewer folds.")
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source image's).")
 @background_option
-@options.map_settings("smooth")
+@options.map_settings("cubic; on surfaces smooth; for a PROJ triangulation file linear")
 @options.quiet
 def command(inputs, output, force, source_image, target_image, data, frames, path, size, background, settings):
-    """Make intermediate frames of images or data between the source and the target.
+    """Make frames of images or data on the way to the target.
 
     If a triangle would be folded in a frame, nothing is written (status 1)."""
     names = (source_image, target_image)
-    with_images = any(names)
-    if with_images and data:
-        raise Failure("Morph either images or data (--data), not both.", USAGE)
     format = format_of(output)
-    if not with_images and format in PICTURES:
+    if any(names) and data:
+        raise Failure("Morph either images or data (--data), not both.", USAGE)
+    if not any(names) and format in PICTURES:
         raise Failure(f"Meshes and data are not images (.{format}): give --source-image or --target-image, or write .vtp.",
                       USAGE)
     if format_of(data) in TABLES:
         raise Failure(f"{data} is a table, which has to become a .vtp first: dhm coordinates SOURCE {data} -o points.vtp.",
                       USAGE)
-    known = images.WRITE if with_images else vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
-    what = "an image" if with_images else "data"
-    outputs = [Output(name, "", force, known, what) for name in frame_names(output, frames)]
-    color = images.read_background(background, format) if with_images else None
+    known = images.WRITE if any(names) else vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
+    outputs = [Output(name, "", force, known, "frames") for name in frame_names(output, frames)]
+    color = images.read_background(background, format) if any(names) else None
     size = images.read_size(size)
-    rasters = [None, None]
+    rasters = {}
     for side, name in enumerate(names):
         if name:
             with Input(name) as file:
                 rasters[side] = images.read(file)
-    first = rasters[0] or rasters[1]
+    first = rasters.get(0, rasters.get(1))
     if first:
-        inputs.grids = lambda marks: [(raster or first).grid for raster in rasters]
+        inputs.grids = lambda marks: [rasters.get(side, first).grid for side in (0, 1)]
     both = options.read_pair(inputs)
-    if with_images:
-        for raster in rasters if both.landmarks else ():
-            if raster:
-                raster.grid = raster.grid.hanging()
-        grid = images.Grid(*size) if size else first.grid
-        grid = grid.hanging() if both.landmarks else grid
-        grids = [(raster or first).grid if raster else grid for raster in rasters]
-        pair.fit_to_pictures(both, [(g.width, g.height) for g in grids])
-        for side, raster in enumerate(rasters):
-            if raster:
-                images.require_overlap(raster.grid, names[side], both.meshes[side], both.name_of(side))
-    elif data:
+    settings = settings.choose(both, "cubic")
+    things = both.source
+    if data:
         with Input(data) as file:
-            things = vtkfiles.read(file) if file.format in vtkfiles.FORMATS else meshes.read(file)
-    else:
-        things = both.source
+            things = meshes.read_data(file)
+    if rasters:
+        grid = images.Grid(*size) if size else first.grid
+        if both.landmarks:
+            grid = grid.hanging()
+            for raster in rasters.values():
+                raster.grid = raster.grid.hanging()
+        grids = [rasters[side].grid if side in rasters else grid for side in (0, 1)]
+        pair.fit_to_pictures(both, [(g.width, g.height) for g in grids])
+        for side, raster in rasters.items():
+            images.require_overlap(raster.grid, names[side], both.meshes[side], both.name_of(side))
     times = [k / (frames - 1) for k in range(frames)]
-    between = InBetween(both, settings, path, times)
-    for t, frame in progress(list(zip(times, outputs)), "Morphing"):
-        mesh = between.at(t)
-        if not with_images:
-            result = PointMap(replace(both, meshes=[both.source, mesh], shift=None), settings).map_data(things)
-            with frame as place:
-                meshes.write(result, place)
-            continue
-        warped, mask, has_alpha = None, True, False
-        for side, raster in enumerate(rasters):
-            if raster:
-                moving = replace(both, meshes=[both.meshes[side], mesh], shift=None)
-                pixels, inside = images.Warp(moving, settings).warp(raster, grid, "")
-                warped = pixels if warped is None else blend(warped, pixels, t)
-                mask, has_alpha = mask & inside, raster.has_alpha
+    steps = zip(times, outputs, make_meshes(both, settings.mask_invalid, path, times))
+    for t, frame, mesh in progress(list(steps), "Morphing"):
+        moving = {side: replace(both, meshes=[both.meshes[side], mesh], shift=None) for side in (0, 1)}
         with frame as place:
-            images.write(images.finish(warped, mask, has_alpha, color), place, grid)
+            if not rasters:
+                meshes.write(PointMap(moving[0], settings).map_data(things), place)
+                continue
+            warped = [images.Warp(moving[side], settings).warp(raster, grid, "") for side, raster in rasters.items()]
+            pixels, mask = warped[0]
+            if len(warped) == 2:
+                pixels, mask = blend(pixels, warped[1][0], t), mask & warped[1][1]
+            has_alpha = all(raster.has_alpha for raster in rasters.values())
+            images.write(images.finish(pixels, mask, has_alpha, color), place, grid)

@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .. import meshes, options, pair, report, tinshift
 from ..files import Failure, Output, inform
-from ..mapping import named_array, run
+from ..mapping import add_array, run
 from ..vtkFiltersHomeomorphism import vtkRefinedTriangulationPair
 from .convert import crs_options, describe
 
@@ -21,53 +21,54 @@ PROJ_LIMIT = 10 * 1024 * 1024
 @click.command("refine")
 @options.pair_files("SOURCE [TARGET]")
 @options.output("The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output.", "json")
-@click.option("-t", "--max-error", type=options.Number(above=True), required=True, metavar="DISTANCE",
+@click.option("-t", "--max-error", type=options.POSITIVE, required=True, metavar="DISTANCE",
               help="Greatest distance between the piecewise linear map and the map, in units of the target.")
-@click.option("--max-triangles", type=options.Number(1, whole=True, most=2**31), default=2000000, metavar="NUMBER",
-              show_default=True, help="Greatest number of triangles.")
+@click.option("--max-triangles", type=click.IntRange(1), default=2000000, metavar="NUMBER", show_default=True,
+              help="Greatest number of triangles.")
 @options.map_settings("smooth")
 @crs_options
 @options.quiet
 def command(inputs, output, force, output_format, max_error, max_triangles, settings, output_array, input_crs,
             output_crs):
-    """Make a finer pair whose piecewise linear map approximates the Smooth map, for PROJ and others. The pair is in a
-    plane. Heights of a triangulation file remain the same functions of the point."""
+    """Make a finer pair for PROJ, piecewise linear within a tolerance.
+
+    The piecewise linear map of the finer pair approximates the map of the given one, which is in a plane. Heights of a triangulation file remain the same functions of the point."""
     target = Output(output, output_format, force, pair.FORMATS, "a pair")
     both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     both.require_flat()
     if both.shift and not both.shift.horizontal:
         raise Failure(f"{both.name} shifts heights only, which are piecewise linear already: there is nothing to refine.")
-    system = settings.system or "smooth"
-    columns = both.shift.columns if both.shift else {}
-    for name, values in columns.items():
-        both.source.GetPointData().AddArray(named_array(values, name))
+    settings = replace(settings, system=settings.system or "smooth")
+    heights = both.shift.heights if both.shift else {}
+    for name, values in heights.items():
+        add_array(both.source, name, values)
     refining = vtkRefinedTriangulationPair()
-    settings.apply(refining, system)
+    settings.apply(refining)
     refining.SetSourceData(both.source)
     refining.SetTargetData(both.target)
     refining.SetMaximumError(max_error)
     refining.SetMaximumNumberOfTriangles(max_triangles)
     try:
         run(refining, both.name)
-    except Failure as failure:
-        if refining.GetResult() == refining.TOO_MANY_TRIANGLES:
-            raise Failure(f"{both.name}: an error of {max_error:g} takes more than {max_triangles} triangles "
-                          "(--max-triangles); with as many the largest error is still "
-                          f"{refining.GetLargestError():.3g}: allow a larger --max-error.") from None
-        raise failure
+    except Failure:
+        if refining.GetResult() != refining.TOO_MANY_TRIANGLES:
+            raise
+        raise Failure(f"{both.name}: an error of {max_error:g} takes more than {max_triangles} triangles (--max-triangles); "
+                      f"with as many the largest error is still {refining.GetLargestError():.3g}: allow a larger "
+                      "--max-error.") from None
+    system = settings.system.capitalize()
     finer = replace(both, meshes=[refining.GetOutput(0), refining.GetOutput(1)], shift=None)
-    inform(f"{both.source.GetNumberOfPolys()} triangles became {finer.source.GetNumberOfPolys()}; farthest from "
-           f"{system.capitalize()}: {refining.GetLargestError():.4g}, at {refining.GetNumberOfSamples()} points.")
+    inform(f"{both.source.GetNumberOfPolys()} triangles became {finer.source.GetNumberOfPolys()}; farthest from {system}: "
+           f"{refining.GetLargestError():.4g}, at {refining.GetNumberOfSamples()} points.")
     # Mark the file as different from the published one.
-    description = finer.metadata.get("description")
-    finer.metadata["description"] = (f"{description}. " if isinstance(description, str) else "") + (
-        f"Refined by dhm: its piecewise linear map is within {max_error:g} of the {system.capitalize()} map of the "
-        "original triangulation")
+    published = finer.metadata.get("description")
+    finer.metadata["description"] = (f"{published}. " if isinstance(published, str) else "") + (
+        f"Refined by dhm: its piecewise linear map is within {max_error:g} of the {system} map of the original triangulation")
     describe(finer.metadata, input_crs, output_crs)
     if both.shift:
-        heights = {name: vtk_to_numpy(finer.source.GetPointData().GetArray(name)) for name in columns}
+        heights = {name: vtk_to_numpy(finer.source.GetPointData().GetArray(name)) for name in heights}
         points = [meshes.points_of(mesh)[:, :2] for mesh in finer.meshes]
-        finer.shift = tinshift.Shift(*points, meshes.triangles_of(finer.source), columns=heights)
+        finer.shift = tinshift.Shift(*points, meshes.triangles_of(finer.source), heights)
     with target as place:
         pair.write(finer, place, output_array)
         if target.format == "json" and os.path.getsize(place.path) > PROJ_LIMIT:

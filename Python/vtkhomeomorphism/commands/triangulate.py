@@ -70,11 +70,11 @@ def print_report(made, marks):
               help="The inside of outlines, a frame around the landmarks (without outlines), or their convex hulls.")
 @click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", show_default=True,
               help="What triangles are optimized for.")
-@click.option("--target-angle", type=options.Number(most=90), default=0.0, metavar="DEGREES",
+@click.option("--target-angle", type=options.Number(0, 90), default=0.0, metavar="DEGREES",
               help="Add points until no angle is smaller (default: necessary points only).")
-@click.option("--maximum-added-points", type=options.Number(whole=True), metavar="NUMBER",
+@click.option("--maximum-added-points", type=click.IntRange(0), metavar="NUMBER",
               help="Greatest number of points to add (default: the necessary ones, and up to 100 for --target-angle).")
-@click.option("--maximum-size", type=options.Number(most=1), default=0.0, metavar="SHARE",
+@click.option("--maximum-size", type=options.Number(0, 1), default=0.0, metavar="SHARE",
               help="Divide triangles with a larger share of the domain's area.")
 @click.option("--leave-out-conflicts", is_flag=True, help="Leave out lines that conflict with others, and name them.")
 @click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks that are probably wrong.")
@@ -93,7 +93,7 @@ def command(inputs, output, force, output_format, lines, outlines, domain, quali
         domain = "outline" if domain == "automatic" and are_loops(segments) else domain
     else:
         name = inputs.pair[0]
-        with Input(name, inputs.input_format or "csv", "--input-format") as file:
+        with Input(name, inputs.format or "csv") as file:
             if not is_landmark_file(file.path):
                 raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv, .points and IIIF's .json.", USAGE)
             marks = pair.read_landmark_file(file, inputs)

@@ -15,22 +15,19 @@ background_option = click.option(
 
 
 @click.command("warp")
-@options.pair_files("SOURCE [TARGET] IMAGE", others=1)
+@options.pair_files("SOURCE [TARGET] IMAGE")
 @options.output("The warped image: .png .jpg .tif .ppm .vti, or - for standard output.", "png")
-@click.option("--image-format", default="png", metavar="EXTENSION", show_default=True,
-              help="Format of an image from standard input.")
-@options.map_settings("smooth; for a PROJ triangulation file linear")
+@options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.inverse
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
-@click.option("--resolution", type=options.Number(above=True), default=0.0, metavar="LENGTH",
+@click.option("--resolution", type=options.POSITIVE, metavar="LENGTH",
               help="Size of the result's pixels on the ground (georeferenced rasters).")
 @click.option("--like", default="", metavar="FILE", help="Write the result on the pixels of this GeoTIFF.")
 @click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: what "
               "the triangulation file says, or the raster's own).")
 @background_option
 @options.quiet
-def command(inputs, output, force, output_format, image_format, settings, inverse, size, resolution, like, crs,
-            background):
+def command(inputs, output, force, output_format, settings, inverse, size, resolution, like, crs, background):
     """Warp an image from the source's domain to the target's.
 
     IMAGE is a .png .jpg .tif .ppm or .vti. Meshes are in its pixels (the lower left pixel's center is (0, 0), y runs
@@ -42,12 +39,12 @@ def command(inputs, output, force, output_format, image_format, settings, invers
     target = Output(output, output_format, force, images.WRITE, "an image")
     color = images.read_background(background, target.format)
     inputs.crs = None if inverse else crs
-    with Input(inputs.others[0], image_format, "--image-format") as file:
-        opened = []
+    with Input(inputs.other, inputs.format or "png") as file:
+        raster = images.read(file)
+        own = raster.grid
 
-        def grids(marks):
-            opened.append(images.read(file))
-            own = opened[0].grid
+        def find_grids(marks):
+            """Those of the source and the target in pixels, for landmarks."""
             if own.placed:
                 return options.scan_grids(inputs)[0] or (images.Grid(*size) if inverse and size else None), None
             if marks.crs and not inverse:
@@ -56,47 +53,37 @@ def command(inputs, output, force, output_format, image_format, settings, invers
                 raise Failure(f"{inputs.pair[0]} does not name the coordinate reference system of its target: give --crs.", USAGE)
             return (own, images.Grid(*size) if size else own)[:: -1 if inverse else 1]
 
-        inputs.grids = grids
+        inputs.grids = find_grids
         both = options.read_pair(inputs)
-        settings = replace(settings, system=settings.system_for(both))
-        raster = opened[0] if opened else images.read(file)
-        # A layer that goes back onto a scan becomes an image without georeference.
+        settings = settings.choose(both, "cubic")
         marks = both.landmarks
-        scan = marks and inverse and raster.grid.placed and grids(marks)[0]
-        placed = not scan and (raster.grid.placed or bool(marks and marks.crs and not inverse))
-        if not placed:
-            for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
-                if value:
-                    raise Failure(f"{name} is for georeferenced rasters, which {file.name} is not.", USAGE)
-        if marks and not raster.grid.placed:
-            raster.grid = raster.grid.hanging()
-        grid = scan.hanging() if scan else raster.grid
-        if not placed and not scan and size:
-            grid = images.Grid(*size) if target.format != "vti" else replace(grid, width=size[0], height=size[1])
-            grid = grid.hanging() if marks else grid
-        sizes = [(g.width, g.height) for g in (raster.grid, grid)]
+        # A layer that goes back onto a scan becomes an image without georeference.
+        scan = marks and inverse and own.placed and find_grids(marks)[0]
+        placed = not scan and (own.placed or bool(marks and marks.crs and not inverse))
+        for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
+            if value and not placed:
+                raise Failure(f"{name} is for georeferenced rasters, which {file.name} is not.", USAGE)
+        if placed and target.format not in ("tif", "tiff"):
+            raise Failure(f"A georeferenced raster becomes a .tif, not a .{target.format}.", USAGE)
+        grid = scan or own
+        if like:
+            with Input(like) as model:
+                grid = images.read(model).grid
+        elif size and not placed and not scan:
+            grid = images.Grid(*size) if target.format != "vti" else replace(own, width=size[0], height=size[1])
+        if marks:
+            raster.grid = own if own.placed else own.hanging()
+            grid = grid if placed else grid.hanging()
+        sizes = [(g.width, g.height) for g in (own, grid)]
         pair.fit_to_pictures(both, sizes[::-1] if inverse else sizes)
-        side = int(inverse)
-        images.require_overlap(raster.grid, file.name, both.meshes[side], both.name_of(side))
-        warp = images.Warp(both, settings, inverse)
+        images.require_overlap(raster.grid, file.name, both.meshes[inverse], both.name_of(inverse))
+        warp = images.Warp(both, settings, inverse, (own.turn, grid.turn if like else None))
         if placed:
-            if target.format not in ("tif", "tiff"):
-                raise Failure(f"A georeferenced raster becomes a .tif, not a .{target.format}.", USAGE)
-            crs = crs or (both.shift and both.shift.crs(inverse)) or (marks and marks.crs) or grid.crs
-            if like:
-                with Input(like) as model:
-                    grid = images.read(model).grid
-            else:
-                grid = warp.fit_grid(raster, size, resolution, crs)
-        images.require_overlap(grid, "the result", both.meshes[1 - side], both.name_of(1 - side))
-        if placed:
-            with target as place:
-                writer = images.TiffWriter(place, grid, raster, None if not background else color)
-                for tile in warp.tiles(raster, grid):
-                    writer.write(*tile)
-                writer.close()
-            return
-        pixels, mask = warp.warp(raster, grid)
-        pixels = images.finish(pixels, mask, raster.has_alpha, color)
+            crs = crs or (both.shift and both.shift.crs(inverse)) or (marks and marks.crs) or own.crs
+            grid = replace(grid, crs=crs) if like else warp.fit_grid(raster, size, resolution, crs)
+        images.require_overlap(grid, "the result", both.meshes[not inverse], both.name_of(not inverse))
         with target as place:
-            images.write(pixels, place, grid)
+            if target.format in ("tif", "tiff"):
+                images.write_tiff(place, grid, raster, warp.tiles(raster, grid), color)
+            else:
+                images.write(images.finish(*warp.warp(raster, grid), raster.has_alpha, color), place, grid)
