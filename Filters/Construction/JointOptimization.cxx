@@ -725,6 +725,77 @@ bool JointOptimization::Relocate()
   return false;
 }
 
+bool JointOptimization::FlipAndMove()
+{
+  const double before = this->Mesh.Score();
+  std::vector<int> made;
+  for (const int t : this->Neighborhood(this->Mesh.Worst(), 2))
+  {
+    for (int k = 0; k < 3 && this->KeepGoing(); ++k)
+    {
+      const std::size_t mark = this->Mesh.Mark();
+      if (this->Mesh.GetTriangles()[t].Neighbors[k] < t && this->Mesh.Flip(t, k, 0.0, made))
+      {
+        const std::vector<int> vertices =
+          this->FreeVerticesOf(this->Mesh.Grow(this->Mesh.Grow(this->Mesh.Grow(made))));
+        this->Smooth(vertices, true);
+        if (this->Mesh.Score() > before + 1e-2)
+        {
+          this->Round(vertices, true);
+          return true;
+        }
+        this->Mesh.RollBack(mark);
+      }
+    }
+  }
+  return false;
+}
+
+bool JointOptimization::Exchange()
+{
+  const double before = this->Mesh.Score();
+  const std::size_t mark = this->Mesh.Mark();
+  if (!this->InsertNear(this->Mesh.Worst()))
+  {
+    return false;
+  }
+  // Whichever point, taken out, leaves the best mesh.
+  const auto remove = [this](int vertex) {
+    std::vector<int> star;
+    this->Mesh.Star(vertex, star);
+    std::vector<int> vertices = this->FreeVerticesOf(this->Mesh.Grow(this->Mesh.Grow(star)));
+    vertices.erase(std::remove(vertices.begin(), vertices.end(), vertex), vertices.end());
+    if (!this->RemovePoint(vertex))
+    {
+      return false;
+    }
+    this->Flip();
+    for (int i = 0; i < 3; ++i)
+    {
+      this->Round(vertices, i == 2);
+    }
+    return true;
+  };
+  const std::size_t more = this->Mesh.Mark();
+  int best = -1;
+  double bestScore = before + 1e-2;
+  for (const int vertex : this->Mesh.FreeVertices())
+  {
+    if (this->KeepGoing() && remove(vertex) && this->Mesh.Score() > bestScore)
+    {
+      best = vertex;
+      bestScore = this->Mesh.Score();
+    }
+    this->Mesh.RollBack(more);
+  }
+  if (best < 0)
+  {
+    this->Mesh.RollBack(mark);
+    return false;
+  }
+  return remove(best);
+}
+
 void JointOptimization::AddPoints(double target, int maximum)
 {
   this->Improve(3);
@@ -755,7 +826,7 @@ void JointOptimization::AddPoints(double target, int maximum)
   }
   for (int i = 0; i < 2 * maximum && bestQuality < target && this->KeepGoing(); ++i)
   {
-    if (!this->Relocate())
+    if (!this->Relocate() && !this->FlipAndMove() && !this->Exchange())
     {
       break;
     }

@@ -59,6 +59,8 @@ private:
   std::vector<int> FreeVerticesOf(const std::vector<int>& triangles) const;
   bool InsertNear(int triangle);
   bool Relocate();
+  bool FlipAndMove();
+  bool Exchange();
   int SplitTriangle(int triangle);
   int SplitEdge(int triangle, int edge);
 

@@ -445,6 +445,14 @@ void PairMesh::RollBack(std::size_t mark)
 
 bool PairMesh::FlipIfBetter(int t, int k, std::vector<int>& made)
 {
+  const int n = this->Triangles[t].Neighbors[k];
+  // A little more, so that rounding cannot turn an edge round and round.
+  return n >= 0 &&
+    this->Flip(t, k, std::min(this->Triangles[t].Quality, this->Triangles[n].Quality) + 1e-9, made);
+}
+
+bool PairMesh::Flip(int t, int k, double least, std::vector<int>& made)
+{
   const Triangle& triangle = this->Triangles[t];
   const int n = triangle.Neighbors[k];
   if (!triangle.Alive || n < 0 || triangle.Fixed[k])
@@ -455,8 +463,6 @@ bool PairMesh::FlipIfBetter(int t, int k, std::vector<int>& made)
   const int b = triangle.Vertices[NextCorner(k)];
   const int c = triangle.Vertices[PreviousCorner(k)];
   const int d = this->Triangles[n].Vertices[NextCorner(this->IndexOf(n, b))];
-  // A little more, so that rounding cannot turn an edge round and round.
-  const double least = std::min(triangle.Quality, this->Triangles[n].Quality) + 1e-9;
   for (const auto& v : { std::array<int, 3>{ { a, b, d } }, std::array<int, 3>{ { a, d, c } } })
   {
     const auto& p = this->Points[0];

@@ -76,6 +76,10 @@ public:
   /// Flips an edge if both quadrangles are convex and the worse of the two triangles gets better.
   bool FlipIfBetter(int triangle, int edge, std::vector<int>& made);
 
+  /// Flips an edge if both quadrangles are convex and both new triangles are better than @a least,
+  /// 0 or more.
+  bool Flip(int triangle, int edge, double least, std::vector<int>& made);
+
   /// The number of changes so far, to go back to.
   std::size_t Mark() const { return this->Changes.size(); }
   void RollBack(std::size_t mark);
