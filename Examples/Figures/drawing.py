@@ -11,8 +11,9 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from vtkhomeomorphism import Homeomorphism, vtkTriangularCoordinates
-from vtkhomeomorphism.meshes import make_mesh
+from vtkhomeomorphism import Homeomorphism, vtkJacobianContinuity, vtkTriangularCoordinates
+from vtkhomeomorphism.arrays import configure, update
+from vtkhomeomorphism.meshes import make_mesh, points_of
 
 INK = "#212329"
 SYSTEMS = ("linear", "contour", "smooth")
@@ -77,10 +78,6 @@ def right_angle(axes, corner, first, second, size, color, width):
     stroke(axes, [corner + u, corner + u + v, corner + v], color, width)
 
 
-def frame(axes, width=1.2):
-    axes.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=INK, linewidth=0.72 * width, clip_on=False, transform=axes.transAxes)
-
-
 def edges_of(triangles):
     """Each edge once, and how many triangles it has."""
     triangles = numpy.asarray(triangles)
@@ -98,40 +95,51 @@ def close_up(axes, page, box, center, half_width, half_height):
     corners = numpy.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)]) * (half_width, half_height)
     stroke(axes, corners + center, INK, 1.2, linestyle=(0, (4, 3)))
     result = page.panel(*box, (x - half_width, y - half_height, 2 * half_width, 2 * half_height))
-    frame(result)
+    result.plot([0, 1, 1, 0, 0], [0, 0, 1, 1, 0], color=INK, linewidth=0.9, clip_on=False, transform=result.transAxes)
     return result
+
+
+def curves_of(data, values=None):
+    """The polylines of a data set, arrays of points, or of other values at the points."""
+    values = points_of(data)[:, :2] if values is None else values
+    ids, offsets = (vtk_to_numpy(a) for a in (data.GetLines().GetConnectivityArray(), data.GetLines().GetOffsetsArray()))
+    return numpy.split(values[ids], offsets[1:-1])
 
 
 class Coordinates:
     """The triangular coordinates of a triangulation: their lines by type and triangle, and concordant triangles."""
 
     def __init__(self, points, triangles, system="contour", contours=1, rings=1, center="centroid", data=None):
-        self.filter = names = vtkTriangularCoordinates()
+        self.filter = vtkTriangularCoordinates()
         self.filter.SetInputData(make_mesh(numpy.asarray(points, float), numpy.asarray(triangles)))
-        self.filter.SetCoordinateSystem({"linear": names.LINEAR, "contour": names.CONTOUR, "smooth": names.SMOOTH}[system])
-        self.filter.SetCenterPoint(names.INCENTER if center == "incenter" else names.CENTROID)
-        self.filter.SetDiscordantTriangles(names.USE_LINEAR)
+        configure(self.filter, system, center=center, discordant_by_linear=True)
         self.filter.SetNumberOfContours(contours)
         self.filter.SetNumberOfRings(rings)
         self.filter.SetLineResolution(64)
-        self.filter.Update()
-        if self.filter.GetErrorCode() != 0:
-            raise SystemExit("The triangulation was refused.")
+        update(self.filter)
         cells = self.filter.GetTriangulation().GetCellData()
         self.concordant = vtk_to_numpy(cells.GetArray("Concordant")) != 0
         self.used = vtk_to_numpy(cells.GetArray("UsedCoordinateSystem"))
         lines = self.filter.GetLines()
         self.types = vtk_to_numpy(lines.GetCellData().GetArray("LineType"))
         self.triangles = vtk_to_numpy(lines.GetCellData().GetArray("TriangleId"))
-        ids = vtk_to_numpy(lines.GetLines().GetConnectivityArray())
-        offsets = vtk_to_numpy(lines.GetLines().GetOffsetsArray())
-        xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
-        self.curves = numpy.array([*numpy.split(xy[ids], offsets[1:-1]), None], object)[:-1]
+        self.curves = numpy.array([*curves_of(lines), None], object)[:-1]
 
     def lines(self, kind, triangle=None):
         """Curves of a type, such as "RING_LINE"."""
         chosen = self.types == getattr(vtkTriangularCoordinates, kind)
         return list(self.curves[chosen if triangle is None else chosen & (self.triangles == triangle)])
+
+
+def measure_continuity(source, target, triangles, system, samples=5):
+    """vtkJacobianContinuity of a map, updated."""
+    continuity = vtkJacobianContinuity()
+    continuity.SetSourceData(make_mesh(source, triangles))
+    continuity.SetTargetData(make_mesh(target, triangles))
+    configure(continuity, system, discordant_by_linear=True)
+    continuity.SetSamplesPerEdge(samples)
+    update(continuity)
+    return continuity
 
 
 def map_between(source, target, triangles, system):
@@ -150,10 +158,8 @@ def cross(points, triangles, start, end):
     hit = numpy.flatnonzero((p > 0) != (q > 0))
     where = a[hit] + (p[hit] / (p[hit] - q[hit]))[:, None] * (b[hit] - a[hit])
     t = (where - start) @ along / (along @ along)
-    order = numpy.argsort(t)
-    order = order[(t[order] >= 0) & (t[order] <= 1)]
     pieces, piece = [], []
-    for i in order:
+    for i in numpy.argsort(t)[((t < 0).sum()) : (t <= 1).sum()]:
         piece.append(where[i])
         if counts[hit[i]] == 1 and len(piece) > 1:
             pieces.append(numpy.array(piece))

@@ -24,12 +24,10 @@ COUNT = 44
 
 for mesh in (SOURCE, TARGET):
     assert Coordinates(mesh, TRIANGLES).concordant.all()
-lines = []
-for k in range(COUNT):
-    y = -0.9 + 7 * (k + 0.5) / COUNT
-    for piece in cross(SOURCE, TRIANGLES, (-1, y), (4, y + 1)):
-        t = numpy.linspace(1e-12, 1 - 1e-12, 1501)[:, None]
-        lines.append((piece[0] + t * (piece[-1] - piece[0]), COLORS((k + 0.5) / COUNT)))
+lines, t = [], numpy.linspace(1e-12, 1 - 1e-12, 1501)[:, None]
+for share in (numpy.arange(COUNT) + 0.5) / COUNT:
+    for piece in cross(SOURCE, TRIANGLES, (-1, 7 * share - 0.9), (4, 7 * share + 0.1)):
+        lines.append((piece[0] + t * (piece[-1] - piece[0]), COLORS(share)))
 print(f"{len(TRIANGLES)} triangles, all concordant in both; {len(lines)} pieces of lines")
 
 edges, counts = edges_of(TRIANGLES)

@@ -3,9 +3,7 @@
 """The jump of the Jacobian along an edge, measured from values of the map, and its closed form."""
 
 import numpy
-from drawing import CENTER, CONTOUR, INK, SYSTEMS, WING, Page
-from vtkhomeomorphism import vtkJacobianContinuity
-from vtkhomeomorphism.meshes import make_mesh
+from drawing import CENTER, CONTOUR, SYSTEMS, WING, Page, curves_of, measure_continuity
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 TRIANGLES = numpy.array([(0, 1, 2), (1, 0, 3)])
@@ -25,17 +23,10 @@ page.label(535, 20, "position along the edge", 17)
 page.label(28, 345, "relative jump of the Jacobian", 17, rotation=90)
 print(f"{'':8} {'largest |measured - exact|':>26} {'error bound':>14} {'least jump':>14} {'largest jump':>14}")
 for system, color in zip(SYSTEMS, (CENTER, CONTOUR, WING)):
-    continuity = vtkJacobianContinuity()
-    continuity.SetSourceData(make_mesh(SOURCE, TRIANGLES))
-    continuity.SetTargetData(make_mesh(TARGET, TRIANGLES))
-    continuity.SetCoordinateSystem(SYSTEMS.index(system))
-    continuity.SetSamplesPerEdge(99)
-    continuity.Update()
-    edges = continuity.GetOutput()
+    edges = measure_continuity(SOURCE, TARGET, TRIANGLES, system, 99).GetOutput()
     # The ends are vertices, which have no jump.
-    ids = vtk_to_numpy(edges.GetLines().GetConnectivityArray())[1:-1]
-    position = (vtk_to_numpy(edges.GetPoints().GetData())[ids, 0] + 2) / 4
-    measured, exact, bound = (vtk_to_numpy(edges.GetPointData().GetArray(name))[ids]
+    position = (curves_of(edges)[0][1:-1, 0] + 2) / 4
+    measured, exact, bound = (curves_of(edges, vtk_to_numpy(edges.GetPointData().GetArray(name)))[0][1:-1]
                               for name in ("JacobianJump", "JacobianJumpExact", "JacobianJumpError"))
     print(f"{system.capitalize():8} {numpy.abs(measured - exact).max():26.2g} {bound.max():14.2g} "
           f"{measured.min():14.2g} {measured.max():14.2g}")

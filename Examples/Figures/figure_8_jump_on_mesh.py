@@ -6,13 +6,12 @@
 import sys
 
 import numpy
-from drawing import INK, SYSTEMS, Coordinates, Page, draw_edges, edges_of, fill, map_between, stroke, strokes
+from drawing import INK, SYSTEMS, Coordinates, Page, curves_of, draw_edges, edges_of, fill, map_between, \
+    measure_continuity, stroke, strokes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.tri import Triangulation
 from PIL import Image
-from vtkhomeomorphism import vtkJacobianContinuity
-from vtkhomeomorphism.meshes import make_mesh
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 COLORS = LinearSegmentedColormap.from_list(
@@ -93,17 +92,9 @@ def draw(name, meshes, triangles, draw_side):
     discordant = sum(~(Coordinates(meshes[0], triangles).concordant & Coordinates(meshes[1], triangles).concordant))
     print(f"{'':8} {'triangles':>10} {'discordant':>10} {'least jump':>14} {'largest jump':>14}")
     for k, system in enumerate(SYSTEMS):
-        continuity = vtkJacobianContinuity()
-        continuity.SetSourceData(make_mesh(meshes[0], triangles))
-        continuity.SetTargetData(make_mesh(meshes[1], triangles))
-        continuity.SetCoordinateSystem(k)
-        continuity.SetDiscordantTriangles(continuity.USE_LINEAR)
-        continuity.Update()
+        continuity = measure_continuity(*meshes, triangles, system)
         lines, cells = continuity.GetOutput(0), continuity.GetOutput(1)
         of_edges, of_triangles = (vtk_to_numpy(d.GetCellData().GetArray("JacobianJump")) for d in (lines, cells))
-        ids = vtk_to_numpy(lines.GetLines().GetConnectivityArray())
-        offsets = vtk_to_numpy(lines.GetLines().GetOffsetsArray())
-        ends = numpy.column_stack((ids[offsets[:-1]], ids[offsets[1:] - 1]))
         largest = continuity.GetLargestJump()
         print(f"{system.capitalize():8} {len(triangles):10} {discordant if system == 'contour' else 0:10} "
               f"{of_edges.min():14.2g} {largest:14.2g}")
@@ -114,7 +105,7 @@ def draw(name, meshes, triangles, draw_side):
         # Colored edges between gray ones, thinner where there are many.
         width = 1.0 if len(triangles) > 200 else 2.0
         draw_edges(axes, meshes[0], triangles, "#9e999e", 1.7 * width)
-        strokes(axes, vtk_to_numpy(lines.GetPoints().GetData())[:, :2][ends], colors(of_edges), width)
+        strokes(axes, [curve[[0, -1]] for curve in curves_of(lines)], colors(of_edges), width)
         strokes(axes, meshes[0][edges[counts == 1]], INK, 2.0)
         page.label(left + 152, 481, system.capitalize(), 22)
         digits, power = f"{largest:.1e}".split("e")

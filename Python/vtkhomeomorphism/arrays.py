@@ -284,7 +284,9 @@ class Homeomorphism:
     def coordinates(self, points):
         """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0
         outside), p and c (NaN outside); four arrays of shape (n,)."""
-        algorithm = self._set_up(vtkTriangularCoordinates())
+        algorithm = vtkTriangularCoordinates()
+        algorithm.SetSourceData(self._meshes[0])
+        configure(algorithm, self._system, **self._options)
         algorithm.GenerateLinesOff()
         data = vtkPolyData()
         data.SetPoints(_as_points(points, "points")[0])

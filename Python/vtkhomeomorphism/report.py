@@ -88,6 +88,7 @@ class Report:
                 continue
             group = next((g for g in groups if name.startswith(g) and name != g), "")
             member = int(value) if value.is_integer() else value
+            member = bool(value) if table.GetColumnByName(name).IsA("vtkIntArray") else member
             if name + "Cell" in values:
                 member = {"value": value, "cell": int(values[name + "Cell"])}
             into = result.setdefault(groups[group], {}) if group else result

@@ -50,12 +50,15 @@ def show(value):
         return f"{show(value['value'])} (cell {value['cell']})"
     if isinstance(value, list):
         return str(len(value))
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def print_table(columns):
     """A table of dicts side by side, with a row for each member."""
-    rows = dict.fromkeys(name for column in columns.values() for name in column if name[-2:] not in ("_x", "_y", "_z"))
+    rows = dict.fromkeys(name for column in columns.values() for name in column
+                         if name not in ("file", "valid", "measured", "problems") and name[-2:] not in ("_x", "_y", "_z"))
     if rows:
         click.echo(("\n  " + " " * 36 + "".join(f"{title:23}" for title in columns)).rstrip())
     for name in rows:
