@@ -139,8 +139,10 @@ public:
   ///@}
 
   ///@{
-  /// How many points may be added. With 0 the filter says whether it found a way without. -1
-  /// (default): as many as necessary, and up to 100 more for TargetMinimumAngle.
+  /// How many points may be added. With 0 the filter says whether it found a way without. The first
+  /// pair found that keeps to the limit is taken, unless there is a TargetMinimumAngle: a generous
+  /// limit is fast. -1 (default): as many as necessary after several attempts, and up to 100 more
+  /// for TargetMinimumAngle.
   vtkSetClampMacro(MaximumNumberOfAddedPoints, int, -1, VTK_INT_MAX);
   vtkGetMacro(MaximumNumberOfAddedPoints, int);
   ///@}

@@ -276,7 +276,9 @@ public:
   /// Whether another order or frame could need fewer added points, and may be tried.
   bool CanImprove() const
   {
-    return this->CountAdded() > 0 && this->Order.size() <= SeveralOrders && !this->Stopped;
+    const int enough =
+      this->Options.TargetQuality > 0.0 ? 0 : std::max(0, this->Options.MaximumNumberOfAddedPoints);
+    return this->CountAdded() > enough && this->Order.size() <= SeveralOrders && !this->Stopped;
   }
 
   bool HasAutomaticFrame() const { return this->AutomaticFrame; }

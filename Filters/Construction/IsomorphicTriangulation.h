@@ -39,7 +39,9 @@ struct IsomorphicTriangulationOptions
   /// would have to be much larger the target's bounds.
   std::array<std::vector<Vector2>, 2> Frames;
   PairQuality Quality = PairQuality::MinimumAngle;
-  /// How many points may be added; -1: as many as necessary, and up to 100 for better triangles.
+  /// How many points may be added; -1: as many as necessary after several attempts, and up to 100
+  /// for better triangles. Otherwise the first attempt that keeps to the limit is taken, unless
+  /// there is a TargetQuality.
   int MaximumNumberOfAddedPoints = -1;
   /// Points are added until the smallest angle of both domains, in degrees, is this large, or for
   /// other qualities until QualityOf is. 0: only the points that are necessary.
