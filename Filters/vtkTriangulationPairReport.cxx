@@ -22,7 +22,6 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -75,29 +74,6 @@ private:
 
   vtkTable* Table;
 };
-
-/// The table of diagnostics, with columns for the first cell and for whether triangles were masked.
-void FillDefects(const MeshDiagnostics& defects, vtkTable* table)
-{
-  MakeTable(defects, table);
-  vtkNew<vtkStringArray> meshes;
-  meshes->SetName("Mesh");
-  vtkNew<vtkIntArray> leftOut;
-  leftOut->SetName("LeftOut");
-  vtkNew<vtkIdTypeArray> firstCells;
-  firstCells->SetName("FirstCell");
-  for (const MeshDiagnostic& defect : defects)
-  {
-    meshes->InsertNextValue(GetName(defect.Where));
-    leftOut->InsertNextValue(defect.Result == MeshDiagnostic::Outcome::Masked);
-    firstCells->InsertNextValue(defect.Ids.empty() ? -1 : defect.Ids.front());
-  }
-  for (vtkAbstractArray* column :
-    std::initializer_list<vtkAbstractArray*>{ meshes, leftOut, firstCells })
-  {
-    table->AddColumn(column);
-  }
-}
 
 /// Adds a cell array with a value for each triangle, @a other for other cells.
 template <typename Array, typename Values, typename Value>
@@ -240,7 +216,7 @@ int vtkTriangulationPairReport::Execute(
     measured[static_cast<std::size_t>(side)]->ShallowCopy(meshes[static_cast<std::size_t>(side)]);
   }
   Row row(vtkTable::GetData(outputs, 2));
-  FillDefects(defects, vtkTable::GetData(outputs, 3));
+  MakeTable(defects, vtkTable::GetData(outputs, 3));
   row.Add("Valid", this->Valid);
   row.Add("Measured", linear != nullptr);
   for (std::size_t side = 0; side < 2; ++side)

@@ -65,10 +65,8 @@
  *   `CubicExceptionalInteriorVertices` and `-BoundaryVertices`, the number of points without a
  *   derivative. For pairs in planes only; NaN and -1 for others, as in all columns of Cubic.
  *
- * Output port 3 is a vtkTable with a row for each kind of defect: the columns described in
- * Documentation/diagnostics.md, and `Mesh` ("source", "target" or "pair"), `LeftOut` (1 if the
- * triangles were left out, 0 otherwise), and `FirstCell` (the least cell id concerned, or -1). The
- * field data array `Ids` has all cell ids.
+ * Output port 3 is a vtkTable with a row for each kind of defect. Its columns, and the field data
+ * array `Ids` with all cell ids, are described in Documentation/diagnostics.md.
  *
  * Contour is measured with USE_LINEAR for discordant triangles. Samples are always the same points.
  * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads.

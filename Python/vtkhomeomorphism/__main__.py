@@ -53,6 +53,8 @@ def main():
     capture_messages()
     # GDAL's errors are raised and need not be printed.
     os.environ.setdefault("CPL_LOG", os.devnull)
+    # By default GDAL keeps a twentieth of the memory.
+    os.environ.setdefault("GDAL_CACHEMAX", "200")
     # Libraries that cannot write tell so when their objects are deleted, too.
     sys.unraisablehook = lambda what: None
     try:

@@ -22,20 +22,14 @@ from .vtkFiltersHomeomorphism import (
     vtkTriangularCoordinates,
 )
 
-SYSTEMS = {
-    "linear": vtkDifferentiableHomeomorphism.LINEAR,
-    "contour": vtkDifferentiableHomeomorphism.CONTOUR,
-    "smooth": vtkDifferentiableHomeomorphism.SMOOTH,
-    "cubic": vtkDifferentiableHomeomorphism.CUBIC,
-}
-BENDINGS = {
-    "local": vtkDifferentiableHomeomorphism.LOCAL,
-    "least": vtkDifferentiableHomeomorphism.LEAST,
-}
-CENTERS = {
-    "centroid": vtkDifferentiableHomeomorphism.CENTROID,
-    "incenter": vtkDifferentiableHomeomorphism.INCENTER,
-}
+
+def _values(*names: str) -> dict:
+    return {name: getattr(vtkDifferentiableHomeomorphism, name.upper()) for name in names}
+
+
+SYSTEMS = _values("linear", "contour", "smooth", "cubic")
+BENDINGS = _values("local", "least")
+CENTERS = _values("centroid", "incenter")
 
 
 def _choose(names: dict, value: str, what: str) -> int:

@@ -11,7 +11,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from .arrays import _as_points, _choose, update
+from .arrays import _as_points, _choose, as_cells, update
 from .vtkFiltersHomeomorphism import vtkIsomorphicTriangulation
 
 QUALITIES = {
@@ -113,14 +113,10 @@ def _with_frame(source, target, rectangle, make):
 
 
 def _cells(lists: Sequence[Sequence[int]], points: int, what: str) -> vtkCellArray:
-    cells = vtkCellArray()
     for number, ids in enumerate(lists):
         if any(not 0 <= i < points for i in ids):
             raise ValueError(f"{what}[{number}] names a point that does not exist")
-        cells.InsertNextCell(len(ids))
-        for i in ids:
-            cells.InsertCellPoint(int(i))
-    return cells
+    return as_cells(lists)
 
 
 def isomorphic_triangulation(

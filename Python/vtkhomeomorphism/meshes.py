@@ -5,7 +5,6 @@ with its texture coordinates)."""
 
 import contextlib
 import io
-import os
 import re
 
 import numpy
@@ -15,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstruct
 
 from . import vtkfiles
 from .arrays import as_cells
-from .files import FILE, USAGE, Failure, dotted, import_extra, inform, quote
+from .files import USAGE, Failure, dotted, import_extra, inform, quote
 
 MESHIO = ("off", "ply", "msh", "inp", "nas", "bdf", "xdmf", "med")
 READ = ("vtp", "vtk", "vtu", "obj", "stl") + MESHIO
@@ -190,5 +189,3 @@ def write(mesh, output):
     meshio = import_extra("meshio", f"Writing {output.name}")
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         meshio.write_points_cells(output.path, points_of(mesh), blocks)
-    if not os.path.exists(output.path):
-        raise Failure(f"Cannot write {output.name}.", FILE)

@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import meshes
 from .arrays import SYSTEMS
-from .files import Failure, quote
+from .files import Failure, count as number
 from .vtkFiltersHomeomorphism import vtkTriangulationPairReport
 from .vtkfiles import take_messages
 
@@ -69,7 +69,7 @@ class Report:
             )
             cells = [int(ids.GetValue(k)) for k in range(int(first), int(first) + int(count))] if ids else []
             where = f"in the {domain}: " if domain in ("source", "target") else ""
-            which = f" ({len(cells)} cells: {quote(', '.join(map(str, cells[:10])), 100)}{', ...' if len(cells) > 10 else ''})"
+            which = f" ({number(len(cells), 'cell')}: {', '.join(map(str, cells[:10]))}{', ...' if len(cells) > 10 else ''})"
             message = f"{where}{in_words(kind)}{which if cells else ''}: {ADVICE.get(remedy, in_words(remedy))}"
             if outcome != "accepted":
                 result.append({"kind": kind, "mesh": domain, "count": len(cells), "cells": cells, "message": message})

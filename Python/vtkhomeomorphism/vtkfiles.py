@@ -11,7 +11,7 @@ import numpy
 import vtkmodules.vtkIOLegacy as legacy
 import vtkmodules.vtkIOXML as xml
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 
@@ -37,6 +37,7 @@ def capture_messages():
     for event in ("ErrorEvent", "WarningEvent"):
         window.AddObserver(event, collect)
     vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
 
 
 def take_messages():
@@ -115,15 +116,11 @@ def read(input):
     return _read(input.path, input.format)[0]
 
 
-def extension_for(data):
-    writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
-    return writer.GetDefaultFileExtension() if writer else "vtk"
-
-
 def write(data, output):
     """Writes a data object to a .vtk, or to the XML file of its type. (Via memory, because on full disks some writers
     of VTK 9.1 crash and others do not report an error.)"""
-    right = extension_for(data)
+    writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
+    right = writer.GetDefaultFileExtension() if writer else "vtk"
     if output.format not in ("vtk", right):
         text = f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}."
         raise Failure(text, USAGE)
@@ -133,7 +130,6 @@ def write(data, output):
         writer.SetFileTypeToBinary()
     else:
         _require_names(data)
-        writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
         # VTK before 9.4 cannot read appended data with every version of expat.
         writer.SetDataModeToBinary()
     writer.WriteToOutputStringOn()

@@ -316,3 +316,14 @@ def test_locale_does_not_matter(dhm, pair):
     write_csv(dhm.path("p.csv"), [[0.5, 0.25]])
     assert b"," in dhm("map", "pair.json", "p.csv", "-o", "-").out.split(b"\n")[1]
     assert dhm("map", "pair.json", "p.csv", "-o", "-").out.split(b"\n")[1].count(b".") == 2
+
+
+def test_warnings_of_vtk_are_said_once(dhm):
+    """Points beside a surface, in a process of its own."""
+    pair = make_pair(4, 4)
+    bent = numpy.column_stack((pair.source, pair.source[:, 0] ** 2))
+    write_mesh(dhm.path("bent.off"), bent, pair.triangles)
+    write_csv(dhm.path("beside.csv"), bent[pair.triangles[:1]].mean(axis=1) + [0, 0, 1e-4], "x,y,z")
+    dhm.environment["LC_ALL"] = "C"
+    said = dhm("map", "bent.off", "bent.off", "beside.csv", "-o", "out.csv").err.splitlines()
+    assert all(line.startswith("dhm: ") for line in said) and sum("off the surface" in line for line in said) == 1

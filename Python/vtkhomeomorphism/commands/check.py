@@ -33,8 +33,10 @@ def describe(report, pair):
             wrong = set(report.cells_where(side, "Concordant", 0)) - set(found["invalid_triangles"])
             found[name]["discordant_triangles"] = sorted(wrong)
     crs = pair.shift and pair.shift.crs()
-    for name in SYSTEMS if crs else ():
-        if "deviation_from_linear_x" in found.get(name, ()):
+    for name in SYSTEMS:
+        if "smallest_determinant" not in found.get(name, ()):
+            found.pop(name, None)
+        elif crs:
             point = as_data(numpy.array([[found[name][f"deviation_from_linear_{axis}"] for axis in "xy"]]))
             both = [Settings(system, True, {"discordant_by_linear": True}) for system in (name, "linear")]
             images = [meshes.points_of(PointMap(pair, settings).map_data(point))[:, :2] for settings in both]
@@ -67,11 +69,11 @@ def print_table(columns):
 
 
 @click.command("check")
-@options.pair_files("SOURCE [TARGET]")
 @click.option("--json", "as_json", is_flag=True, help="Write the report as JSON, with all cell ids.")
 @click.option("--quick", is_flag=True, help="Validate the meshes only, without measuring determinants and continuity.")
 @click.option("--plot", default="", metavar="FILE", help="Draw the pair with invalid triangles marked: .png .svg .pdf.")
 @options.force
+@options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, as_json, quick, plot, force):
     """Report whether two meshes define a map, and its properties.

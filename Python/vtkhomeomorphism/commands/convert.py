@@ -23,12 +23,12 @@ def describe(metadata, input_crs, output_crs):
 
 
 @click.command("convert")
-@options.pair_files("SOURCE [TARGET]")
 @options.output("The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a point "
                 "array; with --target-output the source alone: .vtp .vtk .obj .off .ply.", "json")
 @click.option("--target-output", default="", metavar="FILE", help="Write the target to a separate file.")
 @crs_options
 @options.mask_option
+@options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, output, force, output_format, target_output, output_array, input_crs, output_crs, mask_invalid):
     """Write a pair in another format."""

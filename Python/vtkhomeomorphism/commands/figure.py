@@ -43,7 +43,6 @@ def read_close_up(text):
 
 
 @click.command("figure")
-@options.pair_files("SOURCE [TARGET]")
 @options.output("The figure: .png .svg .pdf, or - for standard output.", "png")
 @options.map_settings("smooth; for a PROJ triangulation file linear")
 @click.option("--all-systems", is_flag=True, help="Draw one panel per coordinate system.")
@@ -54,6 +53,7 @@ def read_close_up(text):
               "in the target.")
 @click.option("--width", type=options.Number(50, 5000), default=420.0, metavar="NUMBER", show_default=True,
               help="Width of a panel in pixels.")
+@options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, output, force, output_format, settings, all_systems, grid, image, close_up, width):
     """Draw a grid on the source and mapped onto the target. The meshes are in a plane."""

@@ -10,20 +10,20 @@ from ..mapping import PointMap
 
 
 @click.command("map")
-@options.pair_files("SOURCE [TARGET] DATA")
 @data_options
 @options.map_settings("smooth; for a PROJ triangulation file linear, which is its official meaning")
 @options.inverse
 @click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (vector data; "
               "default: what the triangulation file says, or the data's own).")
 @click.option("--densify", type=options.POSITIVE, metavar="LENGTH",
-              help="Divide the segments of vector data so that none is longer.")
+              help="Divide the segments of vector data so that none is longer; they stay straight between mapped ends.")
 @click.option("-j", "--jacobian", is_flag=True, help="Add the derivative at each point: Jacobian, 9 numbers row by row.")
 @click.option("--determinant", is_flag=True, help="Add the ratio of areas at each point: JacobianDeterminant.")
 @click.option("--triangle-id", is_flag=True, help="Add the cell id of each point's triangle: TriangleId.")
 @click.option("--transform-all-vectors", is_flag=True, help="Transform all arrays of 3, 6 and 9 components by the "
               "derivative, not only the active vectors, normals and tensors.")
 @click.option("--keep-vectors", is_flag=True, help="Keep the components of vectors, normals and tensors.")
+@options.pair_files("SOURCE [TARGET] DATA")
 @options.quiet
 def command(inputs, data, settings, inverse, densify, jacobian, determinant, triangle_id, transform_all_vectors,
             keep_vectors):

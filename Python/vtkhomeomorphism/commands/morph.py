@@ -67,7 +67,6 @@ def blend(first, second, t):
 
 
 @click.command("morph")
-@options.pair_files("SOURCE [TARGET]")
 @click.option("-o", "--output", required=True, metavar="FILES", help="Name of the frames, with %d or %03d for the "
               "number: frame-%03d.png.")
 @options.force
@@ -83,6 +82,7 @@ def blend(first, second, t):
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source image's).")
 @background_option
 @options.map_settings("cubic; on surfaces smooth; for a PROJ triangulation file linear")
+@options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, output, force, source_image, target_image, data, frames, path, size, background, settings):
     """Make frames of images or data on the way to the target.

@@ -19,7 +19,6 @@ PROJ_LIMIT = 10 * 1024 * 1024
 
 
 @click.command("refine")
-@options.pair_files("SOURCE [TARGET]")
 @options.output("The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output.", "json")
 @click.option("-t", "--max-error", type=options.POSITIVE, required=True, metavar="DISTANCE",
               help="Greatest distance between the piecewise linear map and the map, in units of the target.")
@@ -27,6 +26,7 @@ PROJ_LIMIT = 10 * 1024 * 1024
               help="Greatest number of triangles.")
 @options.map_settings("smooth")
 @crs_options
+@options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, output, force, output_format, max_error, max_triangles, settings, output_array, input_crs,
             output_crs):

@@ -62,7 +62,6 @@ def print_report(made, marks):
 
 
 @click.command("triangulate")
-@options.pair_files("LANDMARKS | SOURCE TARGET")
 @options.output("The pair in one file: .json (PROJ's), .vtp or .vtk (the target as the point array Target).", "json")
 @click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line a row.")
 @click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop a row.")
@@ -78,6 +77,7 @@ def print_report(made, marks):
               help="Divide triangles with a larger share of the domain's area.")
 @click.option("--leave-out-conflicts", is_flag=True, help="Leave out lines that conflict with others, and name them.")
 @click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks that are probably wrong.")
+@options.pair_files("LANDMARKS | SOURCE TARGET")
 @options.quiet
 def command(inputs, output, force, output_format, lines, outlines, domain, quality, target_angle, maximum_added_points,
             maximum_size, leave_out_conflicts, report):

@@ -15,7 +15,6 @@ background_option = click.option(
 
 
 @click.command("warp")
-@options.pair_files("SOURCE [TARGET] IMAGE")
 @options.output("The warped image: .png .jpg .tif .ppm .vti, or - for standard output.", "png")
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.inverse
@@ -26,6 +25,7 @@ background_option = click.option(
 @click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: what "
               "the triangulation file says, or the raster's own).")
 @background_option
+@options.pair_files("SOURCE [TARGET] IMAGE")
 @options.quiet
 def command(inputs, output, force, output_format, settings, inverse, size, resolution, like, crs, background):
     """Warp an image from the source's domain to the target's.
