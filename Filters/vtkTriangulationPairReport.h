@@ -27,9 +27,9 @@
  * - `Invalid` (unsigned char): 1 for triangles that were left out.
  *
  * Output port 2 is a vtkTable of one row. Its columns begin with `Source` or `Target` (a mesh),
- * with `Linear`, `Contour`, `Smooth` or `Cubic` (a map), or with neither (the pair). Counts are vtkIdType,
- * flags int (0 or 1), all others double. Cell ids are -1, and other values NaN, where there is
- * nothing to measure.
+ * with `Linear`, `Contour`, `Smooth` or `Cubic` (a map), or with neither (the pair). Counts are
+ * vtkIdType, flags int (0 or 1), all others double. Cell ids are -1, and other values NaN, where
+ * there is nothing to measure.
  *
  * - `Valid`: whether the pair defines a map as it is. `Measured`: whether the pair does so without
  *   its invalid triangles; otherwise only the columns up to `TargetDuplicatePoints` and
@@ -72,9 +72,9 @@
  * They are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
  *
  * See vtkHomeomorphismAlgorithm for the meshes and the options. CoordinateSystem is the system of
- * the cell arrays; the table has all. CenterPoint is that of Contour, CubicBending, CertificateMargin
- * and FairnessRefinement are those of Cubic, MaximumDeviation is that of Smooth and Cubic. The other
- * options have no effect.
+ * the cell arrays; the table has all. CenterPoint is that of Contour, CubicBending,
+ * CertificateMargin and FairnessRefinement are those of Cubic, MaximumDeviation is that of Smooth
+ * and Cubic. The other options have no effect.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkJacobianContinuity
  */
