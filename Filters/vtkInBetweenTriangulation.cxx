@@ -149,8 +149,9 @@ int vtkInBetweenTriangulation::FillOutputPortInformation(int, vtkInformation* in
 }
 
 int vtkInBetweenTriangulation::RequestDataObject(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  this->CheckInputTypes(inputs);
   MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
   return 1;
 }

@@ -106,8 +106,9 @@ int vtkRefinedTriangulationPair::FillOutputPortInformation(int, vtkInformation* 
 }
 
 int vtkRefinedTriangulationPair::RequestDataObject(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  this->CheckInputTypes(inputs);
   MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
   MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
   return 1;

@@ -176,8 +176,9 @@ int vtkTriangulationPairReport::FillOutputPortInformation(int port, vtkInformati
 }
 
 int vtkTriangulationPairReport::RequestDataObject(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  this->CheckInputTypes(inputs);
   MakeOutput<vtkPolyData>(outputs->GetInformationObject(0));
   MakeOutput<vtkPolyData>(outputs->GetInformationObject(1));
   MakeOutput<vtkTable>(outputs->GetInformationObject(2));

@@ -4,7 +4,7 @@
 // An aborted filter stops within a second, and its output is valid and marked as
 // incomplete.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkImageData.h"
 #include "vtkJacobianContinuity.h"
@@ -21,7 +21,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 using Clock = std::chrono::steady_clock;
 
 /// Requests an abort when the progress of an algorithm exceeds a limit.

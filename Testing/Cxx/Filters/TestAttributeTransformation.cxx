@@ -3,7 +3,7 @@
 
 // Transformation of vectors, normals, tensors and gradients by vtkDifferentiableHomeomorphism.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkCellData.h"
 #include "vtkImageData.h"
@@ -17,7 +17,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 class AttributesInEverySystem : public ::testing::TestWithParam<System>
 {

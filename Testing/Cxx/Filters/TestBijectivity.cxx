@@ -4,7 +4,7 @@
 // The map of whole meshes is bijective: the images of small triangles tile the other domain, and
 // every point of it lies in exactly one of them and maps back into its preimage.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "Kernel/ExactSign.h"
 
@@ -18,7 +18,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 using homeomorphism::Vector2;
 
 /// Number of subdivisions of each edge.

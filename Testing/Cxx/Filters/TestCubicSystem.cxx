@@ -4,7 +4,7 @@
 // The Cubic system through the VTK classes: both directions, mirrored targets and mixed winding,
 // tilted planes, its Jacobian, its arrays and statistics, and what it refuses.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkCellData.h"
 #include "vtkHomeomorphismTransform.h"
@@ -18,7 +18,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 /// A grid of squares cut in two; the target's inner points are moved, and every point by an affine
 /// map whose determinant is negative if the target is to be mirrored. Every third triangle is wound

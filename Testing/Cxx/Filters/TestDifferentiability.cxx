@@ -4,7 +4,7 @@
 // The counterexample of Documentation/differentiability.md with its numbers: from values of the
 // map, from the closed form of the library, and from the formulas of the document, evaluated here.
 
-#include "TestMeshes.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -21,7 +21,7 @@
 namespace
 {
 
-using namespace test_meshes;
+using namespace fixtures;
 
 /// Two triangles on the edge from (-2, 0) to (2, 0). In the target the upper apex is moved up.
 MeshPair MakeCounterexample()

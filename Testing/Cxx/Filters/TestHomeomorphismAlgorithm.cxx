@@ -5,7 +5,7 @@
 /// What the filters have in common: meshes shared by threads, meshes overwritten in place, error
 /// codes, and the warning about points that miss a surface.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkHomeomorphismTransform.h"
@@ -26,7 +26,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 vtkDataSet* DataOf(vtkAlgorithm* filter)
 {

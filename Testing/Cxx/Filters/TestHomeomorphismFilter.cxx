@@ -4,7 +4,7 @@
 // vtkDifferentiableHomeomorphism: the properties of the map, the supported kinds of data, the
 // output arrays, and caching.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkTriangularCoordinates.h"
 
@@ -30,7 +30,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 class FilterInEverySystem : public ::testing::TestWithParam<System>
 {

@@ -3,7 +3,7 @@
 
 // vtkHomeomorphismTransform equals the map of the filter wherever VTK accepts a transform.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkHomeomorphismTransform.h"
 
@@ -21,7 +21,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 vtkSmartPointer<vtkHomeomorphismTransform> MakeTransform(const System& system, const MeshPair& pair)
 {

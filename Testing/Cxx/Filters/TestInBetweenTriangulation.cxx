@@ -4,7 +4,7 @@
 // Meshes between a source and a target: positions of points, and agreement of the reported folds
 // with exact tests of the frames.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkInBetweenTriangulation.h"
 
@@ -13,7 +13,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 vtkSmartPointer<vtkInBetweenTriangulation> MakeFilter(
   const MeshPair& pair, int path = vtkInBetweenTriangulation::FEWEST_FOLDS)

@@ -3,8 +3,8 @@
 
 // The filter finds creases exactly where they are.
 
-#include "MeasuredMaps.h"
-#include "TestMeshes.h"
+#include "Fixtures/FilterRuns.h"
+#include "Fixtures/MeasuredMaps.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -27,7 +27,7 @@
 namespace
 {
 
-using namespace test_meshes;
+using namespace fixtures;
 
 vtkSmartPointer<vtkJacobianContinuity> Measure(
   vtkPolyData* source, vtkPolyData* target, int coordinateSystem)

@@ -4,9 +4,8 @@
 // The verdicts of the filter agree with the theorems for every kind of feature, and with the
 // numbers of Documentation/differentiability.md.
 
-#include "FilterRuns.h"
-#include "MeasuredMaps.h"
-#include "TestMeshes.h"
+#include "Fixtures/FilterRuns.h"
+#include "Fixtures/MeasuredMaps.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -26,8 +25,8 @@
 namespace
 {
 
-using namespace test_meshes;
-using filter_runs::Moved;
+using namespace fixtures;
+using fixtures::Moved;
 using Continuity = vtkJacobianContinuity;
 
 void AskForEverything(Continuity* filter)
@@ -404,7 +403,7 @@ TEST(JacobianFeatures, TheHomeomorphismFilterMeasuresTheSame)
 
     // New data does not repeat the measurement. An option of the inner filter does.
     const vtkMTimeType before = map->GetJacobianContinuity()->GetOutput()->GetMTime();
-    map->SetDataObject(filter_runs::MakeCloud({ { 1.0, 1.0, 0.0 } }));
+    map->SetDataObject(fixtures::MakeCloud({ { 1.0, 1.0, 0.0 } }));
     map->Update();
     EXPECT_EQ(map->GetJacobianContinuity()->GetOutput()->GetMTime(), before);
     EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
@@ -418,7 +417,7 @@ TEST(JacobianFeatures, TheHomeomorphismFilterMeasuresTheSame)
 TEST(JacobianFeatures, AnAbortedMeasurementIsRepeated)
 {
   const MeshPair pair = MakePlanarPair(40, 2);
-  const auto map = filter_runs::MakeFilter(filter_runs::Smooth, pair);
+  const auto map = fixtures::MakeFilter(fixtures::Smooth, pair);
   map->MeasureContinuityOn();
   vtkNew<vtkCallbackCommand> abort;
   abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
@@ -438,7 +437,7 @@ TEST(JacobianFeatures, AnAbortedMeasurementIsRepeated)
 TEST(JacobianFeatures, TheHomeomorphismIsNotComputedTwice)
 {
   const MeshPair pair = MakePlanarPair(3, 2);
-  const auto map = filter_runs::MakeFilter(filter_runs::Smooth, pair);
+  const auto map = fixtures::MakeFilter(fixtures::Smooth, pair);
   map->MeasureContinuityOn();
   map->Update();
   const vtkMTimeType output = map->GetOutputDataObject(0)->GetMTime();

@@ -3,7 +3,7 @@
 
 // The filters inside pipelines: data in pieces and extents, time steps, and aborts.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkJacobianContinuity.h"
 #include "vtkResampleThroughHomeomorphism.h"
@@ -37,7 +37,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// Two triangulations of the square with corners (-12, -12) and (12, 12).

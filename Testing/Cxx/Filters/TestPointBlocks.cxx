@@ -4,7 +4,7 @@
 // Mapping points in blocks gives the same bits as mapping each point alone, for any order of
 // points.
 
-#include "MappedPoints.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "Mesh/Homeomorphism.h"
 
@@ -24,7 +24,7 @@ namespace
 {
 
 using namespace homeomorphism;
-using namespace test_meshes;
+using namespace fixtures;
 
 std::shared_ptr<const Homeomorphism> Make(
   const MeshPair& pair, homeomorphism::CoordinateSystem system)

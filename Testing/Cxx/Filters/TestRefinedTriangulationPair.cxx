@@ -4,7 +4,7 @@
 // Finer pairs: the piecewise linear map keeps the tolerance between the samples, the meshes are
 // valid and conforming, and data is interpolated as in the original triangles.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkRefinedTriangulationPair.h"
 
@@ -15,7 +15,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, double maximumError)
 {

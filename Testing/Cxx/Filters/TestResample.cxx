@@ -3,8 +3,7 @@
 
 // Resampled data equals the data at the preimages of the grid's points.
 
-#include "FilterRuns.h"
-#include "TestMeshes.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -27,8 +26,8 @@
 namespace
 {
 
-using namespace filter_runs;
-using namespace test_meshes;
+using namespace fixtures;
+using namespace fixtures;
 
 constexpr int n = 6;
 

@@ -3,7 +3,7 @@
 
 // vtkTriangularCoordinates: the coordinates, their lines, and the properties of the triangles.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkTriangularCoordinates.h"
 
@@ -26,7 +26,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 vtkSmartPointer<vtkTriangularCoordinates> MakeCoordinates(
   const System& system, vtkPolyData* triangulation, vtkDataObject* data = nullptr)

@@ -3,7 +3,7 @@
 
 // The report's numbers agree with closed forms and with what the other filters find.
 
-#include "FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkJacobianContinuity.h"
 #include "vtkTriangulationPairReport.h"
@@ -16,7 +16,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 vtkSmartPointer<vtkTriangulationPairReport> Report(const MeshPair& pair, bool continuity = false)
 {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "Cxx/Kernel/RandomTriangles.h"
+#include "Fixtures/Meshes.h"
 
 #include "Mesh/MeshGeometry.h"
 
@@ -14,6 +15,8 @@
 #include <functional>
 
 using namespace homeomorphism;
+using fixtures::Point;
+using fixtures::Triangle;
 using homeomorphism_test::RandomNumbers;
 using homeomorphism_test::Ulp;
 
@@ -44,11 +47,6 @@ public:
   Triangulation Topology;
 };
 
-double DistanceOf(const double a[3], const double b[3])
-{
-  return std::hypot(std::hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-}
-
 void ExpectFramesToReturn(Soup& soup, double size)
 {
   MeshGeometry geometry(soup.Points, soup.Topology);
@@ -58,16 +56,16 @@ void ExpectFramesToReturn(Soup& soup, double size)
     const Triangulation::Corners& corners = soup.Topology.GetCorners(t);
     for (const std::int32_t corner : corners)
     {
-      double point[3];
-      soup.Points->GetPoint(corner, point);
-      EXPECT_TRUE(geometry.IsMeshPoint(corner, point));
-      const Vector3 normalized = geometry.ToNormalized(point);
-      double back[3];
-      geometry.FromNormalized(normalized, back);
-      EXPECT_LE(DistanceOf(point, back), 8.0 * Ulp * size);
+      Point point;
+      soup.Points->GetPoint(corner, point.data());
+      EXPECT_TRUE(geometry.IsMeshPoint(corner, point.data()));
+      const Vector3 normalized = geometry.ToNormalized(point.data());
+      Point back;
+      geometry.FromNormalized(normalized, back.data());
+      EXPECT_LE(fixtures::Distance(point, back), 8.0 * Ulp * size);
       const FramePoint inFrame = geometry.ToFrame(t, normalized);
-      geometry.FromNormalized(geometry.FromFrame(t, inFrame), back);
-      EXPECT_LE(DistanceOf(point, back), 16.0 * Ulp * size);
+      geometry.FromNormalized(geometry.FromFrame(t, inFrame), back.data());
+      EXPECT_LE(fixtures::Distance(point, back), 16.0 * Ulp * size);
       EXPECT_LE(std::abs(inFrame.Offset), 16.0 * Ulp);
     }
     // The axes of the frame are orthonormal.
@@ -81,8 +79,6 @@ void ExpectFramesToReturn(Soup& soup, double size)
     }
   }
 }
-
-} // namespace
 
 TEST(MeshGeometry, FramesReturnInThePlane)
 {
@@ -156,3 +152,84 @@ TEST(MeshGeometry, OrientationIsExact)
   EXPECT_TRUE(geometry.IsDegenerate(topology, 0));
   EXPECT_FALSE(geometry.IsDegenerate(topology, 1));
 }
+
+// --- Planarity -----------------------------------------------------------------------------------
+
+/// Whether points, stored as doubles or floats, are those of a plane. Of the grid, unless triangles
+/// are given.
+bool IsPlanar(const std::vector<Point>& points, int dataType = VTK_DOUBLE,
+  const std::vector<Triangle>& given = {})
+{
+  const auto cloud = fixtures::MakeCloud(points, dataType);
+  const int n = static_cast<int>(std::lround(std::sqrt(double(points.size())))) - 1;
+  std::vector<Triangulation::Corners> triangles;
+  for (const Triangle& t : given.empty() ? fixtures::GridTriangles(n) : given)
+  {
+    triangles.push_back({ static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+      static_cast<std::int32_t>(t[2]) });
+  }
+  Triangulation triangulation;
+  triangulation.SetTriangles(triangles, 0);
+  triangulation.FindAdjacency(cloud->GetNumberOfPoints());
+  return MeshGeometry(cloud->GetPoints(), triangulation).IsPlanar();
+}
+
+TEST(MeshGeometry, RotatedAndShiftedPlanesArePlanar)
+{
+  using fixtures::operator*;
+  using fixtures::operator+;
+  fixtures::Random random(5);
+  for (int n = 0; n < 1000; ++n)
+  {
+    const fixtures::Matrix rotation =
+      fixtures::Rotation(random.Vector(), random.Uniform(-3.0, 3.0));
+    const double size = std::pow(10.0, random.Uniform(-6.0, 6.0));
+    const double away = n % 2 ? 0.0 : std::pow(10.0, random.Uniform(-3.0, 3.0)) * size;
+    const double stretch = n % 5 == 0 ? 1e-3 : 1.0;
+    const Point shift = away * random.Vector();
+    std::vector<Point> points = fixtures::GridPoints(6, static_cast<std::uint64_t>(n), 0.2);
+    std::vector<Point> bent = points;
+    // One point off the plane by a few dozen ulp, in double and in float.
+    const double off = n % 2 ? 1e-4 : 2e-13;
+    bent[static_cast<std::size_t>(random.Below(49))][2] = off;
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      points[i] =
+        rotation * Point{ size * points[i][0], stretch * size * points[i][1], 0.0 } + shift;
+      bent[i] = rotation * bent[i];
+    }
+    ASSERT_TRUE(IsPlanar(points)) << n;
+    ASSERT_TRUE(IsPlanar(points, VTK_FLOAT)) << n;
+    ASSERT_FALSE(IsPlanar(bent, n % 2 ? VTK_FLOAT : VTK_DOUBLE)) << n;
+  }
+}
+
+TEST(MeshGeometry, PlanesParallelToTwoAxesArePlanar)
+{
+  for (int normal = 0; normal < 3; ++normal)
+  {
+    std::vector<Point> points = fixtures::GridPoints(4, 7, 0.2);
+    for (Point& p : points)
+    {
+      Point q;
+      q[(normal + 1) % 3] = p[0];
+      q[(normal + 2) % 3] = p[1];
+      q[normal] = 0.1;
+      p = q;
+    }
+    EXPECT_TRUE(IsPlanar(points));
+  }
+  EXPECT_TRUE(IsPlanar({ { 1, 2, 3 }, { 5, 3, 1 }, { -2, 4, 4 } }, VTK_DOUBLE, { { 0, 1, 2 } }));
+}
+
+TEST(MeshGeometry, UnusedPointsDoNotAffectPlanarity)
+{
+  std::vector<Point> points = fixtures::GridPoints(4, 8, 0.2);
+  points.push_back({ 1.0, 1.0, 1.0 });
+  std::vector<Triangle> triangles = fixtures::GridTriangles(4);
+  EXPECT_TRUE(IsPlanar(points, VTK_DOUBLE, triangles));
+  triangles.push_back({ 0, 1, 25 });
+  EXPECT_FALSE(IsPlanar(points, VTK_DOUBLE, triangles));
+}
+
+} // namespace

@@ -10,7 +10,7 @@
 // or if more than one verdict in a hundred is undecided (one in twenty at wing segments). The last
 // line is the time for a pair of TRIANGLES triangles (100,000 by default).
 
-#include "../Filters/MeasuredMaps.h"
+#include "Fixtures/MeasuredMaps.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -33,7 +33,7 @@
 namespace
 {
 
-using namespace test_meshes;
+using namespace fixtures;
 using Continuity = vtkJacobianContinuity;
 
 constexpr int featureTypes = Continuity::VERTEX + 1;

@@ -10,7 +10,7 @@
 // plus that of one piece by more than MEGABYTES (1000), if points are missing or outside, or if the
 // determinants do not have the correct mean.
 
-#include "../Filters/FilterRuns.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "vtkDataArray.h"
 #include "vtkRTAnalyticSource.h"
@@ -27,7 +27,7 @@
 namespace
 {
 
-using namespace filter_runs;
+using namespace fixtures;
 
 /// A size from /proc/self/status in MB (10^6 bytes); NaN if it is missing.
 double ProcessMemory(const std::string& key)

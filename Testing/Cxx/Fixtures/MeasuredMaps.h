@@ -5,10 +5,10 @@
 /// Maps that are not homeomorphisms of triangulations: one with known creases, and one without
 /// creases.
 
-#ifndef MeasuredMaps_h
-#define MeasuredMaps_h
+#ifndef fixtures_MeasuredMaps_h
+#define fixtures_MeasuredMaps_h
 
-#include "TestMeshes.h"
+#include "Meshes.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkThinPlateSplineTransform.h"
@@ -18,7 +18,7 @@
 #include <cmath>
 #include <limits>
 
-namespace test_meshes
+namespace fixtures
 {
 
 /// A map of the plane that is smooth except at the line x = 7, beyond which Amount times the
@@ -99,6 +99,6 @@ inline vtkSmartPointer<vtkThinPlateSplineTransform> MakeThinPlateSpline(
   return spline;
 }
 
-} // namespace test_meshes
+} // namespace fixtures
 
 #endif

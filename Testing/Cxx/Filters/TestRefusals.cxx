@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the VTK classes do with what they refuse: an error, an error code, a table of diagnostics,
+// and nothing in the outputs, not even that of the update before.
+
+#include "Fixtures/Defects.h"
+#include "Fixtures/FilterRuns.h"
+
+#include "vtkHomeomorphismTransform.h"
+#include "vtkInBetweenTriangulation.h"
+#include "vtkJacobianContinuity.h"
+#include "vtkRefinedTriangulationPair.h"
+#include "vtkResampleThroughHomeomorphism.h"
+#include "vtkTriangularCoordinates.h"
+
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkTable.h"
+#include "vtkTransform.h"
+#include "vtkVariant.h"
+
+#include <fstream>
+#include <iterator>
+#include <set>
+
+namespace
+{
+
+using namespace fixtures;
+
+/// Two triangles of the source are degenerate.
+MeshPair MakeDegeneratePair()
+{
+  const MeshPair pair = MakePlanarPair(4, 3, 0.0);
+  MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
+  return pair;
+}
+
+template <typename Algorithm>
+void SetMeshes(Algorithm* algorithm, const MeshPair& pair)
+{
+  algorithm->SetSourceData(pair.Source);
+  algorithm->SetTargetData(pair.Target);
+}
+void SetMeshes(vtkTriangularCoordinates* algorithm, const MeshPair& pair)
+{
+  algorithm->SetSourceData(pair.Source);
+}
+
+vtkIdType CountElements(vtkAlgorithm* algorithm)
+{
+  vtkIdType count = 0;
+  for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkDataObject* data = algorithm->GetOutputDataObject(port);
+    count += data->GetNumberOfElements(vtkDataObject::POINT);
+    count += data->GetNumberOfElements(vtkDataObject::CELL);
+  }
+  return count;
+}
+
+template <typename Algorithm>
+class Refusals : public ::testing::Test
+{
+};
+
+using Algorithms =
+  ::testing::Types<vtkDifferentiableHomeomorphism, vtkTriangularCoordinates, vtkJacobianContinuity,
+    vtkResampleThroughHomeomorphism, vtkRefinedTriangulationPair, vtkInBetweenTriangulation>;
+TYPED_TEST_SUITE(Refusals, Algorithms);
+
+TYPED_TEST(Refusals, OfMeshes)
+{
+  vtkNew<TypeParam> filter;
+  Messages messages(filter);
+  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
+  filter->Update();
+  EXPECT_EQ(messages.Error() + messages.Warning(), "");
+  EXPECT_GT(CountElements(filter), 0);
+  EXPECT_EQ(filter->GetErrorCode(), 0u);
+
+  for (int update = 0; update < 2; ++update)
+  {
+    messages.Clear();
+    SetMeshes(filter.Get(), MakeDegeneratePair());
+    filter->Update();
+    EXPECT_TRUE(messages.HasError());
+    EXPECT_FALSE(messages.HasWarning());
+    EXPECT_EQ(filter->GetErrorCode(), static_cast<unsigned long>(TypeParam::MESHES_REFUSED));
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
+    EXPECT_EQ(CountElements(filter), 0);
+    vtkTable* table = filter->GetDiagnostics();
+    ASSERT_EQ(table->GetNumberOfRows(), 1);
+    EXPECT_EQ(table->GetValueByName(0, "Kind").ToString(), "DegenerateTriangle");
+    EXPECT_EQ(table->GetValueByName(0, "Outcome").ToString(), "refused");
+  }
+
+  // With the defective triangles masked.
+  messages.Clear();
+  filter->MaskInvalidTrianglesOn();
+  filter->Update();
+  EXPECT_FALSE(messages.HasError());
+  EXPECT_TRUE(messages.HasWarning());
+  EXPECT_EQ(filter->GetErrorCode(), 0u);
+  EXPECT_GT(CountElements(filter), 0);
+  EXPECT_EQ(filter->GetDiagnostics()->GetValueByName(0, "Outcome").ToString(), "masked");
+}
+
+TYPED_TEST(Refusals, OfMissingOrWrongInputs)
+{
+  vtkNew<TypeParam> filter;
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.HasError());
+  messages.Clear();
+  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
+  filter->SetInputDataObject(0, vtkNew<vtkImageData>());
+  filter->Update();
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_NE(filter->GetErrorCode(), 0u);
+}
+
+TEST(Refusals, AreATable)
+{
+  const MeshPair pair = MakeDegeneratePair();
+  MovePoint(pair.Target, 24, { 3.0, 3.5, NotANumber });
+  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  Messages messages(filter);
+  SetMeshes(filter.Get(), pair);
+  filter->MaskInvalidTrianglesOn();
+  filter->Update();
+  vtkTable* table = filter->GetDiagnostics();
+  ASSERT_EQ(table->GetNumberOfRows(), 2);
+  auto* ids = vtkIdTypeArray::SafeDownCast(table->GetFieldData()->GetArray("Ids"));
+  ASSERT_TRUE(ids);
+  const char* const kinds[] = { "DegenerateTriangle", "NotFinite" };
+  const char* const domains[] = { "source", "target" };
+  const vtkIdType firstCells[] = { 0, 30 };
+  for (vtkIdType row = 0; row < 2; ++row)
+  {
+    EXPECT_EQ(table->GetValueByName(row, "Kind").ToString(), kinds[row]);
+    EXPECT_EQ(table->GetValueByName(row, "Domain").ToString(), domains[row]);
+    EXPECT_EQ(table->GetValueByName(row, "Outcome").ToString(), "masked");
+    EXPECT_EQ(table->GetValueByName(row, "Remedy").ToString(), "RepairOrMask");
+    EXPECT_EQ(table->GetValueByName(row, "Count").ToInt(), 2);
+    const vtkIdType first = table->GetValueByName(row, "FirstId").ToInt();
+    EXPECT_EQ(ids->GetValue(first), firstCells[row]);
+    EXPECT_EQ(ids->GetValue(first + 1), firstCells[row] + 1);
+  }
+  // The table is that of the last update.
+  SetMeshes(filter.Get(), MakePlanarPair(4, 3));
+  filter->Update();
+  EXPECT_EQ(filter->GetDiagnostics()->GetNumberOfRows(), 0);
+}
+
+TEST(Refusals, HaveADifferentMessageForEachKind)
+{
+  std::set<std::string> messages;
+  std::set<std::string> names;
+  for (int kind = 0; kind < MeshDiagnostic::NumberOfKinds; ++kind)
+  {
+    for (const std::size_t cells : { 0u, 1u, 12u })
+    {
+      MeshDiagnostic diagnostic;
+      diagnostic.What = static_cast<Kind>(kind);
+      diagnostic.Ids.assign(cells, 7);
+      const bool ofCells =
+        kind >= static_cast<int>(Kind::NotTriangles) && kind <= static_cast<int>(Kind::Discordant);
+      if (ofCells == (cells > 0))
+      {
+        EXPECT_TRUE(messages.insert(Describe(diagnostic)).second) << kind;
+      }
+    }
+    names.insert(GetName(static_cast<Kind>(kind)));
+  }
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(MeshDiagnostic::NumberOfKinds));
+  // At most ten ids are listed.
+  EXPECT_EQ(
+    homeomorphism::ListIds(Range(0, 9)).size() + 5, homeomorphism::ListIds(Range(0, 10)).size());
+}
+
+TEST(Refusals, AreDocumented)
+{
+  std::ifstream file(DIAGNOSTICS_DOCUMENT);
+  const std::string document{ std::istreambuf_iterator<char>(file),
+    std::istreambuf_iterator<char>() };
+  ASSERT_FALSE(document.empty()) << DIAGNOSTICS_DOCUMENT;
+  for (int kind = 0; kind < MeshDiagnostic::NumberOfKinds; ++kind)
+  {
+    MeshDiagnostic diagnostic;
+    diagnostic.What = static_cast<Kind>(kind);
+    const std::string entry = std::string("| `") + GetName(diagnostic.What) + "` |";
+    EXPECT_NE(document.find(entry), std::string::npos) << entry;
+    const std::string remedy = std::string("`") + GetName(diagnostic.GetRemedy()) + "` |";
+    EXPECT_NE(document.find(remedy, document.find(entry)), std::string::npos) << remedy;
+  }
+}
+
+// --- The transform -------------------------------------------------------------------------------
+
+TEST(Refusals, LeaveEveryPointOutsideATransform)
+{
+  const auto plane = MakePlanarPair(4, 40).Source;
+  const auto sheet = MakeSheet(4, 40, 0.3);
+  const Point probe{ 1.5, 1.4, 0.0 };
+  for (const MeshPair& pair : { MakeDegeneratePair(), MeshPair{ sheet, plane },
+         MeshPair{ plane, sheet }, MeshPair{ sheet, sheet }, MeshPair{ nullptr, plane },
+         MeshPair{ plane, nullptr }, MeshPair{ nullptr, nullptr } })
+  {
+    vtkNew<vtkHomeomorphismTransform> transform;
+    Messages messages(static_cast<vtkObject*>(transform.Get()));
+    transform->SetSource(plane);
+    transform->SetTarget(plane);
+    ASSERT_TRUE(transform->IsInside(probe.data()));
+    ASSERT_EQ(messages.Error() + messages.Warning(), "");
+    transform->SetSource(pair.Source);
+    transform->SetTarget(pair.Target);
+    transform->Update();
+    EXPECT_TRUE(messages.HasError());
+    for (int direction = 0; direction < 2; ++direction)
+    {
+      EXPECT_FALSE(transform->IsInside(probe.data()));
+      Point image;
+      double derivative[3][3];
+      transform->InternalTransformDerivative(probe.data(), image.data(), derivative);
+      EXPECT_EQ(image, (Point{ 1e30, 1e30, 1e30 }));
+      EXPECT_TRUE(std::isnan(derivative[0][0]) && std::isnan(derivative[2][2]));
+      transform->Inverse();
+      transform->Update();
+    }
+    // Valid meshes make it a map again.
+    transform->SetSource(plane);
+    transform->SetTarget(plane);
+    EXPECT_TRUE(transform->IsInside(probe.data()));
+  }
+}
+
+// --- Use of the classes --------------------------------------------------------------------------
+
+TEST(Refusals, OfMapsThatCannotBeMeasured)
+{
+  vtkNew<vtkJacobianContinuity> continuity;
+  Messages messages(continuity);
+  // No map; and a transform on a surface.
+  continuity->SetInputData(MakePlanarPair(4, 1).Source);
+  continuity->Update();
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_EQ(CountElements(continuity), 0);
+  messages.Clear();
+  continuity->SetInputData(MakeSheet(4, 2, 0.5));
+  continuity->SetTransform(vtkNew<vtkTransform>());
+  continuity->Update();
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_EQ(CountElements(continuity), 0);
+}
+
+TEST(Refusals, OfAnImageOverASurface)
+{
+  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  Messages messages(resample);
+  SetMeshes(resample.Get(), { MakeSheet(4, 2, 0.5), MakeSheet(4, 3, 0.5) });
+  resample->Update();
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_EQ(resample->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
+}
+
+TEST(Refusals, OfWrongArgumentsAndData)
+{
+  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  Messages messages(filter);
+  filter->SetAttributeTransformation(nullptr, 0);
+  EXPECT_TRUE(messages.HasError());
+  messages.Clear();
+  filter->SetAttributeTransformation("Velocity", 99);
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_EQ(filter->GetAttributeTransformation("Velocity"), -1);
+  messages.Clear();
+  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
+  filter->SetDataObject(vtkNew<vtkTable>());
+  filter->Update();
+  EXPECT_TRUE(messages.HasError());
+  EXPECT_EQ(filter->GetErrorCode(),
+    static_cast<unsigned long>(vtkDifferentiableHomeomorphism::DATA_REFUSED));
+}
+
+TEST(Refusals, ValuesOutOfRangeAreClamped)
+{
+  using Filter = vtkDifferentiableHomeomorphism;
+  vtkNew<Filter> filter;
+  filter->SetCoordinateSystem(77);
+  filter->SetCenterPoint(-5);
+  filter->SetDiscordantTriangles(9);
+  filter->SetTolerance(-1.0);
+  EXPECT_EQ(filter->GetCoordinateSystem(), Filter::CUBIC);
+  EXPECT_EQ(filter->GetCenterPoint(), Filter::CENTROID);
+  EXPECT_EQ(filter->GetDiscordantTriangles(), Filter::USE_LINEAR);
+  EXPECT_EQ(filter->GetTolerance(), 0.0);
+  filter->SetCoordinateSystem(-3);
+  EXPECT_EQ(filter->GetCoordinateSystem(), Filter::LINEAR);
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  coordinates->SetNumberOfContours(0);
+  coordinates->SetLineResolution(1000000);
+  EXPECT_EQ(coordinates->GetNumberOfContours(), 1);
+  EXPECT_EQ(coordinates->GetLineResolution(), 1000);
+  vtkNew<vtkJacobianContinuity> continuity;
+  continuity->SetSamplesPerEdge(-3);
+  continuity->SetResolution(7.0);
+  EXPECT_EQ(continuity->GetSamplesPerEdge(), 1);
+  EXPECT_EQ(continuity->GetResolution(), 1.0);
+
+  // A tolerance that is NaN is 0.
+  const auto map =
+    MakeFilter(Smooth, MakePlanarPair(4, 11), MakeCloud({ { 1.0, 1.0, 0.0 }, { -0.1, 1.0, 0.0 } }));
+  map->SetTolerance(NotANumber);
+  map->Update();
+  EXPECT_EQ(map->GetNumberOfOutsidePoints(), 1);
+}
+
+} // namespace

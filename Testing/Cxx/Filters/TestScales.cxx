@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The map does not depend on the sizes of the meshes, up to the ends of the range of doubles.
+
+#include "Fixtures/Defects.h"
+#include "Fixtures/FilterRuns.h"
+
+namespace
+{
+
+using namespace fixtures;
+
+class Scales : public ::testing::TestWithParam<System>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Scales, ::testing::ValuesIn(AllSystems()), NameOfSystem);
+
+std::vector<Pairing> ScaledPairings()
+{
+  const auto plane = MakePlanarPair(4, 61).Source;
+  const auto sheet = MakeSheet(4, 67, 0.9);
+  return { { "planes", MakePlanarPair(4, 61) }, { "sheets", { MakeSheet(4, 66, 0.5), sheet } },
+    { "plane to sheet", { plane, sheet } }, { "sheet to plane", { sheet, plane } },
+    { "closed", MakeClosedPair(2, 68) } };
+}
+
+/// Images of points of the source, which are scaled with it, divided by the scale of the target.
+std::vector<Point> MapScaled(const System& system, const MeshPair& pair,
+  const std::vector<Point>& points, double source, double target, bool inverse = false)
+{
+  const auto filter =
+    MakeFilter(system, { Resized(pair.Source, source), Resized(pair.Target, target) },
+      Resized(MakeCloud(points), inverse ? target : source));
+  filter->SetInverse(inverse);
+  std::vector<Point> images = PointsOf(Output(filter));
+  EXPECT_EQ(filter->GetErrorCode(), 0u);
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+  for (Point& p : images)
+  {
+    for (double& x : p)
+    {
+      x /= inverse ? source : target;
+    }
+  }
+  return images;
+}
+
+TEST_P(Scales, PowersOfTwoAreExact)
+{
+  // 2^664 is about 8e199, 2^-664 about 1e-200.
+  for (const Pairing& pairing : ScaledPairings())
+  {
+    for (const auto& exponents : std::vector<std::array<int, 2>>{ { 664, -664 }, { -664, 664 },
+           { 1000, -1000 }, { 1000, 1000 }, { -1000, -1000 }, { 20, -20 } })
+    {
+      for (const bool inverse : { false, true })
+      {
+        vtkPolyData* from = inverse ? pairing.Meshes.Target : pairing.Meshes.Source;
+        const std::vector<Point> points = SamplePoints(from, TrianglesOf(from), 3, 99);
+        EXPECT_EQ(MapScaled(GetParam(), pairing.Meshes, points, std::ldexp(1.0, exponents[0]),
+                    std::ldexp(1.0, exponents[1]), inverse),
+          MapScaled(GetParam(), pairing.Meshes, points, 1.0, 1.0, inverse))
+          << pairing.Name << exponents[0];
+      }
+    }
+  }
+}
+
+TEST_P(Scales, OtherSizesAreAsAccurate)
+{
+  for (const Pairing& pairing : ScaledPairings())
+  {
+    vtkPolyData* from = pairing.Meshes.Source;
+    const std::vector<Point> points = SamplePoints(from, TrianglesOf(from), 5, 31);
+    const std::vector<Point> expected = MapScaled(GetParam(), pairing.Meshes, points, 1.0, 1.0);
+    for (const auto& sizes :
+      std::vector<std::array<double, 2>>{ { 1e-300, 1e-300 }, { 1e-10, 1e-10 }, { 1e10, 1e-3 },
+        { 1e100, 1e100 }, { 2e307, 2e307 }, { 1e200, 1e-200 }, { 1e-6, 1e6 } })
+    {
+      const std::vector<Point> images =
+        MapScaled(GetParam(), pairing.Meshes, points, sizes[0], sizes[1]);
+      for (std::size_t i = 0; i < points.size(); ++i)
+      {
+        ASSERT_LT(Distance(images[i], expected[i]), 4e-13) << pairing.Name << sizes[0];
+      }
+      // An image off a surface by rounding alone must not be outside on the way back.
+      const std::vector<Point> back =
+        MapScaled(GetParam(), pairing.Meshes, images, sizes[0], sizes[1], true);
+      for (std::size_t i = 0; i < points.size(); ++i)
+      {
+        ASSERT_LT(Distance(back[i], points[i]), 4e-13) << pairing.Name << sizes[0];
+      }
+    }
+  }
+}
+
+TEST_P(Scales, HeightsAreExactWhateverTheScales)
+{
+  // Heights above a plane are lengths of the ambient space.
+  const MeshPair flat = MakePlanarPair(3, 74);
+  for (const auto& sizes : std::vector<std::array<double, 2>>{ { 1e200, 1e-200 }, { 1e-200, 1e200 },
+         { 1e200, 1e200 }, { 1e-200, 1e-200 }, { 1.0, 1e-200 } })
+  {
+    const MeshPair pair{ Resized(flat.Source, sizes[0]), Resized(flat.Target, sizes[1]) };
+    for (const double height : { 0.0, 1.0, -0.3, 5.0, 1e-90, -1e80 })
+    {
+      std::vector<Point> raised = SamplePoints(pair.Source, TrianglesOf(pair.Source), 5, 75);
+      // A corner, which is mapped by a separate rule.
+      raised.push_back(PointOf(pair.Source, 5));
+      for (Point& p : raised)
+      {
+        p[2] = height;
+      }
+      const auto filter = MakeFilter(GetParam(), pair, MakeCloud(raised));
+      for (const Point& image : PointsOf(Output(filter)))
+      {
+        ASSERT_EQ(image[2], height);
+        ASSERT_TRUE(image[0] >= 0.0 && image[0] <= 3.1 * sizes[1]);
+        ASSERT_TRUE(image[1] >= 0.0 && image[1] <= 3.1 * sizes[1]);
+      }
+      ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+    }
+  }
+}
+
+/// A square whose corner at the origin is a triangle of the size @a tiny.
+MeshPair MakePairWithTinyTriangle(double tiny)
+{
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 1, 3, 5 }, { 1, 5, 2 }, { 2, 5, 4 } };
+  return { MakeMesh(
+             { { 0, 0, 0 }, { tiny, 0, 0 }, { 0, tiny, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } },
+             triangles),
+    MakeMesh({ { 0, 0, 0 }, { 2.0 * tiny, 0, 0 }, { 0, tiny, 0 }, { 2, 0, 0 }, { 0, 1, 0 },
+               { 2, 1.5, 0 } },
+      triangles) };
+}
+
+TEST_P(Scales, ATinyTriangleInAUnitMesh)
+{
+  // Products of such lengths underflow, but the triangle has an area and an orientation.
+  for (const double tiny : { 1e-20, 1e-100, 1e-150, 1e-160, 1e-170, 1e-250 })
+  {
+    SCOPED_TRACE(tiny);
+    const MeshPair pair = MakePairWithTinyTriangle(tiny);
+    std::vector<Point> points = SamplePoints(pair.Source, { { 0, 1, 2 } }, 20, 77);
+    points.insert(points.end(), { { 0.5, 0.25, 0 }, { 0.25, 0.5, 0 }, { 0.75, 0.8, 0 } });
+    MapOptions options;
+    options.CoordinateSystem = GetParam().CoordinateSystem;
+    options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
+    const MappedPoints mapped = MapPoints(pair, points, options);
+    options.Inverse = true;
+    const MappedPoints back = MapPoints(pair, mapped.Images, options);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      const bool inTiny = i < 20;
+      const double size = inTiny ? tiny : 1.0;
+      ASSERT_EQ(mapped.Triangles[i] == 0, inTiny);
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        const double stretch = axis == 0 ? 2.0 : 1.0;
+        const double image = mapped.Images[i][axis] / size;
+        ASSERT_GE(image, -10.0 * Ulp);
+        ASSERT_LE(image, stretch * 1.5);
+        if (inTiny && GetParam().CoordinateSystem == vtkDifferentiableHomeomorphism::LINEAR)
+        {
+          ASSERT_NEAR(image, stretch * (points[i][axis] / tiny), 20.0 * Ulp);
+        }
+        ASSERT_NEAR(back.Images[i][axis] / size, points[i][axis] / size, 1e-12);
+      }
+    }
+  }
+  // Three collinear points of that size are found, too.
+  const MeshPair pair = MakePairWithTinyTriangle(1e-170);
+  MovePoint(pair.Source, 2, { 0.5e-170, 0.0, 0.0 });
+  ExpectRefused(
+    Read(pair), { { Kind::DegenerateTriangle, Where::Source, { 0 } } }, Remedy::RepairOrMask);
+}
+
+TEST_P(Scales, ANeedleWhoseHeightIsLostInRounding)
+{
+  // The far corners are so far away that the others coincide in their frame, but the triangles are
+  // not degenerate.
+  const std::vector<Triangle> triangles{ { 0, 1, 3 }, { 0, 3, 2 } };
+  const MeshPair pair{ MakeMesh({ { 1.25, 0.125, 0.0 }, { -2.25, 4.9375, 0.0 },
+                                  { 5.875, 4.75, 0.0 }, { -7.5, 0x1p74, 0.0 } },
+                         triangles),
+    MakeMesh({ { -7.5, -7.5, 0.0 }, { -7.5, -3.5625, 0.0 }, { 0.0625, 0.0625, 0.0 },
+               { 0.0625, -0x1p57, 0.0 } },
+      triangles) };
+  for (const bool inverse : { false, true })
+  {
+    std::vector<Point> points =
+      SamplePoints(inverse ? pair.Target : pair.Source, triangles, 100, 5);
+    points.push_back({ -7.5, -7.5, 0.0 });
+    MapOptions options;
+    options.CoordinateSystem = GetParam().CoordinateSystem;
+    options.Mask = true;
+    options.Inverse = inverse;
+    options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
+    const MappedPoints mapped = MapPoints(pair, points, options);
+    ASSERT_EQ(mapped.Error, "");
+    for (const Point& image : mapped.Images)
+    {
+      EXPECT_TRUE(std::isfinite(image[0]) && std::isfinite(image[1]));
+    }
+  }
+}
+
+TEST_P(Scales, CoordinatesFarFromTheOrigin)
+{
+  // Meters from the corner of a country, cells of ten meters, points to the millimeter.
+  const Point corner{ 4.5e6, 5.8e6, 0.0 };
+  const auto rounded = [](const Point& p) -> Point {
+    return { std::round(1e4 * p[0]) / 1e3, std::round(1e4 * p[1]) / 1e3, 0.0 };
+  };
+  const auto shifted = [&](vtkPolyData* mesh) {
+    return Moved(mesh, [&](const Point& p) { return corner + p; });
+  };
+  const MeshPair grid = MakePlanarPair(10, 34);
+  const MeshPair local{ Moved(grid.Source, rounded), Moved(grid.Target, rounded) };
+  const MeshPair far{ shifted(local.Source), shifted(local.Target) };
+  const auto points =
+    Moved(MakeCloud(grid.Source, InnerSamples(grid.Source, 2000, 34, 0.05)), rounded);
+  const auto expected = MakeFilter(GetParam(), local, points);
+  const auto mapped = MakeFilter(GetParam(), far, shifted(points));
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    // An ulp is about a nanometer.
+    ASSERT_LT(Distance(PointOf(Output(mapped), i), corner + PointOf(Output(expected), i)), 1e-8);
+  }
+  EXPECT_EQ(mapped->GetNumberOfOutsidePoints(), 0);
+  for (const double off : { 1e-3, 1e-6 })
+  {
+    const std::vector<Point> beside{ corner + Point{ -off, 33.3, 0.0 },
+      corner + Point{ 100.0 + off, 1.0, 0.0 }, corner + Point{ 50.0, -off, 0.0 },
+      corner + Point{ 50.0, 100.0 + off, 0.0 } };
+    const auto outside = MakeFilter(GetParam(), far, MakeCloud(beside));
+    outside->Update();
+    EXPECT_EQ(outside->GetNumberOfOutsidePoints(), 4);
+  }
+}
+
+} // namespace

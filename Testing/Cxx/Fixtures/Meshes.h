@@ -1,0 +1,482 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file Meshes.h
+/// Triangulations and pairs of them of every kind, changes to them, and random points of them.
+
+#ifndef fixtures_Meshes_h
+#define fixtures_Meshes_h
+
+#include "LinearAlgebra.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace fixtures
+{
+
+using Triangle = std::array<vtkIdType, 3>;
+
+struct MeshPair
+{
+  vtkSmartPointer<vtkPolyData> Source;
+  vtkSmartPointer<vtkPolyData> Target;
+};
+
+inline vtkSmartPointer<vtkPolyData> MakeMesh(
+  const std::vector<Point>& points, const std::vector<Triangle>& triangles)
+{
+  vtkNew<vtkPoints> meshPoints;
+  meshPoints->SetDataTypeToDouble();
+  for (const Point& point : points)
+  {
+    meshPoints->InsertNextPoint(point.data());
+  }
+  vtkNew<vtkCellArray> cells;
+  for (const Triangle& triangle : triangles)
+  {
+    cells->InsertNextCell(3, triangle.data());
+  }
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->SetPoints(meshPoints);
+  mesh->SetPolys(cells);
+  return mesh;
+}
+
+/// The triangles of a grid of n x n unit squares whose points are numbered row by row.
+inline std::vector<Triangle> GridTriangles(int n)
+{
+  std::vector<Triangle> triangles;
+  for (vtkIdType j = 0; j < n; ++j)
+  {
+    for (vtkIdType i = 0; i < n; ++i)
+    {
+      const vtkIdType a = j * (n + 1) + i;
+      const vtkIdType c = a + n + 1;
+      triangles.push_back({ a, a + 1, c + 1 });
+      triangles.push_back({ a, c + 1, c });
+    }
+  }
+  return triangles;
+}
+
+/// The points of that grid. Interior points are moved at random by up to jitter (at most 0.25 keeps
+/// the orientation of all triangles). The boundary is the square [0, n] x [0, n].
+inline std::vector<Point> GridPoints(int n, std::uint64_t seed, double jitter)
+{
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> offset(-jitter, jitter);
+  std::vector<Point> points;
+  for (int j = 0; j <= n; ++j)
+  {
+    for (int i = 0; i <= n; ++i)
+    {
+      const bool inside = i > 0 && i < n && j > 0 && j < n;
+      const double dx = offset(generator);
+      const double dy = offset(generator);
+      points.push_back({ i + (inside ? dx : 0.0), j + (inside ? dy : 0.0), 0.0 });
+    }
+  }
+  return points;
+}
+
+/// That grid with unmoved points.
+inline vtkSmartPointer<vtkPolyData> RegularGrid(int n)
+{
+  return MakeMesh(GridPoints(n, 0, 0.0), GridTriangles(n));
+}
+
+/// Two different triangulations of the square [0, n] x [0, n] with the same triangles.
+inline MeshPair MakePlanarPair(int n, std::uint64_t seed, double jitter = 0.25)
+{
+  return { MakeMesh(GridPoints(n, seed, jitter), GridTriangles(n)),
+    MakeMesh(GridPoints(n, seed + 1, jitter), GridTriangles(n)) };
+}
+
+/// A surface over that square with waves of height @a wave.
+inline vtkSmartPointer<vtkPolyData> MakeSheet(int n, std::uint64_t seed, double wave)
+{
+  std::vector<Point> points = GridPoints(n, seed, 0.25);
+  for (Point& p : points)
+  {
+    p[2] = wave * std::sin(0.7 * p[0] + 0.3) * std::cos(0.5 * p[1]);
+  }
+  return MakeMesh(points, GridTriangles(n));
+}
+
+/// Two different closed surfaces: an octahedron subdivided @a divisions times, with its points on
+/// two ellipsoids and moved at random along them.
+inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
+{
+  std::vector<Point> points{ { 1, 0, 0 }, { 0, 1, 0 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 },
+    { 0, 0, -1 } };
+  std::vector<Triangle> triangles{ { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 }, { 1, 0, 5 },
+    { 2, 1, 5 }, { 3, 2, 5 }, { 0, 3, 5 } };
+  for (int division = 0; division < divisions; ++division)
+  {
+    std::map<std::pair<vtkIdType, vtkIdType>, vtkIdType> middles;
+    const auto middle = [&](vtkIdType a, vtkIdType b) {
+      const auto key = std::minmax(a, b);
+      const auto found = middles.find(key);
+      if (found != middles.end())
+      {
+        return found->second;
+      }
+      Point p;
+      for (int k = 0; k < 3; ++k)
+      {
+        p[k] = 0.5 * (points[a][k] + points[b][k]);
+      }
+      points.push_back(p);
+      return middles[key] = static_cast<vtkIdType>(points.size()) - 1;
+    };
+    std::vector<Triangle> finer;
+    for (const Triangle& t : triangles)
+    {
+      const vtkIdType ab = middle(t[0], t[1]);
+      const vtkIdType bc = middle(t[1], t[2]);
+      const vtkIdType ca = middle(t[2], t[0]);
+      finer.insert(
+        finer.end(), { { t[0], ab, ca }, { ab, t[1], bc }, { ca, bc, t[2] }, { ab, bc, ca } });
+    }
+    triangles = finer;
+  }
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> offset(-0.2, 0.2);
+  const double spacing = std::pow(0.5, divisions);
+  const auto surfacePoint = [&](const Point& axes) {
+    std::vector<Point> moved = points;
+    for (Point& p : moved)
+    {
+      for (double& x : p)
+      {
+        x += spacing * offset(generator);
+      }
+      const double length = std::hypot(p[0], p[1], p[2]);
+      for (int k = 0; k < 3; ++k)
+      {
+        p[k] *= axes[k] / length;
+      }
+    }
+    return MakeMesh(moved, triangles);
+  };
+  const auto source = surfacePoint({ 1.0, 1.0, 1.0 });
+  const auto target = surfacePoint({ 2.0, 1.2, 0.7 });
+  return { source, target };
+}
+
+// --- Changes to meshes ---------------------------------------------------------------------------
+
+inline Point PointOf(vtkDataSet* data, vtkIdType i)
+{
+  Point p;
+  data->GetPoint(i, p.data());
+  return p;
+}
+
+inline std::vector<Point> PointsOf(vtkDataSet* data)
+{
+  std::vector<Point> points;
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    points.push_back(PointOf(data, i));
+  }
+  return points;
+}
+
+inline std::vector<Triangle> TrianglesOf(vtkPolyData* mesh)
+{
+  std::vector<Triangle> triangles;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType t = 0; t < mesh->GetNumberOfPolys(); ++t)
+  {
+    mesh->GetPolys()->GetCellAtId(t, ids);
+    triangles.push_back({ ids->GetId(0), ids->GetId(1), ids->GetId(2) });
+  }
+  return triangles;
+}
+
+inline void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& to)
+{
+  mesh->GetPoints()->SetPoint(id, to.data());
+  mesh->GetPoints()->Modified();
+}
+
+inline void SetTriangles(vtkPolyData* mesh, const std::vector<Triangle>& triangles)
+{
+  mesh->SetPolys(MakeMesh({}, triangles)->GetPolys());
+}
+
+/// The mesh or the pair with other triangles and copies of its points.
+inline vtkSmartPointer<vtkPolyData> WithTriangles(
+  vtkPolyData* mesh, const std::vector<Triangle>& triangles)
+{
+  return MakeMesh(PointsOf(mesh), triangles);
+}
+inline MeshPair WithTriangles(const MeshPair& pair, const std::vector<Triangle>& triangles)
+{
+  return { WithTriangles(pair.Source, triangles), WithTriangles(pair.Target, triangles) };
+}
+
+/// Puts vertex and line cells before the triangles of a mesh, which shifts their cell ids.
+inline void AddVerticesAndLines(vtkPolyData* mesh, int vertices, int lines)
+{
+  vtkNew<vtkCellArray> vertexCells;
+  for (vtkIdType i = 0; i < vertices; ++i)
+  {
+    vertexCells->InsertNextCell({ i });
+  }
+  vtkNew<vtkCellArray> lineCells;
+  for (vtkIdType i = 0; i < lines; ++i)
+  {
+    lineCells->InsertNextCell({ i, i + 1 });
+  }
+  mesh->SetVerts(vertexCells);
+  mesh->SetLines(lineCells);
+}
+
+/// An array vtkGhostType in which some elements have a mark.
+inline vtkSmartPointer<vtkUnsignedCharArray> MakeGhosts(
+  vtkIdType tuples, const std::vector<vtkIdType>& ids, unsigned char mark)
+{
+  auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(tuples);
+  ghosts->FillValue(0);
+  for (const vtkIdType id : ids)
+  {
+    ghosts->SetValue(id, mark);
+  }
+  return ghosts;
+}
+
+/// A mesh with every point moved by a function.
+template <typename Move>
+vtkSmartPointer<vtkPolyData> Moved(vtkPolyData* mesh, Move&& move)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(mesh->GetPoints()->GetDataType());
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    const Point moved = move(PointOf(mesh, i));
+    points->InsertNextPoint(moved.data());
+  }
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->ShallowCopy(mesh);
+  result->SetPoints(points);
+  return result;
+}
+
+/// All coordinates multiplied by a factor.
+inline vtkSmartPointer<vtkPolyData> Resized(vtkPolyData* mesh, double factor)
+{
+  return Moved(mesh, [factor](const Point& p) { return factor * p; });
+}
+
+/// The kinds of pairs: planar (a square and another square, a sheared one with many discordant
+/// triangles, and one in a tilted plane), surfaces with boundary, a plane and a surface, and closed
+/// surfaces.
+struct Pairing
+{
+  const char* Name;
+  MeshPair Meshes;
+};
+
+inline Matrix Tilt()
+{
+  return Rotation({ 1.0, -2.0, 0.7 }, 0.9);
+}
+
+inline vtkSmartPointer<vtkPolyData> Tilted(
+  vtkPolyData* mesh, const Matrix& rotation, const Point& shift)
+{
+  return Moved(mesh, [&](const Point& p) { return rotation * p + shift; });
+}
+
+inline vtkSmartPointer<vtkPolyData> Sheared(vtkPolyData* mesh)
+{
+  return Moved(mesh, [](const Point& p) -> Point { return { p[0] + 1.2 * p[1], p[1], p[2] }; });
+}
+
+inline std::vector<Pairing> AllPairings(int n, int divisions, std::uint64_t seed)
+{
+  const MeshPair planar = MakePlanarPair(n, seed);
+  const MeshPair closed = MakeClosedPair(divisions, seed + 4);
+  return { { "planar", planar }, { "sheared", { planar.Source, Sheared(planar.Target) } },
+    { "tilted", { planar.Source, Tilted(planar.Target, Tilt(), { 1.0, 2.0, 3.0 }) } },
+    { "sheets", { MakeSheet(n, seed + 2, 0.5), MakeSheet(n, seed + 3, 1.2) } },
+    { "plane to sheet", { planar.Source, MakeSheet(n, seed + 3, 1.2) } }, { "closed", closed } };
+}
+
+// --- Random points -------------------------------------------------------------------------------
+/// Random numbers that follow from the seed on every platform, unlike the distributions of the
+/// standard library.
+class Random
+{
+public:
+  explicit Random(std::uint64_t seed)
+    : Engine(seed)
+  {
+  }
+  /// Uniform in [0, 1).
+  double Uniform() { return std::ldexp(static_cast<double>(this->Engine() >> 11), -53); }
+  double Uniform(double lower, double upper) { return lower + (upper - lower) * this->Uniform(); }
+  vtkIdType Below(vtkIdType count)
+  {
+    return static_cast<vtkIdType>(this->Engine() % static_cast<std::uint64_t>(count));
+  }
+  Point Vector() { return { Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Uniform(-1.0, 1.0) }; }
+
+private:
+  std::mt19937_64 Engine;
+};
+
+/// A point of a mesh: a triangle and the weights of its three points.
+struct MeshPoint
+{
+  vtkIdType Triangle;
+  Point Weights;
+};
+
+/// Uniform in the triangle, with all weights at least @a margin.
+inline Point RandomWeights(Random& random, double margin = 0.0)
+{
+  double u = random.Uniform();
+  double v = random.Uniform();
+  if (u + v > 1.0)
+  {
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  const double room = 1.0 - 3.0 * margin;
+  return { margin + room * u, margin + room * v, margin + room * (1.0 - u - v) };
+}
+
+/// Everywhere in the triangles; one in four on an edge, or close to an edge or a vertex at any
+/// power of ten down to rounding.
+inline std::vector<MeshPoint> RandomSamples(vtkPolyData* mesh, vtkIdType count, std::uint64_t seed)
+{
+  Random random(seed);
+  std::vector<MeshPoint> samples(count);
+  for (MeshPoint& surfacePoint : samples)
+  {
+    surfacePoint.Triangle = random.Below(mesh->GetNumberOfCells());
+    surfacePoint.Weights = RandomWeights(random);
+    const vtkIdType kind = random.Below(12);
+    if (kind < 3)
+    {
+      const auto k = static_cast<std::size_t>(random.Below(3));
+      const double small = kind == 0
+        ? 0.0
+        : 0.5 * std::pow(10.0, random.Uniform(-17.0, 0.0)) * surfacePoint.Weights[k];
+      const double t = random.Uniform();
+      const double next = kind == 2 ? small * t : t * (1.0 - small);
+      surfacePoint.Weights[k] = small;
+      surfacePoint.Weights[(k + 1) % 3] = next;
+      surfacePoint.Weights[(k + 2) % 3] = 1.0 - small - next;
+    }
+  }
+  return samples;
+}
+
+/// Inside triangles, with all weights at least @a margin.
+inline std::vector<MeshPoint> InnerSamples(
+  vtkPolyData* mesh, vtkIdType count, std::uint64_t seed, double margin)
+{
+  Random random(seed);
+  std::vector<MeshPoint> samples(count);
+  for (MeshPoint& surfacePoint : samples)
+  {
+    surfacePoint = { random.Below(mesh->GetNumberOfCells()), RandomWeights(random, margin) };
+  }
+  return samples;
+}
+
+inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
+{
+  vtkNew<vtkIdList> ids;
+  mesh->GetCellPoints(triangle, ids);
+  return { PointOf(mesh, ids->GetId(0)), PointOf(mesh, ids->GetId(1)),
+    PointOf(mesh, ids->GetId(2)) };
+}
+
+inline Point PositionOf(vtkPolyData* mesh, const MeshPoint& surfacePoint)
+{
+  const std::array<Point, 3> corners = CornersOf(mesh, surfacePoint.Triangle);
+  return surfacePoint.Weights[0] * corners[0] + surfacePoint.Weights[1] * corners[1] +
+    surfacePoint.Weights[2] * corners[2];
+}
+
+/// The point with these barycentric weights in a triangle.
+inline Point PointIn(vtkPolyData* mesh, const Triangle& triangle, const Point& weights)
+{
+  return weights[0] * PointOf(mesh, triangle[0]) + weights[1] * PointOf(mesh, triangle[1]) +
+    weights[2] * PointOf(mesh, triangle[2]);
+}
+
+inline Point CentroidOf(vtkPolyData* mesh, const Triangle& triangle)
+{
+  return PointIn(mesh, triangle, { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 });
+}
+
+/// Some points in every triangle.
+inline std::vector<Point> SamplePoints(
+  vtkPolyData* mesh, const std::vector<Triangle>& triangles, int perTriangle, std::uint64_t seed)
+{
+  Random random(seed);
+  std::vector<Point> points;
+  for (const Triangle& triangle : triangles)
+  {
+    for (int n = 0; n < perTriangle; ++n)
+    {
+      points.push_back(PointIn(mesh, triangle, RandomWeights(random, 1e-4)));
+    }
+  }
+  return points;
+}
+
+/// Points without cells.
+inline vtkSmartPointer<vtkPolyData> MakeCloud(
+  const std::vector<Point>& positions, int dataType = VTK_DOUBLE)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(dataType);
+  points->SetNumberOfPoints(static_cast<vtkIdType>(positions.size()));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+  {
+    points->SetPoint(static_cast<vtkIdType>(i), positions[i].data());
+  }
+  auto cloud = vtkSmartPointer<vtkPolyData>::New();
+  cloud->SetPoints(points);
+  return cloud;
+}
+
+inline vtkSmartPointer<vtkPolyData> MakeCloud(
+  vtkPolyData* mesh, const std::vector<MeshPoint>& samples)
+{
+  std::vector<Point> positions;
+  positions.reserve(samples.size());
+  for (const MeshPoint& surfacePoint : samples)
+  {
+    positions.push_back(PositionOf(mesh, surfacePoint));
+  }
+  return MakeCloud(positions);
+}
+
+} // namespace fixtures
+
+#endif

@@ -1,0 +1,740 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Every defect for which meshes are refused: its kind, the mesh and all cells that have it. And
+// valid meshes that resemble defective ones.
+
+#include "Fixtures/Defects.h"
+#include "Fixtures/FilterRuns.h"
+
+#include "vtkCutter.h"
+#include "vtkDataSetTriangleFilter.h"
+#include "vtkFlyingEdges3D.h"
+#include "vtkPlane.h"
+#include "vtkRTAnalyticSource.h"
+#include "vtkTriangleFilter.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedShortArray.h"
+
+namespace
+{
+
+using namespace fixtures;
+
+/// The two pairs give the same map, up to a distance.
+void ExpectSameMap(const MeshPair& first, const MeshPair& second, double tolerance)
+{
+  const std::vector<Point> points = SamplePoints(first.Source, TrianglesOf(first.Source), 5, 2);
+  for (const System& system : AllSystems())
+  {
+    MapOptions options;
+    options.CoordinateSystem = system.CoordinateSystem;
+    options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
+    const MappedPoints a = MapPoints(first, points, options);
+    const MappedPoints b = MapPoints(second, points, options);
+    ASSERT_EQ(a.Error + b.Error, "");
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      ASSERT_TRUE(a.IsInside(i) && b.IsInside(i));
+      ASSERT_LE(Distance(a.Images[i], b.Images[i]), tolerance) << system.Name;
+    }
+  }
+}
+
+/// A mesh with polygons of any number of corners.
+vtkSmartPointer<vtkPolyData> MakePolygons(
+  const std::vector<Point>& points, const std::vector<std::vector<vtkIdType>>& polygons)
+{
+  const auto mesh = MakeMesh(points, {});
+  for (const auto& polygon : polygons)
+  {
+    mesh->GetPolys()->InsertNextCell(static_cast<vtkIdType>(polygon.size()), polygon.data());
+  }
+  return mesh;
+}
+
+// --- Meshes that are not isomorphic --------------------------------------------------------------
+
+TEST(MeshValidation, CountsDiffer)
+{
+  MeshPair pair = MakePlanarPair(4, 11);
+  std::vector<Triangle> fewer = GridTriangles(4);
+  fewer.pop_back();
+  pair.Target = WithTriangles(pair.Target, fewer);
+  pair.Target->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
+  const Reading reading = Read(pair);
+  ExpectRefused(reading,
+    { { Kind::PointCountsDiffer, Where::Pair, {} }, { Kind::CellCountsDiffer, Where::Pair, {} } },
+    Remedy::UseSameMesh);
+  EXPECT_EQ(reading.Diagnostics[0].Counts, (std::array<vtkIdType, 2>{ 25, 26 }));
+  EXPECT_EQ(reading.Diagnostics[1].Counts, (std::array<vtkIdType, 2>{ 32, 31 }));
+}
+
+TEST(MeshValidation, ConnectivityDiffers)
+{
+  const MeshPair pair = MakePlanarPair(4, 13);
+  const auto expect = [&pair](const std::vector<Triangle>& triangles, const Ids& cells) {
+    const auto other = WithTriangles(pair.Target, triangles);
+    ExpectRefused(Read(pair.Source, other), { { Kind::ConnectivityDiffers, Where::Pair, cells } },
+      Remedy::UseSourceCells);
+    ExpectRefused(Read(other, pair.Source), { { Kind::ConnectivityDiffers, Where::Pair, cells } },
+      Remedy::UseSourceCells);
+  };
+  // The other diagonal of the second square.
+  std::vector<Triangle> triangles = GridTriangles(4);
+  triangles[2] = { 1, 2, 6 };
+  triangles[3] = { 2, 7, 6 };
+  expect(triangles, { 2, 3 });
+  // Another order of the triangles.
+  triangles = GridTriangles(4);
+  std::rotate(triangles.begin(), triangles.begin() + 1, triangles.end());
+  expect(triangles, Range(0, 31));
+  // {0, 1, 6} and {0, 0, 6} are equal as sets of points only.
+  triangles = GridTriangles(4);
+  triangles[0] = { 0, 0, 6 };
+  expect(triangles, { 0 });
+}
+
+TEST(MeshValidation, TheOrderOfCornersInTheTargetIsFree)
+{
+  const MeshPair pair = MakePlanarPair(5, 14);
+  std::vector<Triangle> triangles = GridTriangles(5);
+  std::mt19937_64 generator(14);
+  for (Triangle& triangle : triangles)
+  {
+    std::shuffle(triangle.begin(), triangle.end(), generator);
+  }
+  ExpectSameMap(pair, { pair.Source, WithTriangles(pair.Target, triangles) }, 0.0);
+}
+
+// --- Cells that are not triangles, and corrupt cells ---------------------------------------------
+
+TEST(MeshValidation, PolygonsWithOtherNumbersOfCorners)
+{
+  const auto mesh = MakePolygons(GridPoints(2, 15, 0.2),
+    { { 0, 1, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 }, { 3, 4, 7, 6 }, { 4, 5, 8, 7, 4 }, { 4, 5 }, {} });
+  const Ids cells{ 0, 3, 4, 5, 6 };
+  ExpectRefused(Read(mesh, mesh),
+    { { Kind::NotTriangles, Where::Source, cells }, { Kind::NotTriangles, Where::Target, cells } },
+    Remedy::Triangulate);
+  ExpectRefused(
+    Read(mesh), { { Kind::NotTriangles, Where::Triangulation, cells } }, Remedy::Triangulate);
+}
+
+TEST(MeshValidation, Strips)
+{
+  const auto addStrips = [](vtkPolyData* mesh) {
+    vtkNew<vtkCellArray> strips;
+    strips->InsertNextCell({ 0, 3, 1, 4, 2, 5 });
+    strips->InsertNextCell({ 0, 3, 1, 4 });
+    mesh->SetStrips(strips);
+  };
+  // Strips follow the eight polygons.
+  ExpectRefusedInEachMesh(
+    MakePlanarPair(2, 16), addStrips, Kind::TriangleStrips, { 8, 9 }, Remedy::Triangulate);
+}
+
+TEST(MeshValidation, PointsThatDoNotExist)
+{
+  for (const vtkIdType wrong :
+    { vtkIdType(-1), vtkIdType(25), vtkIdType(1) << 31, (vtkIdType(1) << 32) + 1,
+      std::numeric_limits<vtkIdType>::min(), std::numeric_limits<vtkIdType>::max() })
+  {
+    SCOPED_TRACE(wrong);
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      const auto damage = [&](vtkPolyData* mesh) {
+        std::vector<Triangle> triangles = GridTriangles(4);
+        triangles[7][corner] = wrong;
+        triangles[31][corner] = wrong;
+        SetTriangles(mesh, triangles);
+      };
+      ExpectRefusedInEachMesh(
+        MakePlanarPair(4, 17), damage, Kind::BadConnectivity, { 7, 31 }, Remedy::ReadAgain);
+    }
+  }
+  vtkNew<vtkPolyData> noPoints;
+  SetTriangles(noPoints, GridTriangles(1));
+  ExpectRefused(Read(noPoints), { { Kind::BadConnectivity, Where::Triangulation, { 0, 1 } } },
+    Remedy::ReadAgain);
+}
+
+/// Ids as an array of a type, and cells of three points each of which VTK knows the size alone, so
+/// that it may store no offsets or an implicit array of them. Null if VTK does not take such ids.
+template <typename ArrayType, typename Values>
+vtkSmartPointer<ArrayType> MakeIds(const Values& values)
+{
+  const auto array = vtkSmartPointer<ArrayType>::New();
+  for (const auto value : values)
+  {
+    array->InsertNextValue(static_cast<typename ArrayType::ValueType>(value));
+  }
+  return array;
+}
+template <typename ArrayType>
+vtkSmartPointer<vtkPolyData> WithCellsOfThree(vtkPolyData* mesh)
+{
+  std::vector<vtkIdType> ids;
+  for (const Triangle& triangle : TrianglesOf(mesh))
+  {
+    ids.insert(ids.end(), triangle.begin(), triangle.end());
+  }
+  vtkNew<vtkCellArray> cells;
+  if (!cells->SetData(3, MakeIds<ArrayType>(ids)))
+  {
+    return nullptr;
+  }
+  auto copy = vtkSmartPointer<vtkPolyData>::New();
+  copy->SetPoints(mesh->GetPoints());
+  copy->SetPolys(cells);
+  return copy;
+}
+
+TEST(MeshValidation, MalformedOffsets)
+{
+  struct Case
+  {
+    std::vector<int> Offsets;
+    Ids NotTriangles;
+    Ids BadConnectivity;
+  };
+  const std::vector<Case> cases{ { { 0, 3, 6, 9, 99 }, {}, { 3 } },
+    { { 0, 3, 6, 9, 13 }, {}, { 3 } }, { { 0, 3, 6, -9, 12 }, {}, { 2, 3 } },
+    { { -3, 0, 3, 6, 9 }, {}, { 0 } }, { { 0, 6, 3, 9, 12 }, { 0, 2 }, { 1 } },
+    { { 2147483645, 2147483647, 3, 6, 9 }, {}, { 0, 1 } },
+    { { 0, 0, 0, 0, 0 }, { 0, 1, 2, 3 }, {} } };
+  const std::vector<int> connectivity{ 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4 };
+  for (const Case& one : cases)
+  {
+    for (const bool wide : { true, false })
+    {
+      SCOPED_TRACE(::testing::PrintToString(one.Offsets));
+      vtkNew<vtkCellArray> polygons;
+      if (wide)
+      {
+        polygons->SetData(MakeIds<vtkTypeInt64Array>(one.Offsets).Get(),
+          MakeIds<vtkTypeInt64Array>(connectivity).Get());
+      }
+      else
+      {
+        polygons->SetData(MakeIds<vtkTypeInt32Array>(one.Offsets).Get(),
+          MakeIds<vtkTypeInt32Array>(connectivity).Get());
+      }
+      const auto mesh = MakeMesh(GridPoints(2, 0, 0.0), {});
+      mesh->SetPolys(polygons);
+      const Reading reading = Read(mesh);
+      EXPECT_FALSE(reading.Map);
+      for (const MeshDiagnostic& found : reading.Diagnostics)
+      {
+        const bool size = found.What == Kind::NotTriangles;
+        EXPECT_TRUE(size || found.What == Kind::BadConnectivity);
+        EXPECT_EQ(found.Ids, size ? one.NotTriangles : one.BadConnectivity);
+      }
+      EXPECT_EQ(reading.Diagnostics.size(),
+        std::size_t(!one.NotTriangles.empty()) + std::size_t(!one.BadConnectivity.empty()));
+    }
+  }
+}
+
+TEST(MeshValidation, EveryStorageOfCellsIsRead)
+{
+  const MeshPair pair = MakePlanarPair(4, 18);
+  MeshPair narrow = WithTriangles(pair, GridTriangles(4));
+  narrow.Source->GetPolys()->ConvertTo32BitStorage();
+  narrow.Target->GetPolys()->ConvertTo64BitStorage();
+  ASSERT_FALSE(narrow.Source->GetPolys()->IsStorage64Bit());
+  ExpectSameMap(pair, narrow, 0.0);
+  ExpectSameMap(pair,
+    { WithCellsOfThree<vtkTypeInt64Array>(pair.Source),
+      WithCellsOfThree<vtkTypeInt32Array>(pair.Target) },
+    0.0);
+  // Only newer versions of VTK take other integers.
+  if (const auto short16 = WithCellsOfThree<vtkUnsignedShortArray>(pair.Target))
+  {
+    ExpectSameMap(pair, { WithCellsOfThree<vtkIdTypeArray>(pair.Source), short16 }, 0.0);
+  }
+}
+
+// These filters leave the storage that is the fastest for them: in VTK 9.6, one without offsets.
+TEST(MeshValidation, SurfacesOfContourFiltersAreRead)
+{
+  vtkNew<vtkRTAnalyticSource> wavelet;
+  wavelet->SetWholeExtent(-9, 9, -9, 9, -9, 9);
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputConnection(wavelet->GetOutputPort());
+  contour->SetValue(0, 160.0);
+  contour->ComputeNormalsOff();
+  vtkNew<vtkDataSetTriangleFilter> tetrahedra;
+  tetrahedra->SetInputConnection(wavelet->GetOutputPort());
+  vtkNew<vtkPlane> plane;
+  plane->SetNormal(1.0, 2.0, 3.0);
+  vtkNew<vtkCutter> cut;
+  cut->SetInputConnection(tetrahedra->GetOutputPort());
+  cut->SetCutFunction(plane);
+  cut->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->SetInputConnection(cut->GetOutputPort());
+  for (vtkAlgorithm* algorithm : std::initializer_list<vtkAlgorithm*>{ contour, triangles })
+  {
+    algorithm->Update();
+    auto* surface = vtkPolyData::SafeDownCast(algorithm->GetOutputDataObject(0));
+    ASSERT_GT(surface->GetNumberOfPolys(), 100);
+    MapOptions options;
+    options.Mask = true;
+    const MappedPoints mapped =
+      MapPoints({ surface, Resized(surface, 2.0) }, PointsOf(surface), options);
+    ASSERT_EQ(mapped.Error, "");
+    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+    {
+      const auto n = static_cast<std::size_t>(i);
+      ASSERT_LT(Distance(mapped.Images[n], 2.0 * PointOf(surface, i)), 1e-5);
+    }
+  }
+}
+
+// --- Defects of single triangles -----------------------------------------------------------------
+
+TEST(MeshValidation, RepeatedCorner)
+{
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    std::vector<Triangle> triangles = GridTriangles(4);
+    triangles[9][corner] = triangles[9][(corner + 1) % 3];
+    triangles[10] = { 7, 7, 7 };
+    const MeshPair pair = WithTriangles(MakePlanarPair(4, 19), triangles);
+    ExpectRefused(
+      Read(pair), { { Kind::RepeatedCorner, Where::Source, { 9, 10 } } }, Remedy::RepairOrMask);
+    ExpectRefused(Read(pair.Target), { { Kind::RepeatedCorner, Where::Triangulation, { 9, 10 } } },
+      Remedy::RepairOrMask);
+  }
+}
+
+TEST(MeshValidation, NotFinite)
+{
+  for (const double bad : { NotANumber, Infinity, -Infinity })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto spoil = [&](vtkPolyData* mesh, vtkIdType id) {
+        Point p = PointOf(mesh, id);
+        p[axis] = bad;
+        MovePoint(mesh, id, p);
+      };
+      // Point 0 has two triangles, point 1 three.
+      ExpectRefusedInEachMesh(MakePlanarPair(4, 20),
+        [&](vtkPolyData* mesh) {
+          spoil(mesh, 0);
+          spoil(mesh, 1);
+        },
+        Kind::NotFinite, { 0, 1, 2, 3 });
+      ExpectRefusedInEachMesh({ MakeSheet(4, 21, 0.3), MakeSheet(4, 22, 0.4) },
+        [&](vtkPolyData* mesh) { spoil(mesh, 24); }, Kind::NotFinite, { 30, 31 });
+    }
+  }
+  const auto nowhere =
+    MakeMesh(std::vector<Point>(4, { NotANumber, Infinity, 0.0 }), GridTriangles(1));
+  ExpectRefused(
+    Read(nowhere), { { Kind::NotFinite, Where::Triangulation, { 0, 1 } } }, Remedy::RepairOrMask);
+}
+
+TEST(MeshValidation, UnusedPointsMayBeAnywhere)
+{
+  const MeshPair pair = MakePlanarPair(4, 23);
+  for (const Point& odd : { Point{ NotANumber, 1.0, 0.0 }, Point{ 1.0, Infinity, 0.0 },
+         Point{ 1.0, 1.0, NotANumber }, Point{ 0.3, 0.4, 5.0 }, Point{ 1e300, -1e300, 0.0 } })
+  {
+    const auto with = [](vtkPolyData* mesh, const Point& p) {
+      const auto copy = WithTriangles(mesh, GridTriangles(4));
+      copy->GetPoints()->InsertNextPoint(p.data());
+      return copy;
+    };
+    ExpectSameMap(pair, { with(pair.Source, odd), with(pair.Target, { 2.0, 2.0, 0.0 }) }, 0.0);
+    ExpectSameMap({ pair.Target, pair.Source },
+      { with(pair.Target, { 2.0, 2.0, 0.0 }), with(pair.Source, odd) }, 0.0);
+  }
+}
+
+TEST(MeshValidation, DegenerateTrianglesInThePlane)
+{
+  const MeshPair pair = MakePlanarPair(4, 24, 0.0);
+  // Exactly collinear, with a middle point that is not the midpoint.
+  ExpectRefusedInEachMesh(pair,
+    [](vtkPolyData* mesh) {
+      MovePoint(mesh, 1, { 0.5, 0.125, 0.0 });
+      MovePoint(mesh, 6, { 1.0, 0.25, 0.0 });
+    },
+    Kind::DegenerateTriangle, { 0 });
+  // Two points coincide.
+  ExpectRefusedInEachMesh(pair,
+    [](vtkPolyData* mesh) {
+      MovePoint(mesh, 0, { 1.0, 1.0, 0.0 });
+    },
+    Kind::DegenerateTriangle, { 0, 1 });
+}
+
+TEST(MeshValidation, AHeightOfOneUlpIsNotDegenerate)
+{
+  // In a plane parallel to two axes this is decided exactly.
+  const auto triangle = [](double height) {
+    return MakeMesh({ { 0, 0, 0 }, { 2, 1, 0 }, { 1, height, 0 } }, { { 0, 1, 2 } });
+  };
+  ExpectAccepted(Read(triangle(std::nextafter(0.5, 1.0))));
+  ExpectRefused(Read(triangle(0.5)), { { Kind::DegenerateTriangle, Where::Triangulation, { 0 } } },
+    Remedy::RepairOrMask);
+}
+
+TEST(MeshValidation, DegenerateTrianglesInSpace)
+{
+  const MeshPair pair{ MakeSheet(4, 25, 0.3), MakeSheet(4, 26, 0.4) };
+  // Collinear up to the rounding of the coordinates.
+  ExpectRefusedInEachMesh(pair,
+    [](vtkPolyData* mesh) {
+      MovePoint(mesh, 24, PointIn(mesh, { 23, 18, 24 }, { 0.7, 0.3, 0.0 }));
+    },
+    Kind::DegenerateTriangle, { 31 });
+  // Exactly collinear in float, as midpoints of short numbers are.
+  ExpectRefusedInEachMesh(pair,
+    [](vtkPolyData* mesh) {
+      vtkNew<vtkPoints> rounded;
+      rounded->SetDataTypeToFloat();
+      rounded->DeepCopy(mesh->GetPoints());
+      rounded->SetPoint(18, 3.0, 3.0, 0.25);
+      rounded->SetPoint(23, 3.0, 4.0, 0.75);
+      rounded->SetPoint(24, 3.0, 3.5, 0.5);
+      mesh->SetPoints(rounded);
+    },
+    Kind::DegenerateTriangle, { 31 });
+  for (const std::vector<Point>& points :
+    { std::vector<Point>{ { 0, 0, 0 }, { 1, 2, 3 }, { 2, 4, 6 } },
+      std::vector<Point>(3, { 1, 2, 3 }), std::vector<Point>(3, { 0, 0, 0 }) })
+  {
+    ExpectRefused(Read(MakeMesh(points, { { 0, 1, 2 } })),
+      { { Kind::DegenerateTriangle, Where::Triangulation, { 0 } } }, Remedy::RepairOrMask);
+  }
+}
+
+TEST(MeshValidation, DefectsOfBothMeshesAreReportedWithTheirPositions)
+{
+  const MeshPair pair = MakePlanarPair(4, 27, 0.0);
+  MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
+  MovePoint(pair.Target, 24, { 3.0, 3.0, 0.0 });
+  // Cell ids count vertices and lines, which may differ.
+  AddVerticesAndLines(pair.Source, 3, 2);
+  AddVerticesAndLines(pair.Target, 1, 0);
+  const Reading reading = Read(pair);
+  ExpectRefused(reading,
+    { { Kind::DegenerateTriangle, Where::Source, { 5, 6 } },
+      { Kind::DegenerateTriangle, Where::Target, { 31, 32 } } },
+    Remedy::RepairOrMask);
+  // The first corner of the first triangle.
+  EXPECT_EQ(reading.Diagnostics[0].Position, (Point{ 1.0, 1.0, 0.0 }));
+  EXPECT_EQ(reading.Diagnostics[1].Position, PointOf(pair.Target, GridTriangles(4)[30][0]));
+}
+
+// --- Non-manifold and non-orientable surfaces ----------------------------------------------------
+
+TEST(MeshValidation, NonManifoldEdge)
+{
+  // A fin on the edge of triangles 0 and 1.
+  std::vector<Triangle> triangles = GridTriangles(3);
+  triangles.push_back({ 0, 5, 16 });
+  MeshPair pair{ MakeSheet(3, 29, 0.3), MakeSheet(3, 30, 0.4) };
+  for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+  {
+    mesh->GetPoints()->InsertNextPoint(0.5, 0.5, 2.0);
+    SetTriangles(mesh, triangles);
+  }
+  ExpectRefused(
+    Read(pair), { { Kind::NonManifoldEdge, Where::Source, { 0, 1, 18 } } }, Remedy::RepairOrMask);
+  ExpectRefused(Read(pair.Target),
+    { { Kind::NonManifoldEdge, Where::Triangulation, { 0, 1, 18 } } }, Remedy::RepairOrMask);
+}
+
+/// A ring of squares with some half turns, each square divided into two triangles.
+vtkSmartPointer<vtkPolyData> MakeTwistedRing(int halfTurns, double width)
+{
+  constexpr int n = 12;
+  const double pi = std::acos(-1.0);
+  std::vector<Point> points;
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < n; ++i)
+  {
+    const double around = 2.0 * pi * i / n;
+    const double twist = pi * halfTurns * i / n;
+    for (const double side : { -width, width })
+    {
+      const double radius = 1.0 + side * std::cos(twist);
+      points.push_back(
+        { radius * std::cos(around), radius * std::sin(around), side * std::sin(twist) });
+    }
+    const bool crossed = i + 1 == n && halfTurns % 2 != 0;
+    const vtkIdType a = 2 * i;
+    const vtkIdType next = 2 * ((i + 1) % n);
+    const vtkIdType c = next + (crossed ? 1 : 0);
+    const vtkIdType d = next + (crossed ? 0 : 1);
+    triangles.push_back({ a, c, a + 1 });
+    triangles.push_back({ a + 1, c, d });
+  }
+  return MakeMesh(points, triangles);
+}
+
+TEST(MeshValidation, RingsWithAnOddNumberOfHalfTurnsAreNonOrientable)
+{
+  for (const int halfTurns : { 0, 1, 2, 3 })
+  {
+    const MeshPair pair{ MakeTwistedRing(halfTurns, 0.3), MakeTwistedRing(halfTurns, 0.2) };
+    const Reading reading = Read(pair);
+    if (halfTurns % 2 == 0)
+    {
+      ExpectAccepted(reading);
+      EXPECT_EQ(MapPoints(pair, PointsOf(pair.Source)).Images, PointsOf(pair.Target));
+      continue;
+    }
+    // The two triangles at one edge.
+    ASSERT_EQ(reading.Diagnostics.size(), 1u);
+    EXPECT_EQ(reading.Diagnostics[0].Ids.size(), 2u);
+    ExpectRefused(reading, { { Kind::NonOrientable, Where::Source, reading.Diagnostics[0].Ids } },
+      Remedy::CutOpen);
+  }
+}
+
+// --- Orientation ---------------------------------------------------------------------------------
+
+TEST(MeshValidation, FlippedTriangles)
+{
+  // Cells 30 and 31 share point 24. Moving it across the edge from 18 to 23 flips only cell 31.
+  const MeshPair pair = MakePlanarPair(4, 31, 0.0);
+  MovePoint(pair.Target, 24, { 2.9, 3.5, 0.0 });
+  const auto mirrored = Moved(pair.Target, [](const Point& p) -> Point {
+    return { -p[0], p[1], p[2] };
+  });
+  for (const MeshPair& one : { pair, MeshPair{ pair.Target, pair.Source },
+         MeshPair{ pair.Source, mirrored }, MeshPair{ mirrored, pair.Source } })
+  {
+    ExpectRefused(Read(one), { { Kind::Flipped, Where::Pair, { 31 } } }, Remedy::MovePointsOrMask);
+  }
+  // An interior vertex is moved far across the grid.
+  MovePoint(pair.Target, 24, { 4.0, 4.0, 0.0 });
+  MovePoint(pair.Target, 6, { 3.6, 3.7, 0.0 });
+  ExpectRefused(
+    Read(pair), { { Kind::Flipped, Where::Pair, { 10, 11 } } }, Remedy::MovePointsOrMask);
+}
+
+TEST(MeshValidation, AnyWindingIsAccepted)
+{
+  std::vector<Triangle> mixed = GridTriangles(5);
+  std::vector<Triangle> reversed = GridTriangles(5);
+  std::mt19937_64 generator(34);
+  for (std::size_t t = 0; t < mixed.size(); ++t)
+  {
+    std::shuffle(mixed[t].begin(), mixed[t].end(), generator);
+    std::swap(reversed[t][0], reversed[t][2]);
+  }
+  const MeshPair sheets{ MakeSheet(5, 35, 0.3), MakeSheet(5, 36, 0.4) };
+  for (const MeshPair& pair : { MakePlanarPair(5, 34), sheets })
+  {
+    ExpectSameMap(pair, WithTriangles(pair, mixed), 2e-14);
+  }
+  const MeshPair pair = MakePlanarPair(5, 37);
+  ExpectSameMap(pair, { WithTriangles(pair.Source, reversed), pair.Target }, 2e-14);
+}
+
+// --- Overlaps; see also TestBoundarySweep
+// ---------------------------------------------------------
+
+TEST(MeshValidation, Overlaps)
+{
+  // The triangle at the corner is folded over its neighbor in both meshes, so that no triangle is
+  // flipped between them.
+  const MeshPair folded = MakePlanarPair(4, 38, 0.0);
+  MovePoint(folded.Source, 24, { 2.9, 3.5, 0.0 });
+  MovePoint(folded.Target, 24, { 2.9, 3.5, 0.0 });
+  ExpectRefused(Read(folded),
+    { { Kind::Overlapping, Where::Source, { 28, 30, 31 } },
+      { Kind::Overlapping, Where::Target, { 28, 30, 31 } } },
+    Remedy::RepairOrMask);
+
+  // Two single triangles that touch, and that overlap.
+  const MeshPair apart{
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } },
+      { { 0, 1, 2 }, { 3, 4, 5 } }),
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } },
+      { { 0, 1, 2 }, { 3, 4, 5 } })
+  };
+  ExpectAccepted(Read(apart));
+  ExpectRefusedInEachMesh(apart,
+    [](vtkPolyData* mesh) {
+      MovePoint(mesh, 3, { 0.75, 0, 0 });
+    },
+    Kind::Overlapping, { 0, 1 });
+
+  const auto twice =
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 }, { 2, 0, 1 } });
+  ExpectRefused(
+    Read(twice), { { Kind::Overlapping, Where::Triangulation, { 0, 1 } } }, Remedy::RepairOrMask);
+}
+
+TEST(MeshValidation, SurfacesMayPassThroughThemselves)
+{
+  // In space only single triangles are checked.
+  const auto mesh = MakeMesh(
+    { { -1, -1, 0 }, { 1, -1, 0 }, { 0, 1, 0 }, { 0, 0, -1 }, { 0, 0.5, 1 }, { 0, -0.5, 1 } },
+    { { 0, 1, 2 }, { 3, 4, 5 } });
+  ExpectAccepted(Read(mesh, mesh));
+}
+
+// --- Requirements of the coordinate systems ------------------------------------------------------
+
+TEST(MeshValidation, DiscordantTriangles)
+{
+  // The corner of the target is so close to its neighbor on the diagonal that cells 0 and 1 have an
+  // obtuse angle beside a short edge.
+  const MeshPair pair = MakePlanarPair(4, 39, 0.05);
+  MovePoint(pair.Source, 6, { 1.0, 1.0, 0.0 });
+  MovePoint(pair.Target, 6, { 1.0, 1.0, 0.0 });
+  MovePoint(pair.Target, 0, { 0.8, 0.8, 0.0 });
+  homeomorphism::HomeomorphismOptions options;
+  options.System = homeomorphism::CoordinateSystem::Contour;
+  const std::vector<Defect> inTarget{ { Kind::Discordant, Where::Target, { 0, 1 } } };
+  ExpectRefused(Read(pair, options), inTarget, Remedy::UseOtherSystem);
+  ExpectRefused(Read(pair.Target, pair.Source, options),
+    { { Kind::Discordant, Where::Source, { 0, 1 } } }, Remedy::UseOtherSystem);
+  ExpectRefused(Read(pair.Target, nullptr, options),
+    { { Kind::Discordant, Where::Triangulation, { 0, 1 } } }, Remedy::UseOtherSystem);
+
+  options.DiscordantByLinear = true;
+  const Reading byLinear = Read(pair, options);
+  EXPECT_TRUE(byLinear.Map);
+  EXPECT_EQ(byLinear.Defects(), inTarget);
+  EXPECT_EQ(byLinear.Diagnostics[0].Result, Outcome::MappedByLinear);
+
+  options.Center = homeomorphism::CenterPoint::Incenter;
+  ExpectAccepted(Read(pair, options));
+  options.System = homeomorphism::CoordinateSystem::Smooth;
+  ExpectAccepted(Read(pair, options));
+}
+
+TEST(MeshValidation, DiscordantAtTheLimit)
+{
+  // a^2 = b^2 + 3 c^2 exactly, with the long edge from (0, 0) to (6, 0) and the apex at (x, y): 36
+  // = (6 - x)^2 + y^2 + 3 (x^2 + y^2) where x^2 + y^2 = 3 x, as at (1.5, 1.5).
+  homeomorphism::HomeomorphismOptions options;
+  options.System = homeomorphism::CoordinateSystem::Contour;
+  for (const double y : { std::nextafter(1.5, 0.0), 1.5, std::nextafter(1.5, 2.0) })
+  {
+    for (const Triangle& corners :
+      { Triangle{ 0, 1, 2 }, Triangle{ 2, 0, 1 }, Triangle{ 1, 2, 0 } })
+    {
+      const auto mesh = MakeMesh({ { 0, 0, 0 }, { 6, 0, 0 }, { 1.5, y, 0 } }, { corners });
+      EXPECT_EQ(Read(mesh, nullptr, options).Map != nullptr, y > 1.5);
+    }
+  }
+}
+
+TEST(MeshValidation, NearlyPlanarMeshesAreNamed)
+{
+  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 0, 2, 3 } };
+  const auto flat = MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1.5, 0 } }, triangles);
+  const std::vector<Point> probes{ { 0.3, 0.2, 0 }, { 0.6, 0.9, 0 } };
+  for (const double noise : { 1e-9, 1e-12, 1e-7 })
+  {
+    const auto noisy =
+      MakeMesh({ { 0, 0, noise }, { 1, 0, -noise }, { 1, 1, noise }, { 0, 1, 0 } }, triangles);
+    const Reading reading = Read(noisy, flat);
+    EXPECT_TRUE(reading.Map);
+    ASSERT_EQ(
+      reading.Defects(), (std::vector<Defect>{ { Kind::NearlyPlanar, Where::Source, {} } }));
+    const MeshDiagnostic& found = reading.Diagnostics[0];
+    EXPECT_EQ(found.Result, Outcome::Accepted);
+    EXPECT_NEAR(found.Size, 2.0 * noise, 1e-15);
+    EXPECT_LT(found.Tolerance, 100.0 * noise);
+    // The tolerance that is named finds the points of the plane.
+    MapOptions options;
+    EXPECT_EQ(MapPoints({ noisy, flat }, probes, options).Triangles, (Ids{ -1, -1 }));
+    options.Tolerance = found.Tolerance;
+    EXPECT_EQ(MapPoints({ noisy, flat }, probes, options).Triangles, (Ids{ 0, 1 }));
+  }
+  ExpectAccepted(Read(flat, flat));
+  const auto bent = MakeMesh({ { 0, 0, 0 }, { 1, 0, 1e-3 }, { 1, 1, 0 }, { 0, 1, 0 } }, triangles);
+  ExpectAccepted(Read(bent, bent));
+}
+
+// --- Blanked cells -------------------------------------------------------------------------------
+
+/// Exactly these triangles are masked.
+void ExpectHoles(const MeshPair& pair, const Ids& holes)
+{
+  const Reading reading = Read(pair);
+  ExpectAccepted(reading);
+  Ids masked;
+  const auto& topology = reading.Map->GetPair().GetTriangulation();
+  for (homeomorphism::TriangleIndex t = 0; t < topology.GetNumberOfTriangles(); ++t)
+  {
+    if (topology.IsMasked(t))
+    {
+      masked.push_back(t);
+    }
+  }
+  EXPECT_EQ(masked, holes);
+}
+
+TEST(MeshValidation, HiddenCellsAndPointsAreHoles)
+{
+  using Attributes = vtkDataSetAttributes;
+  // The array covers all cells; vertices and lines, which come first, may differ.
+  for (const auto& cells : std::vector<std::array<int, 4>>{
+         { 0, 0, 0, 0 }, { 3, 2, 3, 2 }, { 0, 0, 4, 1 }, { 4, 3, 0, 0 }, { 0, 2, 0, 0 } })
+  {
+    for (const bool inSource : { true, false })
+    {
+      const MeshPair pair = MakePlanarPair(4, 45);
+      AddVerticesAndLines(pair.Source, cells[0], cells[1]);
+      AddVerticesAndLines(pair.Target, cells[2], cells[3]);
+      vtkPolyData* mesh = inSource ? pair.Source : pair.Target;
+      const vtkIdType first = mesh->GetNumberOfCells() - 32;
+      mesh->GetCellData()->AddArray(
+        MakeGhosts(32 + first, { first + 3, first + 17, first + 31 }, Attributes::HIDDENCELL));
+      ExpectHoles(pair, { 3, 17, 31 });
+      mesh->GetCellData()->AddArray(
+        MakeGhosts(32 + first, { first + 3 }, Attributes::DUPLICATECELL));
+      ExpectHoles(pair, {});
+      mesh->GetPointData()->AddArray(MakeGhosts(25, { 0, 24 }, Attributes::HIDDENPOINT));
+      ExpectHoles(pair, { 0, 1, 30, 31 });
+      mesh->GetPointData()->AddArray(MakeGhosts(25, { 3 }, Attributes::DUPLICATEPOINT));
+      ExpectHoles(pair, {});
+      // Arrays of another length hide nothing.
+      mesh->GetCellData()->AddArray(MakeGhosts(2, { 1 }, Attributes::HIDDENCELL));
+      mesh->GetPointData()->AddArray(MakeGhosts(3, { 1 }, Attributes::HIDDENPOINT));
+      ExpectHoles(pair, {});
+    }
+  }
+}
+
+TEST(MeshValidation, HiddenDefectsAreIgnored)
+{
+  const MeshPair pair = MakePlanarPair(4, 48, 0.0);
+  MovePoint(pair.Source, 0, { NotANumber, 0.0, 7.0 });
+  MovePoint(pair.Target, 24, { 3.0, 3.0, -1e5 });
+  pair.Source->GetCellData()->AddArray(MakeGhosts(32, { 0, 1 }, vtkDataSetAttributes::HIDDENCELL));
+  pair.Target->GetPointData()->AddArray(MakeGhosts(25, { 24 }, vtkDataSetAttributes::HIDDENPOINT));
+  ExpectHoles(pair, { 0, 1, 30, 31 });
+  // Nor do they make a plane a surface.
+  EXPECT_TRUE(Read(pair).Map->GetPair().GetGeometry(homeomorphism::Domain::Target).IsColumnar());
+}
+
+TEST(MeshValidation, EmptyMeshesHaveNoPointInside)
+{
+  const auto points = MakeMesh(GridPoints(2, 0, 0.0), {});
+  for (const auto& mesh : { points, vtkSmartPointer<vtkPolyData>::New() })
+  {
+    ExpectAccepted(Read(mesh, mesh));
+    ExpectAccepted(Read(mesh));
+    const MappedPoints mapped = MapPoints({ mesh, mesh }, { { 0, 0, 0 }, { 1, 1, 0 } });
+    EXPECT_EQ(mapped.Error + mapped.Warning, "");
+    EXPECT_EQ(mapped.Triangles, (Ids{ -1, -1 }));
+    EXPECT_EQ(mapped.Images, (std::vector<Point>{ { 0, 0, 0 }, { 1, 1, 0 } }));
+  }
+}
+
+} // namespace

@@ -1,0 +1,653 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Exactly the points of the closed domain are found, and the result depends on the point alone: not
+// on the hint, the order or the size of the coordinates.
+
+#include "Fixtures/FilterRuns.h"
+
+#include "Mesh/Homeomorphism.h"
+
+#include <numeric>
+
+namespace
+{
+
+using namespace fixtures;
+using homeomorphism::Domain;
+using homeomorphism::Homeomorphism;
+using homeomorphism::MeshGeometry;
+using homeomorphism::SurfacePoint;
+using homeomorphism::TriangleIndex;
+
+std::shared_ptr<const Homeomorphism> Make(const MeshPair& pair)
+{
+  homeomorphism::MeshDiagnostics problems;
+  homeomorphism::HomeomorphismOptions options;
+  options.System = homeomorphism::CoordinateSystem::Linear;
+  auto map = Homeomorphism::Make(pair.Source, pair.Target, options, problems);
+  EXPECT_TRUE(map && problems.empty());
+  return map;
+}
+
+SurfacePoint Locate(
+  const Homeomorphism& map, const Point& point, TriangleIndex hint = -1, double tolerance = 0.0)
+{
+  return map.Locate(Domain::Source, point.data(),
+    map.GetAbsoluteTolerance(Domain::Source, tolerance, 0.5 * Ulp), hint);
+}
+
+/// The surface point in coordinates of the input.
+Point PositionOf(const Homeomorphism& map, const SurfacePoint& location)
+{
+  const MeshGeometry& geometry = map.GetPair().GetGeometry(Domain::Source);
+  Point point;
+  geometry.FromNormalized(geometry.FromFrame(location.Triangle, location.Point), point.data());
+  return point;
+}
+
+void ExpectSameLocation(const SurfacePoint& a, const SurfacePoint& b)
+{
+  ASSERT_EQ(a.Triangle, b.Triangle);
+  ASSERT_EQ(a.Corner, b.Corner);
+  ASSERT_EQ(a.Point.InPlane.x, b.Point.InPlane.x);
+  ASSERT_EQ(a.Point.InPlane.y, b.Point.InPlane.y);
+  ASSERT_EQ(a.Point.Offset, b.Point.Offset);
+}
+
+// --- In the plane, compared with exact arithmetic ------------------------------------------------
+
+struct GridPoint
+{
+  std::int64_t X;
+  std::int64_t Y;
+};
+
+int Turn(const GridPoint& a, const GridPoint& b, const GridPoint& c)
+{
+  const std::int64_t area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
+  return area > 0 ? 1 : (area < 0 ? -1 : 0);
+}
+
+/// A mesh whose points lie on the integer grid, with holes and concave boundary.
+struct GridMesh
+{
+  std::vector<GridPoint> Points;
+  std::vector<Triangle> Triangles;
+
+  GridMesh(int squares, int size, int jitter, double holes, std::uint64_t seed)
+  {
+    std::mt19937_64 generator(seed);
+    std::uniform_int_distribution<int> offset(-jitter, jitter);
+    for (int j = 0; j <= squares; ++j)
+    {
+      for (int i = 0; i <= squares; ++i)
+      {
+        const bool inside = i > 0 && j > 0 && i < squares && j < squares;
+        const int dx = offset(generator);
+        const int dy = offset(generator);
+        this->Points.push_back({ i * size + (inside ? dx : 0), j * size + (inside ? dy : 0) });
+      }
+    }
+    std::uniform_real_distribution<double> chance(0.0, 1.0);
+    for (Triangle t : GridTriangles(squares))
+    {
+      if (chance(generator) >= holes)
+      {
+        std::shuffle(t.begin(), t.end(), generator);
+        this->Triangles.push_back(t);
+      }
+    }
+    std::shuffle(this->Triangles.begin(), this->Triangles.end(), generator);
+  }
+
+  /// The triangle with the lowest number that contains the point, including its boundary; -1 if
+  /// there is none.
+  TriangleIndex Find(const GridPoint& p) const
+  {
+    for (std::size_t t = 0; t < this->Triangles.size(); ++t)
+    {
+      int sides[3];
+      for (int k = 0; k < 3; ++k)
+      {
+        sides[k] = Turn(
+          this->Points[this->Triangles[t][k]], this->Points[this->Triangles[t][(k + 1) % 3]], p);
+      }
+      if (*std::min_element(sides, sides + 3) >= 0 || *std::max_element(sides, sides + 3) <= 0)
+      {
+        return static_cast<TriangleIndex>(t);
+      }
+    }
+    return -1;
+  }
+
+  int CornerAt(TriangleIndex triangle, const GridPoint& p) const
+  {
+    for (int k = 0; triangle >= 0 && k < 3; ++k)
+    {
+      const GridPoint& corner = this->Points[this->Triangles[triangle][k]];
+      if (corner.X == p.X && corner.Y == p.Y)
+      {
+        return k;
+      }
+    }
+    return -1;
+  }
+
+  /// The mesh with the given grid spacing, in the plane of two of the axes.
+  vtkSmartPointer<vtkPolyData> ToMesh(double unit, int normalAxis = 2) const
+  {
+    std::vector<Point> points;
+    for (const GridPoint& p : this->Points)
+    {
+      points.push_back(MeshPoint(p, unit, normalAxis));
+    }
+    return MakeMesh(points, this->Triangles);
+  }
+
+  static Point MeshPoint(const GridPoint& p, double unit, int normalAxis)
+  {
+    Point point;
+    point[(normalAxis + 1) % 3] = static_cast<double>(p.X) * unit;
+    point[(normalAxis + 2) % 3] = static_cast<double>(p.Y) * unit;
+    point[normalAxis] = 0.0;
+    return point;
+  }
+
+  /// Vertices, points on edges, points of a line beyond an edge, and points anywhere.
+  std::vector<GridPoint> Queries(int anywhere, std::uint64_t seed) const
+  {
+    std::mt19937_64 generator(seed);
+    std::vector<GridPoint> queries = this->Points;
+    std::int64_t size = 0;
+    for (const GridPoint& p : this->Points)
+    {
+      size = std::max({ size, p.X, p.Y });
+    }
+    for (const Triangle& t : this->Triangles)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        const GridPoint& a = this->Points[t[k]];
+        const GridPoint& b = this->Points[t[(k + 1) % 3]];
+        for (const std::int64_t quarter : { -1, 1, 2, 3, 5 })
+        {
+          // Points of the grid, because all coordinates are multiples of four.
+          queries.push_back({ a.X + (b.X - a.X) / 4 * quarter, a.Y + (b.Y - a.Y) / 4 * quarter });
+        }
+      }
+    }
+    std::uniform_int_distribution<std::int64_t> coordinate(-size / 8, size + size / 8);
+    for (int n = 0; n < anywhere; ++n)
+    {
+      queries.push_back({ coordinate(generator), coordinate(generator) });
+    }
+    return queries;
+  }
+};
+
+/// A mesh with coordinates that are multiples of four.
+GridMesh FourfoldMesh(int squares, double holes, std::uint64_t seed)
+{
+  GridMesh mesh(squares, 16, 4, holes, seed);
+  for (GridPoint& p : mesh.Points)
+  {
+    p = { 4 * p.X, 4 * p.Y };
+  }
+  return mesh;
+}
+
+TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
+{
+  int found = 0;
+  int outside = 0;
+  for (int n = 0; n < 120; ++n)
+  {
+    const GridMesh grid = FourfoldMesh(1 + n % 5, n % 3 == 0 ? 0.0 : 0.3, n);
+    // Multiples of the least positive number, too, which are exact.
+    const double unit =
+      n % 10 == 9 ? std::numeric_limits<double>::denorm_min() : std::ldexp(1.0, n % 7 - 3);
+    const auto mesh = grid.ToMesh(unit, n % 3);
+    const auto map = Make({ mesh, mesh });
+    for (const GridPoint& query : grid.Queries(200, n))
+    {
+      const TriangleIndex expected = grid.Find(query);
+      const Point point = GridMesh::MeshPoint(query, unit, n % 3);
+      const SurfacePoint location = Locate(*map, point);
+      ASSERT_EQ(expected, location.Triangle) << n << ": " << query.X << " " << query.Y;
+      ASSERT_EQ(grid.CornerAt(expected, query), location.Corner);
+      ++(expected >= 0 ? found : outside);
+      for (std::size_t hint = 0; hint < grid.Triangles.size(); ++hint)
+      {
+        ExpectSameLocation(location, Locate(*map, point, static_cast<TriangleIndex>(hint)));
+      }
+      if (expected >= 0)
+      {
+        ASSERT_LE(Distance(point, PositionOf(*map, location)), 2e-13 * unit);
+      }
+    }
+  }
+  EXPECT_GT(found, 10000);
+  EXPECT_GT(outside, 5000);
+}
+
+TEST(PointLocation, AgreesWithExactArithmeticInALargerMesh)
+{
+  const GridMesh grid = FourfoldMesh(40, 0.1, 1);
+  const auto map = Make({ grid.ToMesh(0.25), nullptr });
+  TriangleIndex hint = -1;
+  for (const GridPoint& query : grid.Queries(3000, 2))
+  {
+    const SurfacePoint location = Locate(*map, GridMesh::MeshPoint(query, 0.25, 2), hint);
+    ASSERT_EQ(grid.Find(query), location.Triangle);
+    hint = location.Triangle;
+  }
+}
+
+TEST(PointLocation, NoPointOfASquareFallsBetweenTriangles)
+{
+  const auto mesh = MakePlanarPair(30, 3).Source;
+  const auto map = Make({ mesh, nullptr });
+  Random random(3);
+  TriangleIndex hint = -1;
+  for (int n = 0; n < 100000; ++n)
+  {
+    Point p{ random.Uniform(0.0, 30.0), random.Uniform(0.0, 30.0), 0.0 };
+    if (n % 10 == 0)
+    {
+      p[n / 10 % 2] = n / 20 % 2 ? 0.0 : 30.0;
+    }
+    hint = Locate(*map, p, hint).Triangle;
+    ASSERT_GE(hint, 0) << p[0] << " " << p[1];
+  }
+  // Points of edges lie on either side by rounding.
+  for (const Triangle& t : GridTriangles(30))
+  {
+    for (const double w : { 0.5, 0.1, 0.37, 1e-3, 1e-15 })
+    {
+      for (const Point& weights :
+        { Point{ 1.0 - w, w, 0.0 }, { 0.0, 1.0 - w, w }, { w, 0.0, 1.0 - w } })
+      {
+        ASSERT_GE(Locate(*map, PointIn(mesh, t, weights)).Triangle, 0);
+      }
+    }
+  }
+}
+
+TEST(PointLocation, CornersAreFoundAndMappedExactly)
+{
+  const MeshPair planar = MakePlanarPair(12, 5);
+  for (const MeshPair& pair : { planar, MakeClosedPair(4, 5),
+         MeshPair{ Tilted(planar.Source, Tilt(), { 0.1, 0.2, 0.3 }), planar.Target } })
+  {
+    for (const MeshPair& one : { pair, MeshPair{ pair.Target, pair.Source } })
+    {
+      const auto map = Make(one);
+      for (vtkIdType i = 0; i < one.Source->GetNumberOfPoints(); ++i)
+      {
+        const SurfacePoint location = Locate(*map, PointOf(one.Source, i));
+        ASSERT_GE(location.Corner, 0);
+        Point image;
+        map->MapPoint(Domain::Source, location, image.data());
+        ASSERT_EQ(PointOf(one.Target, i), image);
+      }
+    }
+  }
+}
+
+// --- The boundary of the domain ------------------------------------------------------------------
+
+TEST(PointLocation, PointsOutsideByRoundingAreFound)
+{
+  // The largest coordinate is 8, with an ulp of 1.8e-15.
+  const auto mesh = RegularGrid(8);
+  const auto map = Make({ mesh, mesh });
+  const double ulp = 8.0 * Ulp;
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    for (const bool high : { false, true })
+    {
+      for (const double along : { 0.0, 0.3, 3.0, 3.7, 8.0 })
+      {
+        const auto at = [&](double distance) {
+          Point p{};
+          p[axis] = high ? 8.0 + distance : -distance;
+          p[1 - axis] = along;
+          return p;
+        };
+        for (const double near : { 0.0, 1e-300, ulp, 2.0 * ulp, 3.0 * ulp })
+        {
+          const SurfacePoint location = Locate(*map, at(near));
+          ASSERT_GE(location.Triangle, 0) << near;
+          // The result lies on the boundary, not outside.
+          Point image;
+          map->MapPoint(Domain::Source, location, image.data());
+          EXPECT_LE(Distance(image, at(0.0)), 2.0 * ulp);
+        }
+        for (const double far : { 16.0 * ulp, 1e-12, 1e-6, 0.1, 1e10, 1e300 })
+        {
+          EXPECT_EQ(-1, Locate(*map, at(far)).Triangle) << far;
+        }
+      }
+    }
+  }
+}
+
+TEST(PointLocation, FloatPointsHaveFloatPrecision)
+{
+  // The precision of the points counts, independently of that of the mesh.
+  const auto mesh = RegularGrid(8);
+  for (const int type : { VTK_FLOAT, VTK_DOUBLE })
+  {
+    const auto filter = MakeFilter(
+      Smooth, { mesh, mesh }, MakeCloud({ { -1e-6, 3.3, 0.0 }, { -1e-5, 3.3, 0.0 } }, type));
+    filter->Update();
+    EXPECT_EQ(type == VTK_FLOAT ? 1 : 2, filter->GetNumberOfOutsidePoints());
+  }
+}
+
+TEST(PointLocation, NonFiniteAndHugeCoordinatesAreOutsideForEveryHint)
+{
+  const MeshPair planes = MakePlanarPair(4, 6);
+  for (const MeshPair& pair : { planes, MeshPair{ MakeSheet(4, 6, 0.3), MakeSheet(4, 7, 0.3) },
+         MeshPair{ Tilted(planes.Source, Tilt(), {}), planes.Target } })
+  {
+    const auto map = Make(pair);
+    const Point sound = PointOf(pair.Source, 6);
+    ASSERT_GE(Locate(*map, sound).Triangle, 0);
+    for (const double bad : { NotANumber, Infinity, -Infinity })
+    {
+      for (int axes = 1; axes < 8; ++axes)
+      {
+        Point p = sound;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          p[axis] = axes & (1 << axis) ? bad : p[axis];
+        }
+        for (const double tolerance : { 0.0, 0.1, 1e300 })
+        {
+          for (const TriangleIndex hint : { -1, 0, 9 })
+          {
+            EXPECT_EQ(-1, Locate(*map, p, hint, tolerance).Triangle);
+          }
+        }
+      }
+    }
+  }
+  // Products of such coordinates overflow.
+  for (const double unit : { 1.0, 1e-300, 1e300 })
+  {
+    const auto map = Make({ Resized(MakePlanarPair(3, 8).Source, unit), nullptr });
+    for (const double huge : { 1e154, 1e160, 1e200, 1e307, 1.7e308 })
+    {
+      for (const Point& p :
+        { Point{ huge, huge, 0 }, { -huge, huge, 0 }, { huge, 0, 0 }, { 0, -huge, 0 },
+          { huge, 0.5 * huge, 0 }, { unit, huge, 0 }, { -huge, 0.3 * unit, 0 } })
+      {
+        for (TriangleIndex hint = -1; hint < 18 && huge >= 1e3 * unit; ++hint)
+        {
+          ASSERT_EQ(-1, Locate(*map, p, hint).Triangle) << unit << " " << p[0] << " " << p[1];
+        }
+      }
+    }
+  }
+}
+
+TEST(PointLocation, AHugePointAfterOneInsideIsOutside)
+{
+  // The same through the filter, which uses the triangle of each point as the hint for the next.
+  const MeshPair pair = MakePlanarPair(3, 9);
+  std::vector<Point> points;
+  for (const double huge : { 1e20, 1e155, 1e160, 1e300 })
+  {
+    for (const Triangle& t : GridTriangles(3))
+    {
+      for (const Point& far : { Point{ huge, huge, 0 }, { -huge, huge, 0 }, { 0, -huge, 0 } })
+      {
+        points.push_back(CentroidOf(pair.Source, t));
+        points.push_back(far);
+      }
+    }
+  }
+  const MappedPoints mapped = MapPoints(pair, points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    ASSERT_EQ(i % 2 == 0, mapped.IsInside(i)) << points[i][0] << " " << points[i][1];
+  }
+}
+
+// --- Tolerance and nearest point, compared with all triangles ------------------------------------
+
+using Real = long double;
+using RealPoint = std::array<Real, 3>;
+
+RealPoint Minus(const RealPoint& a, const RealPoint& b)
+{
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+}
+
+Real Dot(const RealPoint& a, const RealPoint& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+RealPoint Widen(const Point& p)
+{
+  return { p[0], p[1], p[2] };
+}
+
+RealPoint Cross(const RealPoint& a, const RealPoint& b)
+{
+  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
+}
+
+Real SquaredDistanceToSegment(const RealPoint& p, const RealPoint& a, const RealPoint& b)
+{
+  const RealPoint ab = Minus(b, a);
+  Real t = Dot(Minus(p, a), ab) / Dot(ab, ab);
+  t = std::max<Real>(0, std::min<Real>(1, t));
+  const RealPoint d = Minus(p, { a[0] + t * ab[0], a[1] + t * ab[1], a[2] + t * ab[2] });
+  return Dot(d, d);
+}
+
+Real DistanceToTriangle(const Point& point, const std::array<Point, 3>& corners)
+{
+  const RealPoint p = Widen(point);
+  const RealPoint a = Widen(corners[0]);
+  const RealPoint b = Widen(corners[1]);
+  const RealPoint c = Widen(corners[2]);
+  const RealPoint u = Minus(b, a);
+  const RealPoint v = Minus(c, a);
+  const RealPoint d = Minus(p, a);
+  // Weights of the foot in the plane of the triangle, as ratios of areas, which are accurate for
+  // needles too.
+  const RealPoint normal = Cross(u, v);
+  const Real s = Dot(normal, Cross(d, v)) / Dot(normal, normal);
+  const Real t = Dot(normal, Cross(u, d)) / Dot(normal, normal);
+  if (s >= 0 && t >= 0 && s + t <= 1)
+  {
+    const RealPoint off{ d[0] - s * u[0] - t * v[0], d[1] - s * u[1] - t * v[1],
+      d[2] - s * u[2] - t * v[2] };
+    return std::sqrt(Dot(off, off));
+  }
+  return std::sqrt(std::min({ SquaredDistanceToSegment(p, a, b), SquaredDistanceToSegment(p, b, c),
+    SquaredDistanceToSegment(p, c, a) }));
+}
+
+/// Queries near and far from a mesh. A point is found if and only if some triangle is within the
+/// tolerance; the surface point is on the nearest triangle, at the correct distance.
+void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queries,
+  std::uint64_t seed, int leastFound, int leastOutside)
+{
+  const auto map = Make({ mesh, nullptr });
+  const MeshGeometry& geometry = map->GetPair().GetGeometry(Domain::Source);
+  const bool planar = geometry.IsPlanar();
+  const std::vector<Point> points = PointsOf(mesh);
+  const std::vector<Triangle> triangles = TrianglesOf(mesh);
+  const double allowed = tolerance * geometry.GetDiagonal() / geometry.GetScale();
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> offset(0.0, spread);
+  std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
+  int found = 0;
+  int outside = 0;
+  double worst = 0.0;
+  TriangleIndex hint = -1;
+  for (int n = 0; n < queries; ++n)
+  {
+    Point query = points[any(generator)];
+    for (int axis = 0; axis < (planar ? 2 : 3); ++axis)
+    {
+      query[axis] += offset(generator);
+    }
+    std::vector<Real> distances;
+    for (const Triangle& t : triangles)
+    {
+      distances.push_back(DistanceToTriangle(query, { points[t[0]], points[t[1]], points[t[2]] }));
+    }
+    const Real least = *std::min_element(distances.begin(), distances.end());
+    if (std::abs(least - static_cast<Real>(allowed)) < 1e-12 * allowed)
+    {
+      continue;
+    }
+    const SurfacePoint location = Locate(*map, query, hint, tolerance);
+    ExpectSameLocation(location, Locate(*map, query, -1, tolerance));
+    ASSERT_EQ(least <= allowed, location.Triangle >= 0) << static_cast<double>(least);
+    hint = location.Triangle;
+    if (location.Triangle < 0)
+    {
+      ++outside;
+      continue;
+    }
+    ++found;
+    worst = std::max(worst, static_cast<double>(distances[location.Triangle] - least));
+    // The surface point without its offset lies on the triangle, at that distance.
+    SurfacePoint foot = location;
+    foot.Point.Offset = 0.0;
+    const Point surfacePoint = PositionOf(*map, foot);
+    const Triangle& t = triangles[location.Triangle];
+    const double off = static_cast<double>(
+      DistanceToTriangle(surfacePoint, { points[t[0]], points[t[1]], points[t[2]] }));
+    worst = std::max(
+      { worst, off, std::abs(Distance(surfacePoint, query) - static_cast<double>(least)) });
+  }
+  EXPECT_GE(found, leastFound);
+  EXPECT_GE(outside, leastOutside);
+  EXPECT_LT(worst, 1e-14 * geometry.GetLargestCoordinate() / geometry.GetScale());
+}
+
+TEST(PointLocation, ToleranceFindsTheNearestPoint)
+{
+  const GridMesh grid(8, 16, 4, 0.3, 10);
+  ExpectNearest(grid.ToMesh(1.0 / 16.0), 0.01, 0.8, 3000, 10, 1500, 200);
+  ExpectNearest(grid.ToMesh(1.0 / 16.0), 0.001, 0.8, 3000, 11, 1000, 300);
+  const auto needles = Moved(MakePlanarPair(8, 13, 0.2).Source, [](const Point& p) -> Point {
+    return { p[0], 1e-4 * p[1], 0.0 };
+  });
+  ExpectNearest(needles, 0.01, 0.2, 2000, 13, 400, 200);
+  ExpectNearest(MakeSheet(8, 14, 0.5), 0.01, 0.2, 2000, 14, 500, 500);
+  ExpectNearest(MakeClosedPair(3, 15).Target, 0.02, 0.1, 2000, 15, 500, 500);
+  // A tolerance so large that every point is inside.
+  ExpectNearest(grid.ToMesh(1.0 / 16.0), 1e3, 50.0, 1000, 12, 990, 0);
+  ExpectNearest(MakeClosedPair(2, 16).Source, 1e3, 3.0, 1000, 16, 990, 0);
+  for (const auto& mesh : { MakePlanarPair(4, 17).Source, MakeSheet(4, 17, 0.3) })
+  {
+    const auto map = Make({ mesh, nullptr });
+    for (const double far : { 10.0, 1e10, 1e150 })
+    {
+      EXPECT_GE(Locate(*map, { far, -far, 0.0 }, -1, VTK_DOUBLE_MAX).Triangle, 0) << far;
+    }
+  }
+}
+
+// --- Surfaces ------------------------------------------------------------------------------------
+
+TEST(PointLocation, PointsOfSurfaces)
+{
+  for (const auto& mesh : { MakeSheet(10, 20, 0.5), MakeClosedPair(3, 22).Source })
+  {
+    const auto map = Make({ mesh, nullptr });
+    const MeshGeometry& geometry = map->GetPair().GetGeometry(Domain::Source);
+    const double largest = LargestCoordinate(mesh);
+    const std::vector<Triangle> triangles = TrianglesOf(mesh);
+    for (TriangleIndex t = 0; t < static_cast<TriangleIndex>(triangles.size()); ++t)
+    {
+      const std::array<Point, 3> c = CornersOf(mesh, t);
+      const Point normal = Unit(fixtures::Cross(c[1] - c[0], c[2] - c[0]));
+      for (const Point& w : { Point{ 0.3, 0.3, 0.4 }, { 0.9, 0.06, 0.04 }, { 0.002, 0.498, 0.5 },
+             { 1e-7, 0.7, 0.3 - 1e-7 } })
+      {
+        const Point p = PointIn(mesh, triangles[t], w);
+        const SurfacePoint location = Locate(*map, p);
+        ASSERT_EQ(t, location.Triangle);
+        ExpectSameLocation(location, Locate(*map, p, 0));
+        ExpectSameLocation(location, Locate(*map, p, t));
+        const auto found = geometry.GetShape(t).ToBarycentric(location.Point.InPlane);
+        ASSERT_LT(Distance(Point{ found[0], found[1], found[2] }, w), 1e-13);
+        // Points off the surface by more than rounding are outside.
+        for (const double distance : { -1e-6, -1e-12, -4e-15, 4e-15, 1e-12, 1e-6 })
+        {
+          const Point off = p + distance * largest * normal;
+          ASSERT_EQ(-1, Locate(*map, off).Triangle) << distance;
+          if (std::abs(distance) < 1e-10)
+          {
+            ASSERT_EQ(t, Locate(*map, off, -1, 1e-10).Triangle);
+          }
+        }
+      }
+      for (int k = 0; k < 3; ++k)
+      {
+        // On an edge, one of its two triangles.
+        const Point p = 0.6 * c[(k + 1) % 3] + 0.4 * c[(k + 2) % 3];
+        const TriangleIndex found = Locate(*map, p).Triangle;
+        EXPECT_TRUE(
+          found == t || found == map->GetPair().GetTriangulation().GetTwin(t, k).Triangle);
+      }
+    }
+  }
+}
+
+TEST(PointLocation, HeightsCountIfOneOfTheMeshesIsASurface)
+{
+  const auto flat = MakePlanarPair(4, 24).Source;
+  const auto surface = Make({ flat, MakeSheet(4, 25, 0.3) });
+  const auto planes = Make({ flat, MakePlanarPair(4, 26).Source });
+  for (const double height : { 0.0, 1e-9, -1.0, 1e9 })
+  {
+    EXPECT_EQ(height == 0.0, Locate(*surface, { 1.3, 2.2, height }).Triangle >= 0);
+    EXPECT_GE(Locate(*planes, { 1.3, 2.2, height }).Triangle, 0);
+  }
+}
+
+TEST(PointLocation, TheOrderOfPointsDoesNotMatter)
+{
+  for (const MeshPair& pair : { MakePlanarPair(15, 27), MakeClosedPair(3, 27) })
+  {
+    const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
+    std::vector<Point> points = SamplePoints(pair.Source, triangles, 20, 27);
+    // Also points on edges and at corners, which belong to several triangles.
+    for (const Triangle& t : triangles)
+    {
+      points.push_back(PointOf(pair.Source, t[0]));
+      points.push_back(PointIn(pair.Source, t, { 0.5, 0.5, 0.0 }));
+    }
+    MapOptions options;
+    options.Tolerance = 1e-12;
+    const MappedPoints straight = MapPoints(pair, points, options);
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), std::mt19937_64(27));
+    std::vector<Point> shuffled;
+    for (const std::size_t i : order)
+    {
+      shuffled.push_back(points[i]);
+    }
+    const MappedPoints mixed = MapPoints(pair, shuffled, options);
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      ASSERT_EQ(straight.Triangles[order[i]], mixed.Triangles[i]);
+      ASSERT_EQ(straight.Images[order[i]], mixed.Images[i]);
+    }
+  }
+}
+
+} // namespace

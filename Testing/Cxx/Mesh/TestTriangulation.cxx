@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Adjacency, orientability and unfolding of neighbors.
+
+#include "Fixtures/FilterRuns.h"
+
+#include "Mesh/ChartedTriangulation.h"
+#include "Mesh/MeshGeometry.h"
+#include "Mesh/Triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+#include <utility>
+
+namespace
+{
+
+using namespace homeomorphism;
+using namespace fixtures;
+
+std::vector<Triangulation::Corners> Narrow(const std::vector<Triangle>& triangles)
+{
+  std::vector<Triangulation::Corners> narrow;
+  for (const Triangle& t : triangles)
+  {
+    narrow.push_back({ static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+      static_cast<std::int32_t>(t[2]) });
+  }
+  return narrow;
+}
+
+/// The start and end of an edge in the triangle's cyclic order.
+std::pair<std::int32_t, std::int32_t> EdgeOf(const Triangulation::Corners& corners, int edge)
+{
+  return { corners[(edge + 1) % 3], corners[(edge + 2) % 3] };
+}
+
+//------------------------------------------------------------------------------------------------
+// Adjacency.
+
+/// Compares the adjacency with a map from pairs of points to triangles.
+void ExpectAdjacency(Triangulation& triangulation, vtkIdType numberOfPoints)
+{
+  using Edges = std::vector<std::pair<TriangleIndex, int>>;
+  std::map<std::pair<std::int32_t, std::int32_t>, Edges> edges;
+  const TriangleIndex count = triangulation.GetNumberOfTriangles();
+  for (TriangleIndex t = 0; t < count; ++t)
+  {
+    for (int k = 0; k < 3 && !triangulation.IsMasked(t); ++k)
+    {
+      const auto edge = EdgeOf(triangulation.GetCorners(t), k);
+      edges[std::minmax(edge.first, edge.second)].emplace_back(t, k);
+    }
+  }
+  std::set<TriangleIndex> crowded;
+  for (const auto& edge : edges)
+  {
+    for (std::size_t i = 0; i < edge.second.size() && edge.second.size() > 2; ++i)
+    {
+      crowded.insert(edge.second[i].first);
+    }
+  }
+  ASSERT_EQ(std::vector<TriangleIndex>(crowded.begin(), crowded.end()),
+    triangulation.FindAdjacency(numberOfPoints));
+
+  for (TriangleIndex t = 0; t < count; ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Twin across = triangulation.GetTwin(t, k);
+      const auto edge = EdgeOf(triangulation.GetCorners(t), k);
+      const Edges& sharing = edges[std::minmax(edge.first, edge.second)];
+      if (triangulation.IsMasked(t) || sharing.size() != 2)
+      {
+        ASSERT_EQ(-1, across.Triangle);
+        continue;
+      }
+      const auto& other = sharing[0] == std::make_pair(t, k) ? sharing[1] : sharing[0];
+      ASSERT_EQ(other.first, across.Triangle);
+      ASSERT_EQ(other.second, across.Edge);
+      const auto otherEdge = EdgeOf(triangulation.GetCorners(other.first), other.second);
+      ASSERT_EQ(edge == otherEdge, across.SameDirection);
+    }
+  }
+}
+
+TEST(Triangulation, AdjacencyOfRandomTriangles)
+{
+  std::mt19937_64 generator(1);
+  for (int n = 0; n < 3000; ++n)
+  {
+    const int points = 3 + n % 12;
+    std::uniform_int_distribution<std::int32_t> point(0, points - 1);
+    std::vector<Triangulation::Corners> triangles(n % 25);
+    Triangulation triangulation;
+    for (auto& t : triangles)
+    {
+      do
+      {
+        t = { point(generator), point(generator), point(generator) };
+      } while (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]);
+    }
+    triangulation.SetTriangles(triangles, 0);
+    for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+    {
+      if (n % 3 == 0 && point(generator) == 0)
+      {
+        triangulation.Mask(t);
+      }
+    }
+    ExpectAdjacency(triangulation, points);
+    if (triangulation.GetNumberOfTriangles() > 0)
+    {
+      // Recomputed after more triangles have been masked.
+      triangulation.Mask(0);
+      ExpectAdjacency(triangulation, points);
+    }
+    ASSERT_FALSE(HasFatalFailure()) << n;
+  }
+}
+
+TEST(Triangulation, AdjacencyOfMeshes)
+{
+  std::mt19937_64 generator(2);
+  for (const bool closed : { false, true })
+  {
+    const auto mesh = closed ? MakeClosedPair(4, 2).Source : MakePlanarPair(40, 2).Source;
+    std::vector<Triangulation::Corners> triangles = Narrow(TrianglesOf(mesh));
+    for (Triangulation::Corners& corners : triangles)
+    {
+      std::shuffle(corners.begin(), corners.end(), generator);
+    }
+    std::shuffle(triangles.begin(), triangles.end(), generator);
+    Triangulation triangulation;
+    triangulation.SetTriangles(triangles, 5);
+    ExpectAdjacency(triangulation, mesh->GetNumberOfPoints());
+    EXPECT_EQ(5 + 17, triangulation.GetCellId(17));
+    EXPECT_TRUE(triangulation.FindNonOrientable().empty());
+    int boundary = 0;
+    for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        boundary += triangulation.GetTwin(t, k).Triangle < 0;
+      }
+    }
+    EXPECT_EQ(closed ? 0 : 160, boundary);
+  }
+}
+
+//------------------------------------------------------------------------------------------------
+// Orientability.
+
+/// Whether the triangles can be oriented consistently: no triangle may be connected to its own
+/// reverse through a chain of neighbors. Disjoint sets of (triangle, orientation).
+bool IsOrientable(const Triangulation& triangulation)
+{
+  const TriangleIndex count = triangulation.GetNumberOfTriangles();
+  std::vector<TriangleIndex> parent(2 * count);
+  std::iota(parent.begin(), parent.end(), 0);
+  const std::function<TriangleIndex(TriangleIndex)> root = [&](TriangleIndex i) {
+    return parent[i] == i ? i : parent[i] = root(parent[i]);
+  };
+  for (TriangleIndex t = 0; t < count; ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Twin across = triangulation.GetTwin(t, k);
+      for (int side = 0; side < 2 && across.Triangle >= 0; ++side)
+      {
+        const int otherSide = across.SameDirection ? 1 - side : side;
+        parent[root(2 * t + side)] = root(2 * across.Triangle + otherSide);
+      }
+    }
+  }
+  for (TriangleIndex t = 0; t < count; ++t)
+  {
+    if (root(2 * t) == root(2 * t + 1))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(Triangulation, OrientabilityOfRandomTriangles)
+{
+  std::mt19937_64 generator(3);
+  int oneSided = 0;
+  for (int n = 0; n < 4000; ++n)
+  {
+    const int points = 5 + n % 6;
+    std::uniform_int_distribution<std::int32_t> point(0, points - 1);
+    std::vector<Triangulation::Corners> triangles;
+    Triangulation triangulation;
+    // Grows a surface without non-manifold edges.
+    for (int attempt = 0; attempt < 40; ++attempt)
+    {
+      const Triangulation::Corners t{ point(generator), point(generator), point(generator) };
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+      {
+        continue;
+      }
+      triangles.push_back(t);
+      triangulation.SetTriangles(triangles, 0);
+      if (!triangulation.FindAdjacency(points).empty())
+      {
+        triangles.pop_back();
+      }
+    }
+    triangulation.SetTriangles(triangles, 0);
+    triangulation.FindAdjacency(points);
+    const bool orientable = IsOrientable(triangulation);
+    ASSERT_EQ(orientable, triangulation.FindNonOrientable().empty()) << n;
+    oneSided += !orientable;
+  }
+  EXPECT_GT(oneSided, 200);
+  EXPECT_LT(oneSided, 3800);
+}
+
+TEST(Triangulation, ClosedStrips)
+{
+  // A strip of triangles closed to a ring is non-orientable if the number of points is odd.
+  for (std::int32_t points = 5; points < 30; ++points)
+  {
+    std::vector<Triangulation::Corners> strip;
+    for (std::int32_t i = 0; i < points; ++i)
+    {
+      strip.push_back({ i, (i + 1) % points, (i + 2) % points });
+    }
+    Triangulation triangulation;
+    triangulation.SetTriangles(strip, 0);
+    ASSERT_TRUE(triangulation.FindAdjacency(points).empty());
+    const std::vector<TriangleIndex> found = triangulation.FindNonOrientable();
+    if (points % 2 == 0)
+    {
+      EXPECT_TRUE(found.empty());
+      continue;
+    }
+    // The two triangles at the only edge with inconsistent windings, in ascending order.
+    ASSERT_EQ(2u, found.size());
+    EXPECT_LT(found[0], found[1]);
+    triangulation.Mask(found[0]);
+    triangulation.FindAdjacency(points);
+    EXPECT_TRUE(triangulation.FindNonOrientable().empty());
+  }
+}
+
+//------------------------------------------------------------------------------------------------
+// Unfolding.
+
+TEST(Triangulation, UnfoldedNeighborsKeepTheirLengths)
+{
+  std::mt19937_64 generator(4);
+  double worst = 0.0;
+  int neighborsSeen = 0;
+  for (const std::string name : { "plane", "sheet", "closed", "steep" })
+  {
+    const auto mesh = name == "plane" ? MakePlanarPair(12, 4).Source
+      : name == "closed"              ? MakeClosedPair(3, 4).Target
+                                      : MakeSheet(12, 5, name == "steep" ? 8.0 : 0.5);
+    std::vector<Triangulation::Corners> triangles = Narrow(TrianglesOf(mesh));
+    for (Triangulation::Corners& corners : triangles)
+    {
+      std::shuffle(corners.begin(), corners.end(), generator);
+    }
+    Triangulation triangulation;
+    triangulation.SetTriangles(triangles, 0);
+    triangulation.FindAdjacency(mesh->GetNumberOfPoints());
+    MeshGeometry geometry(mesh->GetPoints(), triangulation);
+    geometry.ComputeFrames(triangulation);
+    EXPECT_EQ(name == "plane", geometry.IsPlanar());
+    const std::vector<Point> points = PointsOf(mesh);
+    const double scale = geometry.GetScale();
+    for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+    {
+      const std::array<Neighbor, 3> neighbors = UnfoldNeighbors(triangulation, geometry, t);
+      for (int k = 0; k < 3; ++k)
+      {
+        const Twin across = triangulation.GetTwin(t, k);
+        ASSERT_EQ(across.Triangle >= 0, neighbors[k].Exists);
+        if (across.Triangle < 0)
+        {
+          continue;
+        }
+        ++neighborsSeen;
+        // Along the edge of this triangle, from its start: the apex of the neighbor is on the other
+        // side.
+        const auto edge = EdgeOf(triangulation.GetCorners(t), k);
+        const std::int32_t apex = triangulation.GetCorners(across.Triangle)[across.Edge];
+        const EdgeView& view = neighbors[k].View;
+        const double length = scale * Distance(points[edge.first], points[edge.second]);
+        const double toStart = scale * Distance(points[edge.first], points[apex]);
+        const double toEnd = scale * Distance(points[edge.second], points[apex]);
+        EXPECT_GT(view.Height, 0.0);
+        const double along = view.Foot * view.Length;
+        worst = std::max({ worst, std::abs(view.Length - length) / length,
+          std::abs(std::hypot(along, view.Height) - toStart) / toStart,
+          std::abs(std::hypot(view.Length - along, view.Height) - toEnd) / toEnd });
+      }
+    }
+  }
+  EXPECT_GT(neighborsSeen, 2000);
+  EXPECT_LT(worst, 2e-15);
+}
+
+} // namespace

@@ -1,0 +1,413 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The map is made anew if the meshes or the options change, in place or not, and only then; and all
+// classes that keep a map notice.
+
+#include "Fixtures/FilterRuns.h"
+
+#include "vtkCellData.h"
+#include "vtkHomeomorphismTransform.h"
+#include "vtkTriangularCoordinates.h"
+#include "vtkWeakPointer.h"
+
+#include <functional>
+#include <memory>
+
+namespace
+{
+
+using namespace fixtures;
+
+/// Two adjacent squares with changeable diagonals. The target is not an affine image of the source,
+/// so the map depends on the diagonals.
+MeshPair MakeTwoSquares()
+{
+  const std::vector<Triangle> triangles{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 } };
+  return { MakeMesh(
+             { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 2, 1, 0 } },
+             triangles),
+    MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 0, 1, 0 }, { 1.5, 2, 0 }, { 3, 1.5, 0 } },
+      triangles) };
+}
+
+const std::vector<Point> Samples{ { 0.3, 0.4, 0 }, { 0.75, 0.25, 0 }, { 0.5, 0.5, 0 },
+  { 0.4, 0.1, 0 }, { 1.2, 0.7, 0 }, { 1.7, 0.4, 0 } };
+
+using Change = std::function<void(vtkPolyData*)>;
+
+/// Replaces the diagonal of the first square in place.
+void FlipDiagonal(vtkPolyData* mesh)
+{
+  const Triangle first{ 0, 1, 3 };
+  const Triangle second{ 1, 4, 3 };
+  mesh->GetPolys()->ReplaceCellAtId(0, 3, first.data());
+  mesh->GetPolys()->ReplaceCellAtId(1, 3, second.data());
+  mesh->GetPolys()->Modified();
+}
+
+/// Replaces the second triangle in place, by one with a repeated corner.
+void Break(vtkPolyData* mesh)
+{
+  const Triangle triangle{ 0, 4, 4 };
+  mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
+  mesh->GetPolys()->Modified();
+}
+
+/// Keeps only the second square, in place. No modification time changes: only the number of cells.
+void KeepSecondSquare(vtkPolyData* mesh)
+{
+  mesh->GetPolys()->Reset();
+  mesh->GetPolys()->InsertNextCell({ 1, 2, 5 });
+  mesh->GetPolys()->InsertNextCell({ 1, 5, 4 });
+}
+
+void HideFirstCell(vtkPolyData* mesh)
+{
+  mesh->AllocateCellGhostArray()->SetValue(0, vtkDataSetAttributes::HIDDENCELL);
+  mesh->GetCellGhostArray()->Modified();
+}
+
+void MoveThePoint(vtkPolyData* mesh)
+{
+  MovePoint(mesh, 4, { 1.1, 0.9, 0.0 });
+}
+
+void MoveThePointInItsArray(vtkPolyData* mesh)
+{
+  mesh->GetPoints()->GetData()->SetComponent(4, 0, 1.1);
+  mesh->GetPoints()->GetData()->Modified();
+}
+
+// --- What every class answers --------------------------------------------------------------------
+
+void Append(std::vector<double>& numbers, vtkDataArray* array)
+{
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    for (int k = 0; k < array->GetNumberOfComponents(); ++k)
+    {
+      const double x = array->GetComponent(i, k);
+      // NaN is unequal to everything, itself included.
+      numbers.push_back(std::isnan(x) ? -1e99 : x);
+    }
+  }
+}
+
+/// A user of a pair of meshes that asks the same question repeatedly. An empty answer is a refusal.
+struct User
+{
+  const char* Name;
+  std::function<std::vector<double>()> Ask;
+  /// Calls Modified for changes that do not update any modification time.
+  std::function<void()> Touch;
+  std::function<void(int)> SetCoordinateSystem;
+};
+
+template <typename Object>
+User MakeUser(
+  const char* name, Object object, const std::function<void(std::vector<double>&)>& collect)
+{
+  auto messages = std::make_shared<Messages>(object.Get());
+  return { name,
+    [object, messages, collect]() {
+      messages->Clear();
+      object->Update();
+      std::vector<double> answer;
+      if (!messages->HasError())
+      {
+        collect(answer);
+      }
+      return answer;
+    },
+    [object]() { object->Modified(); },
+    [object](int system) { object->SetCoordinateSystem(system); } };
+}
+
+User MakeFilterUser(const MeshPair& pair)
+{
+  const auto filter = MakeFilter(Smooth, pair, MakeCloud(Samples));
+  filter->ComputeTriangleIdOn();
+  return MakeUser("filter", filter, [filter](std::vector<double>& answer) {
+    auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+    Append(answer, output->GetPoints()->GetData());
+    Append(answer, PointArray(output, "TriangleId"));
+  });
+}
+
+User MakeCoordinatesUser(const MeshPair& pair)
+{
+  const auto filter = vtkSmartPointer<vtkTriangularCoordinates>::New();
+  filter->SetInputData(0, pair.Source);
+  filter->SetDataObject(MakeCloud(Samples));
+  return MakeUser("coordinates", filter, [filter](std::vector<double>& answer) {
+    auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+    for (const char* name : { "TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter" })
+    {
+      Append(answer, PointArray(output, name));
+    }
+    Append(answer, filter->GetTriangulation()->GetCellData()->GetArray("SmallestAngle"));
+    Append(answer, filter->GetLines()->GetPoints()->GetData());
+  });
+}
+
+std::vector<double> Transformed(vtkAbstractTransform* transform)
+{
+  std::vector<double> answer;
+  for (const Point& p : Samples)
+  {
+    Point image;
+    transform->TransformPoint(p.data(), image.data());
+    answer.insert(answer.end(), image.begin(), image.end());
+  }
+  return answer;
+}
+
+vtkSmartPointer<vtkHomeomorphismTransform> MakeTransform(const MeshPair& pair)
+{
+  auto transform = vtkSmartPointer<vtkHomeomorphismTransform>::New();
+  transform->SetSource(pair.Source);
+  transform->SetTarget(pair.Target);
+  return transform;
+}
+
+User MakeTransformUser(const MeshPair& pair)
+{
+  const auto transform = MakeTransform(pair);
+  return MakeUser("transform", transform,
+    [transform](std::vector<double>& answer) { answer = Transformed(transform); });
+}
+
+using MakeAUser = User (*)(const MeshPair&);
+
+/// Copies of the meshes in new objects.
+MeshPair Anew(const MeshPair& pair)
+{
+  MeshPair copy{ vtkSmartPointer<vtkPolyData>::New(), vtkSmartPointer<vtkPolyData>::New() };
+  copy.Source->DeepCopy(pair.Source);
+  copy.Target->DeepCopy(pair.Target);
+  return copy;
+}
+
+std::string NameOfUser(const ::testing::TestParamInfo<MakeAUser>& info)
+{
+  return info.param(MakeTwoSquares()).Name;
+}
+
+class ChangedMeshes : public ::testing::TestWithParam<MakeAUser>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Users, ChangedMeshes,
+  ::testing::Values(&MakeFilterUser, &MakeCoordinatesUser, &MakeTransformUser), NameOfUser);
+
+TEST_P(ChangedMeshes, GiveTheAnswersOfNewMeshes)
+{
+  for (auto* change :
+    { FlipDiagonal, Break, KeepSecondSquare, HideFirstCell, MoveThePoint, MoveThePointInItsArray })
+  {
+    const MeshPair pair = MakeTwoSquares();
+    const User user = GetParam()(pair);
+    const std::vector<double> before = user.Ask();
+    ASSERT_FALSE(before.empty());
+    change(pair.Source);
+    change(pair.Target);
+    user.Touch();
+    const std::vector<double> after = user.Ask();
+    EXPECT_EQ(after, GetParam()(Anew(pair)).Ask());
+    EXPECT_NE(after, before);
+    // The answer stays the same. (After a failed update a filter does not report again.)
+    if (!after.empty())
+    {
+      EXPECT_EQ(user.Ask(), after);
+    }
+  }
+}
+
+TEST_P(ChangedMeshes, OfWhichOneChangesAreRefused)
+{
+  const auto addPoint = [](vtkPolyData* mesh) {
+    // Does not change any modification time.
+    mesh->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
+  };
+  for (const auto& change : { Change(FlipDiagonal), Change(KeepSecondSquare), Change(addPoint) })
+  {
+    for (const auto mesh : { &MeshPair::Source, &MeshPair::Target })
+    {
+      const MeshPair pair = MakeTwoSquares();
+      const User user = GetParam()(pair);
+      ASSERT_FALSE(user.Ask().empty());
+      change(pair.*mesh);
+      user.Touch();
+      // A triangulation alone stays one.
+      EXPECT_EQ(user.Ask().empty(), GetParam() != &MakeCoordinatesUser);
+    }
+  }
+}
+
+TEST_P(ChangedMeshes, ThatWereRefusedAndAreRepairedAreAccepted)
+{
+  const MeshPair pair = MakeTwoSquares();
+  Break(pair.Source);
+  Break(pair.Target);
+  const User user = GetParam()(pair);
+  EXPECT_TRUE(user.Ask().empty());
+  for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+  {
+    const Triangle whole{ 0, 4, 3 };
+    mesh->GetPolys()->ReplaceCellAtId(1, 3, whole.data());
+    mesh->GetPolys()->Modified();
+  }
+  EXPECT_EQ(user.Ask(), GetParam()(MakeTwoSquares()).Ask());
+}
+
+TEST_P(ChangedMeshes, OrAnotherSystemChangesTheAnswer)
+{
+  const User user = GetParam()(MakeTwoSquares());
+  const std::vector<double> smooth = user.Ask();
+  user.SetCoordinateSystem(vtkDifferentiableHomeomorphism::LINEAR);
+  EXPECT_NE(user.Ask(), smooth);
+  user.SetCoordinateSystem(vtkDifferentiableHomeomorphism::SMOOTH);
+  EXPECT_EQ(user.Ask(), smooth);
+}
+
+TEST(HomeomorphismCache, CopiesAndInversesOfATransformFollow)
+{
+  // They share what the transform has computed until the meshes change.
+  const MeshPair pair = MakeTwoSquares();
+  const auto transform = MakeTransform(pair);
+  vtkAbstractTransform* inverse = transform->GetInverse();
+  vtkNew<vtkHomeomorphismTransform> copy;
+  copy->DeepCopy(transform);
+  copy->Update();
+  inverse->Update();
+  FlipDiagonal(pair.Source);
+  FlipDiagonal(pair.Target);
+  const auto fresh = MakeTransform(Anew(pair));
+  EXPECT_EQ(Transformed(copy), Transformed(fresh));
+  EXPECT_EQ(Transformed(inverse), Transformed(fresh->GetInverse()));
+}
+
+// --- How often the meshes are read ---------------------------------------------------------------
+
+class Builds : public ::testing::Test
+{
+protected:
+  Builds() { this->ExpectNewBuilds(1, "first"); }
+
+  void ExpectNewBuilds(vtkIdType builds, const char* change)
+  {
+    const vtkIdType before = this->Filter->GetNumberOfMeshBuilds();
+    this->Filter->Update();
+    EXPECT_EQ(this->Filter->GetNumberOfMeshBuilds() - before, builds) << change;
+    this->Filter->Modified();
+    this->Filter->Update();
+    EXPECT_EQ(this->Filter->GetNumberOfMeshBuilds() - before, builds) << change;
+  }
+
+  MeshPair Pair = MakeTwoSquares();
+  vtkSmartPointer<vtkDifferentiableHomeomorphism> Filter =
+    MakeFilter(Smooth, Pair, MakeCloud(Samples));
+};
+
+TEST_F(Builds, OneForEachChangeOfAMesh)
+{
+  for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
+  {
+    MoveThePoint(mesh);
+    this->ExpectNewBuilds(1, "a point");
+    mesh->GetPoints()->GetData()->SetComponent(4, 0, 1.05);
+    mesh->GetPoints()->GetData()->Modified();
+    this->ExpectNewBuilds(1, "the array of points");
+    vtkNew<vtkPoints> points;
+    points->DeepCopy(mesh->GetPoints());
+    mesh->SetPoints(points);
+    this->ExpectNewBuilds(1, "other points");
+    vtkNew<vtkCellArray> polygons;
+    polygons->DeepCopy(mesh->GetPolys());
+    mesh->SetPolys(polygons);
+    this->ExpectNewBuilds(1, "other polygons");
+    AddVerticesAndLines(mesh, 1, 0);
+    this->ExpectNewBuilds(1, "vertices, which shift the cell ids");
+    const auto ghosts = MakeGhosts(6, {}, 0);
+    mesh->GetPointData()->AddArray(ghosts);
+    this->ExpectNewBuilds(1, "ghosts");
+    ghosts->SetValue(0, vtkDataSetAttributes::HIDDENPOINT);
+    ghosts->Modified();
+    this->ExpectNewBuilds(1, "a hidden point");
+  }
+  this->Filter->SetSourceData(MakeTwoSquares().Source);
+  this->ExpectNewBuilds(1, "an equal mesh of other arrays");
+}
+
+TEST_F(Builds, OneForCoordinatesOverwrittenInPlace)
+{
+  // Only the data object is marked as modified.
+  static_cast<double*>(this->Pair.Target->GetPoints()->GetVoidPointer(0))[12] = 1.45;
+  this->Pair.Target->Modified();
+  this->ExpectNewBuilds(1, "coordinates");
+}
+
+TEST_F(Builds, NoneForAttributesAndCopies)
+{
+  for (vtkPolyData* mesh : { this->Pair.Source.Get(), this->Pair.Target.Get() })
+  {
+    const auto values = RandomArray("Values", 1, mesh->GetNumberOfPoints(), 1);
+    mesh->GetPointData()->SetScalars(values);
+    mesh->GetCellData()->AddArray(RandomArray("OfCells", 1, mesh->GetNumberOfCells(), 2));
+    mesh->Modified();
+    this->ExpectNewBuilds(0, "attributes");
+    values->FillValue(2.0);
+    values->Modified();
+    this->ExpectNewBuilds(0, "a changed attribute");
+  }
+  // Pipelines pass shallow copies on.
+  vtkNew<vtkPolyData> same;
+  same->ShallowCopy(this->Pair.Source);
+  this->Filter->SetSourceData(same);
+  this->ExpectNewBuilds(0, "a shallow copy");
+}
+
+TEST_F(Builds, OneForEachOptionOfTheMap)
+{
+  using Algorithm = vtkDifferentiableHomeomorphism;
+  this->Filter->SetCoordinateSystemToContour();
+  this->ExpectNewBuilds(1, "system");
+  this->Filter->MaskInvalidTrianglesOn();
+  this->ExpectNewBuilds(1, "mask");
+  this->Filter->SetCenterPoint(Algorithm::INCENTER);
+  this->ExpectNewBuilds(1, "center");
+  this->Filter->SetDiscordantTriangles(Algorithm::REFUSE);
+  this->ExpectNewBuilds(1, "discordant triangles");
+  // These do not affect the map itself.
+  this->Filter->ComputeJacobianOn();
+  this->Filter->SetTolerance(0.1);
+  this->Filter->BlankOutsideOff();
+  this->Filter->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION);
+  this->Filter->InverseOn();
+  this->Filter->SetDataObject(MakeCloud({ { 0.5, 0.5, 0.0 } }));
+  this->ExpectNewBuilds(0, "options of the output");
+}
+
+TEST_F(Builds, NoneForTheSameRefusal)
+{
+  Break(this->Pair.Source);
+  Break(this->Pair.Target);
+  Messages messages(this->Filter);
+  this->ExpectNewBuilds(1, "broken");
+  EXPECT_TRUE(messages.HasError());
+  this->ExpectNewBuilds(0, "still broken");
+}
+
+TEST_F(Builds, KeepNoMeshAlive)
+{
+  vtkWeakPointer<vtkPolyData> source = this->Pair.Source.Get();
+  vtkWeakPointer<vtkPoints> points = this->Pair.Source->GetPoints();
+  this->Filter->SetSourceData(MakeTwoSquares().Source);
+  this->Filter->Update();
+  this->Pair = {};
+  EXPECT_FALSE(source);
+  EXPECT_FALSE(points);
+}
+
+} // namespace
