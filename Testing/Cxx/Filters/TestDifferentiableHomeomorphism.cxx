@@ -1,0 +1,668 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// vtkDifferentiableHomeomorphism: the properties of the map in every coordinate system, and the
+// arrays of the output.
+
+#include "Fixtures/FilterRuns.h"
+
+#include "vtkTriangularCoordinates.h"
+
+#include "vtkCellData.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+
+#include <functional>
+#include <set>
+
+namespace
+{
+
+using namespace fixtures;
+
+class FilterInEverySystem : public ::testing::TestWithParam<System>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(All, FilterInEverySystem, ::testing::ValuesIn(AllSystems()), NameOfSystem);
+
+/// Two steps of which the second starts at the output of the first.
+vtkSmartPointer<vtkDifferentiableHomeomorphism> MakeSecond(
+  const System& system, const MeshPair& pair, vtkDifferentiableHomeomorphism* first)
+{
+  const auto second = MakeFilter(system, pair);
+  second->SetDataConnection(first->GetOutputPort());
+  return second;
+}
+
+// --- The map -------------------------------------------------------------------------------------
+
+TEST_P(FilterInEverySystem, RoundTrip)
+{
+  for (const Pairing& pairing : AllPairings(20, 3, 100))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 1));
+    const auto forward = MakeFilter(GetParam(), pair, cloud);
+    const auto backward = MakeSecond(GetParam(), pair, forward);
+    backward->InverseOn();
+    forward->ComputeJacobianOn();
+    backward->ComputeJacobianOn();
+    vtkPointSet* back = Output(backward);
+    EXPECT_EQ(forward->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+    EXPECT_EQ(backward->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+    // The image is rounded to an ulp of the target's coordinates, and the inverse magnifies this by
+    // |J^-1|, to more than 1e-14 where the map contracts strongly. At an edge the derivatives of
+    // both triangles count, because rounding may move the image to the other side.
+    vtkDataArray* jacobian = PointArray(Output(forward), "Jacobian");
+    Worst worst;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      const double stretch = std::max(
+        Norm(Inverted(MatrixOf(jacobian, i))), Norm(MatrixOf(PointArray(back, "Jacobian"), i)));
+      worst.Take(Distance(PointOf(back, i), PointOf(cloud, i)),
+        std::max(1e-14 * SizeOf(pair.Source), stretch * Ulp * LargestCoordinate(pair.Target)));
+    }
+    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
+  }
+}
+
+TEST_P(FilterInEverySystem, InverseIsTheMapOfExchangedMeshes)
+{
+  for (const Pairing& pairing : AllPairings(8, 2, 110))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const auto cloud = MakeCloud(pair.Target, RandomSamples(pair.Target, 5000, 2));
+    const auto inverse = MakeFilter(GetParam(), pair, cloud);
+    inverse->InverseOn();
+    const auto exchanged = MakeFilter(GetParam(), { pair.Target, pair.Source }, cloud);
+    for (const auto& filter : { inverse, exchanged })
+    {
+      filter->ComputeJacobianOn();
+      filter->ComputeJacobianDeterminantOn();
+      filter->ComputeTriangleIdOn();
+    }
+    vtkPointSet* a = Output(inverse);
+    vtkPointSet* b = Output(exchanged);
+    EXPECT_EQ(CountDifferentPoints(a, b), 0) << pairing.Name;
+    EXPECT_GT(CountDifferentPoints(a, cloud), 4000) << pairing.Name;
+    for (const char* name :
+      { "vtkValidPointMask", "TriangleId", "Jacobian", "JacobianDeterminant" })
+    {
+      EXPECT_EQ(CountDifferentValues(PointArray(a, name), PointArray(b, name)), 0)
+        << pairing.Name << " " << name;
+    }
+  }
+}
+
+TEST_P(FilterInEverySystem, MapsCompose)
+{
+  // The triangles are concordant: in the Contour system, discordant ones are mapped by the Linear
+  // system, and they differ from pair to pair.
+  const MeshPair first = MakePlanarPair(12, 130, 0.06);
+  const auto third = MakePlanarPair(12, 132, 0.06).Source;
+  const MeshPair closed = MakeClosedPair(2, 134);
+  struct Triple
+  {
+    vtkSmartPointer<vtkPolyData> P;
+    vtkSmartPointer<vtkPolyData> Q;
+    vtkSmartPointer<vtkPolyData> R;
+    bool IsConcordant;
+  };
+  const std::vector<Triple> triples{ { first.Source, first.Target, third, true },
+    { first.Source, Tilted(first.Target, Tilt(), { 0.0, 0.0, 1.0 }), third, true },
+    { MakeSheet(8, 136, 0.4), MakeSheet(8, 137, 0.8), MakePlanarPair(8, 138).Source, false },
+    { closed.Source, closed.Target, MakeClosedPair(2, 140).Target, false } };
+  for (const Triple& triple : triples)
+  {
+    if (!triple.IsConcordant && std::string(GetParam().Name) == Contour.Name)
+    {
+      continue;
+    }
+    const auto cloud = MakeCloud(triple.P, RandomSamples(triple.P, 20000, 4));
+    const auto toQ = MakeFilter(GetParam(), { triple.P, triple.Q }, cloud);
+    const auto toR = MakeSecond(GetParam(), { triple.Q, triple.R }, toQ);
+    toR->ComputeJacobianOn();
+    const auto direct = MakeFilter(GetParam(), { triple.P, triple.R }, cloud);
+    vtkPointSet* twoSteps = Output(toR);
+    vtkPointSet* oneStep = Output(direct);
+    EXPECT_EQ(toR->GetNumberOfOutsidePoints(), 0);
+    Worst worst;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      // As in RoundTrip: the second map magnifies the rounding in Q.
+      const double stretch = Norm(MatrixOf(PointArray(twoSteps, "Jacobian"), i));
+      worst.Take(Distance(PointOf(twoSteps, i), PointOf(oneStep, i)),
+        std::max(1e-14 * SizeOf(triple.R), 2.0 * stretch * Ulp * LargestCoordinate(triple.Q)));
+    }
+    EXPECT_LE(worst.OverBound, 1.0);
+  }
+}
+
+TEST_P(FilterInEverySystem, VerticesMapToVerticesAndEdgesLinearly)
+{
+  for (const Pairing& pairing : AllPairings(10, 2, 150))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const auto filter = MakeFilter(GetParam(), pair);
+    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Target), 0) << pairing.Name;
+    EXPECT_EQ(CountDifferentCells(Output(filter), pair.Target), 0) << pairing.Name;
+    filter->InverseOn();
+    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0) << pairing.Name;
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+
+    Random random(5);
+    std::vector<MeshPoint> samples;
+    for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
+    {
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        for (int i = 0; i < 8; ++i)
+        {
+          const double p = i < 4 ? random.Uniform() : std::pow(10.0, random.Uniform(-15.0, 0.0));
+          MeshPoint surfacePoint{ t, {} };
+          surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
+          surfacePoint.Weights[(k + 2) % 3] = p;
+          samples.push_back(surfacePoint);
+        }
+      }
+    }
+    const auto onEdges = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, samples));
+    onEdges->ComputeJacobianOn();
+    vtkPointSet* output = Output(onEdges);
+    EXPECT_EQ(onEdges->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+    Worst worst;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      const auto id = static_cast<vtkIdType>(i);
+      const double stretch = Norm(MatrixOf(PointArray(output, "Jacobian"), id));
+      worst.Take(Distance(PointOf(output, id), PositionOf(pair.Target, samples[i])),
+        std::max(
+          1e-14 * SizeOf(pair.Target), 2.0 * stretch * Ulp * LargestCoordinate(pair.Source)));
+    }
+    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
+  }
+}
+
+/// The attainable accuracy of a Jacobian. In all systems except Linear, J depends on the direction
+/// from a vertex near it, and the relative accuracy of that direction decreases with the distance.
+double JacobianBound(vtkPolyData* mesh, const MeshPoint& surfacePoint)
+{
+  const Point position = PositionOf(mesh, surfacePoint);
+  double nearest = SizeOf(mesh);
+  for (const Point& corner : CornersOf(mesh, surfacePoint.Triangle))
+  {
+    nearest = std::min(nearest, Distance(corner, position));
+  }
+  return 1e-11 + 32.0 * Ulp * SizeOf(mesh) / nearest;
+}
+
+TEST_P(FilterInEverySystem, AffineMapsAreReproduced)
+{
+  // In the plane, a similarity for the Contour system, because other affine maps do not preserve
+  // its right angles. On surfaces, motions.
+  const Matrix identity{ { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
+  const Matrix motion = Rotation({ 2.0, 1.0, -1.0 }, 1.3);
+  const Matrix turn = Rotation({ 0.0, 0.0, 1.0 }, 2.1);
+  const Matrix similarity{ { 2.5 * turn[0], 2.5 * turn[1], { 0.0, 0.0, 1.0 } } };
+  const Matrix affine{ { { 1.5, 0.75, 0.0 }, { -0.25, 2.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
+  std::vector<std::pair<vtkSmartPointer<vtkPolyData>, Matrix>> cases{
+    { MakePlanarPair(10, 180).Source, GetParam().IsContour() ? similarity : affine },
+    { MakeSheet(8, 185, 0.7), motion }, { MakeClosedPair(2, 186).Target, motion }
+  };
+  for (const Pairing& pairing : AllPairings(8, 2, 120))
+  {
+    cases.emplace_back(pairing.Meshes.Target, identity);
+  }
+  for (const auto& [source, matrix] : cases)
+  {
+    const Point shift = matrix == identity ? Point{} : Point{ 0.25, -1.0, 2.0 };
+    const auto target = Tilted(source, matrix, shift);
+    const std::vector<MeshPoint> samples = RandomSamples(source, 10000, 8);
+    const auto cloud = MakeCloud(source, samples);
+    const auto filter = MakeFilter(GetParam(), { source, target }, cloud);
+    filter->ComputeJacobianOn();
+    filter->ComputeJacobianDeterminantOn();
+    vtkPointSet* output = Output(filter);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+    const double determinant = Determinant(matrix);
+    Worst worst;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      worst.Take(
+        Distance(PointOf(output, i), matrix * PointOf(cloud, i) + shift), 1e-14 * SizeOf(target));
+      const double bound = JacobianBound(source, samples[static_cast<std::size_t>(i)]);
+      worst.Take(
+        Distance(MatrixOf(PointArray(output, "Jacobian"), i), matrix), bound * Norm(matrix));
+      worst.Take(
+        std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0) - determinant),
+        bound * Norm(matrix) * Norm(matrix));
+    }
+    EXPECT_LE(worst.OverBound, 1.0);
+  }
+}
+
+TEST_P(FilterInEverySystem, MirroredPairs)
+{
+  const auto mirrored = [](const Point& p) -> Point { return { -p[0], p[1], p[2] }; };
+  const MeshPair pair = MakePlanarPair(12, 170);
+  const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 6));
+  const auto straight = MakeFilter(GetParam(), pair, cloud);
+  const auto mirror = MakeFilter(GetParam(), { pair.Source, Moved(pair.Target, mirrored) }, cloud);
+  mirror->ComputeJacobianDeterminantOn();
+  vtkPointSet* image = Output(mirror);
+  EXPECT_LT(PointArray(image, "JacobianDeterminant")->GetRange()[1], 0.0);
+  // The mirror image of the map is the map of the mirror images.
+  Worst worst;
+  for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+  {
+    worst.Take(Distance(PointOf(image, i), mirrored(PointOf(Output(straight), i))),
+      1e-14 * SizeOf(pair.Target));
+  }
+  EXPECT_LE(worst.OverBound, 1.0);
+  // On a surface it is another surface, where areas have no sign.
+  const MeshPair closed = MakeClosedPair(2, 172);
+  const auto onSurface = MakeFilter(GetParam(), { closed.Source, Moved(closed.Target, mirrored) },
+    MakeCloud(closed.Source, RandomSamples(closed.Source, 5000, 7)));
+  onSurface->ComputeJacobianDeterminantOn();
+  EXPECT_GT(PointArray(Output(onSurface), "JacobianDeterminant")->GetRange()[0], 0.0);
+  EXPECT_EQ(onSurface->GetNumberOfOutsidePoints(), 0);
+}
+
+TEST_P(FilterInEverySystem, TurnedPlanesGiveTheTurnedMap)
+{
+  const MeshPair pair = MakePlanarPair(10, 200);
+  const auto samples = RandomSamples(pair.Source, 5000, 11);
+  Random random(12);
+  const auto cloud = Moved(MakeCloud(pair.Source, samples), [&random](const Point& p) -> Point {
+    return { p[0], p[1], random.Uniform(-5.0, 5.0) };
+  });
+  const auto filter = MakeFilter(GetParam(), pair, cloud);
+  filter->ComputeJacobianOn();
+  vtkPointSet* flat = Output(filter);
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
+  // x and y become y and z, or z and x, to the same bits; turned a little, by almost a right angle,
+  // and upside down. The normals of source and target make less than a right angle.
+  const Matrix cyclic{ { { 0, 0, 1 }, { 1, 0, 0 }, { 0, 1, 0 } } };
+  const std::vector<std::pair<Matrix, bool>> turns{ { cyclic, true }, { cyclic * cyclic, true },
+    { Rotation({ 1.0, 1.0, 0.0 }, 0.4), false }, { Rotation({ -1.0, 2.0, 0.3 }, -0.6), false },
+    { Rotation({ 0.0, 1.0, 0.1 }, 1.4), false }, { Rotation({ 1.0, 0.3, 0.0 }, 2.8), false } };
+  for (std::size_t n = 0; n < turns.size(); ++n)
+  {
+    SCOPED_TRACE(n);
+    const bool exact = turns[n].second;
+    const Matrix& from = turns[n].first;
+    const Matrix& to = exact || n + 1 == turns.size() ? from : turns[n + 1].first;
+    const Point shift = exact ? Point{} : Point{ 1.0, -2.0, 0.5 };
+    const Point up{ 0.0, 0.0, 1.0 };
+    const double side = Dot(from * up, to * up) < 0.0 ? -1.0 : 1.0;
+    const Matrix flip{ { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, side } } };
+    const auto turned = MakeFilter(GetParam(),
+      { Tilted(pair.Source, from, {}), Tilted(pair.Target, to, shift) }, Tilted(cloud, from, {}));
+    turned->ComputeJacobianOn();
+    turned->ComputeJacobianDeterminantOn();
+    vtkPointSet* output = Output(turned);
+    // Points outside by the rounding of a rotation are moved inside. Heights must not disturb this.
+    EXPECT_EQ(turned->GetNumberOfOutsidePoints(), 0);
+    Worst worst;
+    vtkIdType different = 0;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      const Matrix j = MatrixOf(PointArray(flat, "Jacobian"), i);
+      const Point expected = to * (flip * PointOf(flat, i)) + shift;
+      const Matrix expectedJ = to * (flip * j) * Transposed(from);
+      const Matrix found = MatrixOf(PointArray(output, "Jacobian"), i);
+      different += exact && (PointOf(output, i) != expected || found != expectedJ);
+      worst.Take(
+        Distance(PointOf(output, i), expected), 8.0 * Ulp * (1.0 + Norm(j)) * SizeOf(pair.Target));
+      const auto& weights = samples[static_cast<std::size_t>(i)].Weights;
+      // At edges, rounding decides which triangle gives the limit.
+      if (*std::min_element(weights.begin(), weights.end()) > 1e-3)
+      {
+        worst.Take(Distance(found, expectedJ), 1e-9 * Norm(j));
+        worst.Take(std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0) -
+                     side * Determinant(j)),
+          1e-9 * Norm(j) * Norm(j));
+      }
+    }
+    EXPECT_EQ(different, 0);
+    EXPECT_LE(worst.OverBound, 1.0);
+  }
+}
+
+// --- Derivatives ---------------------------------------------------------------------------------
+
+/// Points whose surrounding stencil has the same triangle and the same e throughout, so that no
+/// crease of the Linear and Contour systems separates its points.
+std::vector<bool> HaveNoCrease(
+  const System& system, const MeshPair& pair, vtkPolyData* stencils, vtkIdType pointsOfStencil)
+{
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  SetSystem(coordinates.Get(), system);
+  coordinates->SetInputData(0, pair.Source);
+  coordinates->SetDataObject(stencils);
+  coordinates->GenerateLinesOff();
+  coordinates->Update();
+  auto* output = vtkPointSet::SafeDownCast(coordinates->GetOutputDataObject(0));
+  std::vector<bool> smooth;
+  for (vtkIdType i = 0; i < stencils->GetNumberOfPoints(); i += pointsOfStencil)
+  {
+    bool same = true;
+    for (vtkIdType k = i; k < i + pointsOfStencil; ++k)
+    {
+      for (const char* name : { "TriangleId", "EdgeLabel" })
+      {
+        vtkDataArray* array = PointArray(output, name);
+        same = same && array->GetComponent(k, 0) == array->GetComponent(i, 0);
+      }
+    }
+    smooth.push_back(same);
+  }
+  return smooth;
+}
+
+TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
+{
+  for (const Pairing& pairing : AllPairings(8, 2, 330))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 4000, 35, 1e-3);
+    const auto filter = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, samples));
+    filter->ComputeJacobianOn();
+    filter->ComputeJacobianDeterminantOn();
+    vtkPointSet* output = Output(filter);
+    // Steps along two edges of the triangle stay in its plane.
+    constexpr double h = 2e-5;
+    std::vector<MeshPoint> stencils;
+    for (const MeshPoint& surfacePoint : samples)
+    {
+      for (const std::size_t direction : { 1u, 2u })
+      {
+        for (const double step : { -2.0, -1.0, 1.0, 2.0 })
+        {
+          MeshPoint moved = surfacePoint;
+          moved.Weights[direction] += step * h;
+          moved.Weights[0] -= step * h;
+          stencils.push_back(moved);
+        }
+      }
+    }
+    const auto stencilCloud = MakeCloud(pair.Source, stencils);
+    const std::vector<bool> hasNoCrease = HaveNoCrease(GetParam(), pair, stencilCloud, 8);
+    const auto stencilFilter = MakeFilter(GetParam(), pair, stencilCloud);
+    vtkPointSet* images = Output(stencilFilter);
+    std::vector<double> errors;
+    Worst worst;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      const auto id = static_cast<vtkIdType>(i);
+      const Matrix j = MatrixOf(PointArray(output, "Jacobian"), id);
+      const std::array<Point, 3> from = CornersOf(pair.Source, samples[i].Triangle);
+      const std::array<Point, 3> to = CornersOf(pair.Target, samples[i].Triangle);
+      // The Jacobian maps normal to normal. The normals of these planes follow from the winding.
+      const Point normal = Unit(Cross(from[1] - from[0], from[2] - from[0]));
+      worst.Take(Distance(j * normal, Unit(Cross(to[1] - to[0], to[2] - to[0]))), 1e-11);
+      worst.Take(
+        std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(id, 0) - Determinant(j)),
+        1e-11 * (1.0 + std::abs(Determinant(j))) * Norm(j));
+      for (int direction = 0; direction < 2 && hasNoCrease[i]; ++direction)
+      {
+        const vtkIdType first = 8 * id + 4 * direction;
+        const Point difference = (1.0 / (12.0 * h)) *
+          (8.0 * (PointOf(images, first + 2) - PointOf(images, first + 1)) -
+            (PointOf(images, first + 3) - PointOf(images, first)));
+        const Point expected = j * (from[direction + 1] - from[0]);
+        errors.push_back(Distance(difference, expected) / Norm(to[direction + 1] - to[0]));
+      }
+    }
+    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
+    ASSERT_GT(errors.size(), samples.size());
+    // Second derivatives jump at wing segments, third ones at the borders of strips, and the
+    // Contour system is homogeneous around the centroid. The error of the few stencils there grows
+    // with the ratio of their width to that distance.
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() * 99 / 100], 1e-8) << pairing.Name;
+    EXPECT_LT(errors.back(), 0.02) << pairing.Name;
+  }
+}
+
+// --- Arrays --------------------------------------------------------------------------------------
+
+TEST_P(FilterInEverySystem, TriangleIdIsTheCellId)
+{
+  for (const Pairing& pairing : AllPairings(8, 2, 320))
+  {
+    const MeshPair& pair = pairing.Meshes;
+    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 34, 1e-6);
+    const auto onSource = MakeCloud(pair.Source, samples);
+    const auto onTarget = MakeCloud(pair.Target, samples);
+    // Vertices before the polygons shift the cell ids.
+    AddVerticesAndLines(pair.Source, 2, 0);
+    AddVerticesAndLines(pair.Target, 2, 0);
+    for (const bool inverse : { false, true })
+    {
+      const auto filter = MakeFilter(GetParam(), pair, inverse ? onTarget : onSource);
+      filter->SetInverse(inverse);
+      filter->ComputeTriangleIdOn();
+      auto* ids = vtkIdTypeArray::SafeDownCast(PointArray(Output(filter), "TriangleId"));
+      ASSERT_TRUE(ids);
+      vtkIdType wrong = 0;
+      for (std::size_t i = 0; i < samples.size(); ++i)
+      {
+        wrong += ids->GetValue(static_cast<vtkIdType>(i)) != samples[i].Triangle + 2;
+      }
+      EXPECT_EQ(wrong, 0) << pairing.Name << inverse;
+    }
+  }
+}
+
+TEST_P(FilterInEverySystem, UsedCoordinateSystemMarksTrianglesMappedByLinear)
+{
+  // Discordant triangles in the source alone, in the target alone, and none.
+  const MeshPair planar = MakePlanarPair(8, 343);
+  const auto sheared = Sheared(planar.Source);
+  const MeshPair concordant = MakePlanarPair(12, 344, 0.06);
+  for (const MeshPair& pair :
+    { MeshPair{ sheared, planar.Target }, MeshPair{ planar.Target, sheared }, concordant })
+  {
+    const auto cloud = MakeCloud(pair.Source, InnerSamples(pair.Source, 2000, 45, 1e-3));
+    cloud->GetPoints()->InsertNextPoint(-1000.0, 0.0, 0.0);
+    const auto filter = MakeFilter(GetParam(), pair, cloud);
+    filter->ComputeTriangleIdOn();
+    vtkPointSet* output = Output(filter);
+    vtkDataArray* used = PointArray(output, "UsedCoordinateSystem");
+    if (std::string(GetParam().Name) != Contour.Name || pair.Source == concordant.Source)
+    {
+      EXPECT_FALSE(used);
+      EXPECT_EQ(filter->GetNumberOfDiscordantTriangles(), 0);
+      continue;
+    }
+    std::set<vtkIdType> discordant;
+    for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+    {
+      for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
+      {
+        const std::array<Point, 3> c = CornersOf(mesh, t);
+        for (std::size_t k = 0; k < 6; ++k)
+        {
+          // Concordance, for each ordered pair of corners A, B and the third C.
+          const Point& a = c[k % 3];
+          const Point& b = c[(k + 1 + k / 3) % 3];
+          const Point& third = c[(k + 2 - k / 3) % 3];
+          if (Dot(b - a, (b - a) + (third - a)) <= 0.0)
+          {
+            discordant.insert(t);
+          }
+        }
+      }
+    }
+    EXPECT_EQ(filter->GetNumberOfDiscordantTriangles(), static_cast<vtkIdType>(discordant.size()));
+    EXPECT_GT(discordant.size(), 20u);
+    ASSERT_TRUE(vtkIntArray::SafeDownCast(used));
+    vtkIdType wrong = 0;
+    for (vtkIdType i = 0; i < 2000; ++i)
+    {
+      const auto t = static_cast<vtkIdType>(PointArray(output, "TriangleId")->GetComponent(i, 0));
+      wrong += used->GetComponent(i, 0) !=
+        (discordant.count(t) ? vtkDifferentiableHomeomorphism::LINEAR
+                             : vtkDifferentiableHomeomorphism::CONTOUR);
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(used->GetComponent(2000, 0), -1.0);
+  }
+}
+
+TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
+{
+  using Attributes = vtkDataSetAttributes;
+  const MeshPair pair = MakePlanarPair(8, 310);
+  for (const bool hasGhosts : { false, true })
+  {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(41, 31, 1);
+    image->SetOrigin(-1.0, 0.1, 0.0);
+    image->SetSpacing(0.26, 0.3, 1.0);
+    const vtkIdType points = image->GetNumberOfPoints();
+    const vtkIdType cells = image->GetNumberOfCells();
+    image->GetPointData()->SetVectors(RandomArray("Velocity", 3, points, 31));
+    const auto pointGhosts = MakeGhosts(points, {}, 0);
+    const auto cellGhosts = MakeGhosts(cells, {}, 0);
+    for (vtkIdType i = 0; i < points && hasGhosts; i += 5)
+    {
+      pointGhosts->SetValue(i, Attributes::DUPLICATEPOINT);
+    }
+    for (vtkIdType i = 0; i < cells && hasGhosts; i += 7)
+    {
+      cellGhosts->SetValue(i, Attributes::DUPLICATECELL);
+    }
+    if (hasGhosts)
+    {
+      image->GetPointData()->AddArray(pointGhosts);
+      image->GetCellData()->AddArray(cellGhosts);
+    }
+    const auto filter = MakeFilter(GetParam(), pair, image);
+    filter->ComputeJacobianOn();
+    filter->ComputeJacobianDeterminantOn();
+    filter->ComputeTriangleIdOn();
+    vtkPointSet* output = Output(filter);
+    const char* ghosts = Attributes::GhostArrayName();
+    vtkIdType outside = 0;
+    for (vtkIdType i = 0; i < points; ++i)
+    {
+      const Point p = PointOf(image, i);
+      const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0;
+      // Ghost points are marked, but not counted.
+      outside += isOutside && pointGhosts->GetValue(i) == 0;
+      ASSERT_EQ(PointArray(output, "vtkValidPointMask")->GetComponent(i, 0), isOutside ? 0 : 1);
+      ASSERT_EQ(PointArray(output, "TriangleId")->GetComponent(i, 0) < 0, isOutside);
+      for (const char* name : { "Jacobian", "JacobianDeterminant", "Velocity" })
+      {
+        for (int k = 0; k < PointArray(output, name)->GetNumberOfComponents(); ++k)
+        {
+          ASSERT_EQ(std::isnan(PointArray(output, name)->GetComponent(i, k)), isOutside);
+        }
+      }
+      if (isOutside)
+      {
+        ASSERT_EQ(PointOf(output, i), p);
+      }
+      ASSERT_EQ(PointArray(output, ghosts)->GetComponent(i, 0),
+        pointGhosts->GetValue(i) | (isOutside ? Attributes::HIDDENPOINT : 0));
+    }
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), outside);
+    EXPECT_GT(outside, 100);
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < cells; ++cell)
+    {
+      image->GetCellPoints(cell, ids);
+      const bool isOutside = std::any_of(ids->begin(), ids->end(), [&](vtkIdType i) {
+        return PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) == 0.0;
+      });
+      ASSERT_EQ(output->GetCellData()->GetArray(ghosts)->GetComponent(cell, 0),
+        cellGhosts->GetValue(cell) | (isOutside ? Attributes::HIDDENCELL : 0));
+    }
+    // The input's arrays are not modified.
+    EXPECT_EQ(PointArray(image, ghosts), hasGhosts ? pointGhosts.Get() : nullptr);
+    filter->BlankOutsideOff();
+    EXPECT_EQ(PointArray(Output(filter), ghosts), hasGhosts ? pointGhosts.Get() : nullptr);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), outside);
+  }
+  // There are none if all points are inside.
+  const auto inside = MakeFilter(GetParam(), pair);
+  EXPECT_FALSE(PointArray(Output(inside), Attributes::GhostArrayName()));
+}
+
+TEST(DifferentiableHomeomorphism, ArraysOfTheSameNameAreReplaced)
+{
+  const MeshPair pair = MakePlanarPair(4, 345);
+  vtkNew<vtkPolyData> data;
+  data->ShallowCopy(pair.Source);
+  for (const char* name : { "vtkValidPointMask", "TriangleId", "Jacobian", "JacobianDeterminant" })
+  {
+    data->GetPointData()->AddArray(
+      RandomArray<vtkIntArray>(name, 2, data->GetNumberOfPoints(), 37));
+  }
+  const auto filter = MakeFilter(Smooth, pair, data);
+  EXPECT_EQ(PointArray(Output(filter), "vtkValidPointMask")->GetNumberOfComponents(), 1);
+  // Only added arrays replace others.
+  EXPECT_EQ(PointArray(Output(filter), "Jacobian")->GetNumberOfComponents(), 2);
+  filter->ComputeJacobianOn();
+  filter->ComputeJacobianDeterminantOn();
+  filter->ComputeTriangleIdOn();
+  vtkPointSet* output = Output(filter);
+  EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), 4);
+  EXPECT_EQ(PointArray(output, "Jacobian")->GetNumberOfComponents(), 9);
+  EXPECT_EQ(PointArray(output, "JacobianDeterminant")->GetNumberOfComponents(), 1);
+  EXPECT_EQ(PointArray(output, "TriangleId")->GetNumberOfComponents(), 1);
+  EXPECT_EQ(PointArray(data, "Jacobian")->GetNumberOfComponents(), 2);
+}
+
+// --- Executions ----------------------------------------------------------------------------------
+
+TEST(DifferentiableHomeomorphism, ChangingAPropertyExecutesOnceMore)
+{
+  using Filter = vtkDifferentiableHomeomorphism;
+  const std::vector<std::function<void(Filter*)>> changes{ [](Filter* f) {
+                                                            f->SetCoordinateSystemToLinear();
+                                                          },
+    [](Filter* f) { f->SetCoordinateSystemToContour(); },
+    [](Filter* f) { f->SetCenterPoint(Filter::INCENTER); },
+    [](Filter* f) { f->SetDiscordantTriangles(Filter::REFUSE); },
+    [](Filter* f) { f->SetCoordinateSystemToSmooth(); },
+    [](Filter* f) { f->MaskInvalidTrianglesOn(); }, [](Filter* f) { f->SetTolerance(0.125); },
+    [](Filter* f) { f->ComputeTriangleIdOn(); }, [](Filter* f) { f->ComputeJacobianOn(); },
+    [](Filter* f) { f->ComputeJacobianDeterminantOn(); },
+    [](Filter* f) { f->TransformActiveAttributesOff(); },
+    [](Filter* f) { f->TransformAllInputVectorsOn(); },
+    [](Filter* f) { f->SetAttributeTransformation("Any", Filter::GRADIENT_TRANSFORMATION); },
+    [](Filter* f) { f->ClearAttributeTransformations(); }, [](Filter* f) { f->BlankOutsideOff(); },
+    [](Filter* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); },
+    [](Filter* f) { f->InverseOn(); } };
+  const MeshPair pair = MakePlanarPair(6, 356, 0.05);
+  const auto filter =
+    MakeFilter(Smooth, pair, MakeCloud(pair.Source, RandomSamples(pair.Source, 50, 44)));
+  struct Counter
+  {
+    int Count = 0;
+    void Increment() { ++this->Count; }
+  } executions;
+  filter->AddObserver(vtkCommand::StartEvent, &executions, &Counter::Increment);
+  filter->Update();
+  int expected = 1;
+  for (const auto& change : changes)
+  {
+    change(filter);
+    filter->Update();
+    EXPECT_EQ(executions.Count, ++expected);
+    vtkNew<vtkPolyData> first;
+    first->DeepCopy(filter->GetOutputDataObject(0));
+    // Another update does nothing, and executing again gives the same.
+    filter->Update();
+    EXPECT_EQ(executions.Count, expected);
+    filter->Modified();
+    EXPECT_EQ(CountDifferentPoints(Output(filter), first), 0);
+    ++expected;
+  }
+}
+
+} // namespace
