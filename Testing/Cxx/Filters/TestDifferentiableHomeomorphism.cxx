@@ -432,7 +432,8 @@ TEST_P(FilterInEverySystem, TriangleIdIsTheCellId)
 {
   for (const Pairing& pairing : AllPairings(8, 2, 320))
   {
-    const MeshPair& pair = pairing.Meshes;
+    // A copy, because pairs share meshes.
+    const MeshPair pair = WithTriangles(pairing.Meshes, TrianglesOf(pairing.Meshes.Source));
     const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 34, 1e-6);
     const auto onSource = MakeCloud(pair.Source, samples);
     const auto onTarget = MakeCloud(pair.Target, samples);

@@ -728,7 +728,7 @@ TEST(TriangularCoordinates, MaskedTrianglesAreDescribedAsNone)
   for (vtkIdType t = 0; t < 32; ++t)
   {
     const double system = CellArray(filter, "UsedCoordinateSystem")->GetComponent(t, 0);
-    EXPECT_EQ(system, t < 2 ? -1.0 : vtkTriangularCoordinates::SMOOTH);
+    EXPECT_EQ(system, t < 2 ? -1.0 : double(vtkTriangularCoordinates::SMOOTH));
   }
   for (const Line& line : ReadLines(filter))
   {
