@@ -12,6 +12,9 @@
 #include "Mesh/Homeomorphism.h"
 
 #include "vtkIndent.h"
+#include "vtkType.h"
+
+#include <limits>
 
 namespace homeomorphism
 {
@@ -26,7 +29,10 @@ HomeomorphismOptions GetOptions(Algorithm* self)
   options.MaskInvalidTriangles = self->GetMaskInvalidTriangles();
   options.DiscordantByLinear = self->GetDiscordantTriangles() == Algorithm::USE_LINEAR;
   options.Cubic.Bending = static_cast<CubicBending>(self->GetCubicBending());
-  options.Cubic.MaximumDeviation = self->GetMaximumDeviation();
+  // The greatest value of the option, 1e299, limits nothing, however large the meshes are.
+  options.Cubic.MaximumDeviation = self->GetMaximumDeviation() < VTK_DOUBLE_MAX
+    ? self->GetMaximumDeviation()
+    : std::numeric_limits<double>::infinity();
   options.Cubic.CertificateMargin = self->GetCertificateMargin();
   options.Cubic.FairnessRefinement = self->GetFairnessRefinement();
   return options;

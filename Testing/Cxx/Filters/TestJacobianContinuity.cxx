@@ -231,8 +231,7 @@ TEST_P(JacobianContinuityOf, ATransformIsMeasuredLikeItsMeshes)
   EXPECT_TRUE(std::isnan(CellValue(fromOutside, "JacobianJumpExact", 0)));
   // And on other triangles.
   Messages messages(transform.Get());
-  const auto part =
-    Measure(WithTriangles(pair.Source, { { 0, 1, 12 }, { 1, 2, 12 } }), transform);
+  const auto part = Measure(WithTriangles(pair.Source, { { 0, 1, 12 }, { 1, 2, 12 } }), transform);
   EXPECT_FALSE(messages.HasError());
   EXPECT_EQ(part->GetOutput()->GetNumberOfCells(), 1);
   EXPECT_EQ(part->GetErrorCode(), 0u);
@@ -279,7 +278,8 @@ TEST_P(JacobianContinuityOf, VerdictsDoNotDependOnTheOrigin)
     {
       EXPECT_EQ(CellValue(found, "Verdict", i), CellValue(expected, "Verdict", i)) << i;
       const double jump = CellValue(expected, "JacobianJump", i);
-      EXPECT_TRUE(!std::isfinite(jump) || std::abs(CellValue(found, "JacobianJump", i) - jump) < 1e-8)
+      EXPECT_TRUE(
+        !std::isfinite(jump) || std::abs(CellValue(found, "JacobianJump", i) - jump) < 1e-8)
         << "feature " << i;
     }
   }
@@ -322,8 +322,8 @@ TEST(JacobianContinuity, JumpsOfAKnownMapAreExact)
     EXPECT_NEAR(CellValue(filter, "JacobianJump", i), std::hypot(a, b) / norm, 1e-9);
     EXPECT_NEAR(CellValue(filter, "NormalJump", i), a / norm, 1e-9);
     EXPECT_NEAR(CellValue(filter, "TangentialJump", i), b / norm, 1e-9);
-    EXPECT_NEAR(CellValue(filter, "AngleJump", i),
-      std::atan2(b, 1.0 + a) * 180.0 / std::acos(-1.0), 1e-7);
+    EXPECT_NEAR(
+      CellValue(filter, "AngleJump", i), std::atan2(b, 1.0 + a) * 180.0 / std::acos(-1.0), 1e-7);
     EXPECT_NEAR(CellValue(filter, "StretchJump", i), std::hypot(1.0 + a, b) - 1.0, 1e-9);
     const auto [first, second] = TrianglesAt(filter, i);
     EXPECT_EQ((std::set<vtkIdType>{ first, second }), (std::set<vtkIdType>{ 0, 3 }));
@@ -342,8 +342,8 @@ void ExpectCreasesOnTheLineOnly(Continuity* filter, const char* verdict)
     filter->GetOutput()->GetCellBounds(i, bounds);
     const bool isOnLine = bounds[0] == 7.0 && bounds[1] == 7.0;
     onLine += isOnLine;
-    EXPECT_EQ(CellValue(filter, verdict, i),
-      isOnLine ? Continuity::CREASE : Continuity::DIFFERENTIABLE);
+    EXPECT_EQ(
+      CellValue(filter, verdict, i), isOnLine ? Continuity::CREASE : Continuity::DIFFERENTIABLE);
   }
   EXPECT_EQ(onLine, 14);
 }
