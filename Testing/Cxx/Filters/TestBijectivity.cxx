@@ -13,8 +13,6 @@
 
 #include <gtest/gtest.h>
 
-#include <iostream>
-
 namespace
 {
 
@@ -230,8 +228,6 @@ void ExpectBijective(const System& system, const MeshPair& pair, std::uint64_t s
     }
     farthest = std::max(farthest, nearest / size);
   }
-  std::cout << system.Name << ": " << inside.size() << " points hit once by " << images.size()
-            << " triangles; worst return " << worstReturn << "\n";
   EXPECT_LT(worstReturn, 1e-13 * SizeOf(pair.Target));
   EXPECT_LT(farthest, 1.0);
 }

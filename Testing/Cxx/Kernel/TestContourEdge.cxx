@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 
 namespace
 {
@@ -100,7 +99,6 @@ TEST(ContourEdge, JumpIsTheDifferenceOfLengthRatios)
       Norm(jumpOfNormal - expectedJump) / Norm(at.First),
       Norm(Times(at.First, p.Tangent()) - expectedTangent) / Norm(at.First) });
   }
-  std::cout << "jumps up to " << largestJump << ", known to " << worst << " of the derivative\n";
   EXPECT_LT(worst, 1e-13);
   EXPECT_GT(largestJump, 0.5);
 }
@@ -135,7 +133,6 @@ TEST(ContourEdge, JumpIsMeasuredFromMappedPoints)
     const Vector2 expected = (at.FirstRatio - at.SecondRatio) * q.Normal();
     worst = std::max(worst, Norm(jump - expected) / Norm(at.First));
   }
-  std::cout << "jumps of mapped points differ by " << worst << " of the derivative\n";
   EXPECT_LT(worst, 1e-7);
 }
 
@@ -152,7 +149,6 @@ TEST(ContourEdge, NoJumpBetweenSimilarPairs)
     worst = std::max({ worst, at.Jump() / scale, std::abs(at.FirstRatio - scale) / scale,
       std::abs(at.SecondRatio - scale) / scale });
   }
-  std::cout << "similar pairs: jumps up to " << worst << " of the derivative\n";
   EXPECT_LT(worst, 1e-13);
 }
 
@@ -174,7 +170,6 @@ TEST(ContourEdge, NoJumpBetweenMirrorImages)
     const BothSides at(p, q, random.Uniform(0.001, 0.999), AnyCenter(random));
     worst = std::max(worst, at.Jump() / Norm(at.First));
   }
-  std::cout << "mirror images: jumps up to " << worst << " of the derivative\n";
   EXPECT_LT(worst, 1e-13);
 }
 

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <string>
 
 namespace
@@ -181,9 +180,6 @@ TYPED_TEST(Derivatives, AgreeWithFiniteDifferences)
       }
     }
   }
-  std::cout << TypeParam::Name << ": derivatives differ from differences by " << worst
-            << " times what these are uncertain by, at " << compared << " points, "
-            << static_cast<double>(sharp) / compared << " of them to 1e-9\n";
   EXPECT_GT(compared, 15000);
   EXPECT_GT(sharp, 0.9 * compared);
   EXPECT_LT(worst, 0.2) << where;
@@ -215,7 +211,6 @@ TYPED_TEST(Derivatives, PullbackIsTheInverseOfPushforward)
       }
     }
   }
-  std::cout << TypeParam::Name << ": Push after Pull off by " << worst << " times rounding\n";
   EXPECT_LT(worst, 64.0) << where;
 }
 
@@ -321,7 +316,6 @@ TYPED_TEST(ContourDerivatives, DirectionsAreRatesOfCoordinates)
       }
     }
   }
-  std::cout << TypeParam::Name << ": directions differ from differences by " << worst << '\n';
   EXPECT_GT(compared, 10000);
   EXPECT_LT(worst, 1e-8);
 }
@@ -408,7 +402,6 @@ TYPED_TEST(ContourDerivatives, OnAnEdge)
       Norm(apply({ -tangent.y, tangent.x }) - expectedNormal));
     worst = std::max(worst, error / Norm(derivative));
   }
-  std::cout << TypeParam::Name << ": on edges off by " << worst << " of the derivative\n";
   EXPECT_LT(worst, 1e-13);
 }
 
@@ -438,7 +431,6 @@ TYPED_TEST(ContourDerivatives, ContourLengthDerivativeAgreesWithFiniteDifference
     const double derivative = p.Chart.ContourLengthDerivative(e, t);
     worst = std::max(worst, std::abs(found - derivative) / p.Triangle.Shape.Base);
   }
-  std::cout << TypeParam::Name << ": dL/dp differs from differences by " << worst << '\n';
   EXPECT_LT(worst, 1e-9);
 }
 

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <string>
 
 namespace
@@ -85,7 +84,6 @@ TYPED_TEST(Edges, VerticesMapToVertices)
       worst.Take(Norm(image - q.Triangle.Shape.Corner(k)) / rounding, p.Triangle, corner);
     }
   }
-  std::cout << TypeParam::Name << ": vertices off by " << worst.Value << " times rounding\n";
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
 
@@ -136,9 +134,6 @@ TYPED_TEST(Edges, PointOnAnEdgeHasItsCoordinates)
     const double rounding = Ulp * p.Base() * Magnification(p.Chart, shape, reference);
     worstPoint.Take(Norm(found - expected) / rounding, p.Triangle, expected);
   }
-  std::cout << TypeParam::Name << ": on an edge p is off by " << worstP.Value << ", c by "
-            << worstC.Value << ", the point at (e, p, 1) by " << worstPoint.Value
-            << " times rounding\n";
   EXPECT_LT(worstP.Value, 16.0) << worstP.Where;
   EXPECT_LT(worstC.Value, 16.0) << worstC.Where;
   EXPECT_LT(worstPoint.Value, 16.0) << worstPoint.Where;
@@ -170,7 +165,6 @@ TYPED_TEST(Edges, AreMappedLinearly)
       worst.Take(Norm(image - at(q.Triangle.Shape)) / rounding, p.Triangle, point);
     }
   }
-  std::cout << TypeParam::Name << ": points of edges off by " << worst.Value << " times rounding\n";
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
 
@@ -198,9 +192,6 @@ TYPED_TEST(Edges, SameTriangleGivesTheIdentity)
       worstDerivative.Take(change / (Ulp * condition), p.Triangle, point);
     }
   }
-  std::cout << TypeParam::Name << ": identity off by " << worst.Value
-            << " ulp of the longest edge, its derivative by " << worstDerivative.Value
-            << " times rounding\n";
   EXPECT_LT(worstDerivative.Value, 1e3) << worstDerivative.Where;
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
@@ -223,7 +214,6 @@ TYPED_TEST(Edges, ExchangingTheTrianglesGivesTheInverse)
       worst.Take(Norm(back - point) / rounding, p.Triangle, point);
     }
   }
-  std::cout << TypeParam::Name << ": there and back off by " << worst.Value << " times rounding\n";
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
 
@@ -246,8 +236,6 @@ TYPED_TEST(Edges, MapsCompose)
       worst.Take(Norm(viaQ - direct) / rounding, p.Triangle, point);
     }
   }
-  std::cout << TypeParam::Name << ": P->Q->R differs from P->R by " << worst.Value
-            << " times rounding\n";
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
 

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iostream>
 
 namespace
 {
@@ -66,8 +65,6 @@ TEST(Geometry, ViewFromEdgeIsAccurateToAFewUlp)
     worstFoot = std::max(worstFoot, RelativeError(view.Foot, static_cast<double>(foot)));
     worstHeight = std::max(worstHeight, RelativeError(view.Height, static_cast<double>(height)));
   }
-  std::cout << "Views: length off by " << worstLength / Ulp << ", foot by " << worstFoot / Ulp
-            << ", height by " << worstHeight / Ulp << " ulp\n";
   EXPECT_LT(worstLength, 2.0 * Ulp);
   EXPECT_LT(worstFoot, 8.0 * Ulp);
   EXPECT_LT(worstHeight, 8.0 * Ulp);

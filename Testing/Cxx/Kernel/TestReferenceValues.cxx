@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <iostream>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -166,10 +165,6 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
       unavoidable + ulp * std::max(Aspect(p), Aspect(q)) * Norm(expectedDerivative);
     worst.Derivative = std::max(worst.Derivative, Norm(derivative - expectedDerivative) / allowed);
   }
-  std::cout << name << ": " << rows.size() << " rows; worst error of coordinates "
-            << worst.Coordinates << " of the triangle, of points " << worst.Point
-            << " of the coordinates' size, of derivatives " << worst.Derivative
-            << " of what one bit of the point changes\n";
   EXPECT_LT(worst.Coordinates, 1e-14);
   EXPECT_LT(worst.Point, 2e-15);
   EXPECT_LT(worst.Derivative, 8.0);

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <string>
 
 namespace
@@ -71,8 +70,6 @@ TEST(SmoothEdge, FirstDerivativesAgree)
           Description(q.First, {}) + " | " + Description(q.Second, {});
       }
     }
-    std::cout << (moderate ? "moderate" : "any") << " pairs: first derivatives differ by " << worst
-              << " times rounding\n";
     EXPECT_LT(worst, 64.0) << where;
   }
 }
@@ -85,8 +82,6 @@ TEST(SmoothEdge, SecondDerivativesAgree)
   // by chance.
   RandomNumbers random(52);
   double worstFall = 0.0;
-  double worstLeft = 0.0;
-  double largest = 0.0;
   int pairs = 0;
   for (int n = 0; n < 5000; ++n)
   {
@@ -119,8 +114,6 @@ TEST(SmoothEdge, SecondDerivativesAgree)
     const auto jump = [&](double h) { return Norm(derivative(0, h) - derivative(1, h)) / scale; };
     const double coarse = std::max({ jump(8e-4), 4.0 * jump(4e-4), 16.0 * jump(2e-4) });
     const double fine = jump(1e-4);
-    largest = std::max(largest, coarse);
-    worstLeft = std::max(worstLeft, fine);
     // Where the jump is above rounding.
     if (coarse > 1e-7)
     {
@@ -128,8 +121,6 @@ TEST(SmoothEdge, SecondDerivativesAgree)
       worstFall = std::max(worstFall, fine / coarse);
     }
   }
-  std::cout << "second derivatives differ by up to " << largest << ", with a step 8 times less by "
-            << worstLeft << "; it falls to " << worstFall << " of it at most\n";
   EXPECT_GT(pairs, 4000);
   EXPECT_LT(worstFall, 1.0 / 32.0);
 }
@@ -170,7 +161,6 @@ TEST(SmoothEdge, DerivativeAcrossTheEdgeIsV)
     const Vector2 along = p.First.VectorFromFrame(charts[0].Pushforward(l[0], { -1.0, 1.0, 0.0 }));
     worst = std::max(worst, Norm(along - (p.End - p.Start)) / size);
   }
-  std::cout << "derivative across the edge off by " << worst << " of the triangles' size\n";
   EXPECT_LT(worst, 4e-14);
 }
 
@@ -225,8 +215,6 @@ TEST(SmoothEdge, AffinePairsGiveTheAffineMap)
       worstDerivative = std::max(worstDerivative, errorOfDerivative);
     }
   }
-  std::cout << "affine map off by " << worst << " of the triangles' size, its derivative by "
-            << worstDerivative << " of its condition\n";
   EXPECT_LT(worst, 1e-14) << where;
   EXPECT_LT(worstDerivative, 1e-14);
 }
@@ -242,7 +230,6 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
   constexpr int triangles = 100000;
   constexpr int pointsPerTriangle = 102;
   RandomNumbers random(55);
-  long points = 0;
   long below = 0;
   // The least determinant over pairs whose shares 2 a / (a + a*) are not small, and the least
   // quotient of determinant and bound where the bound is that share.
@@ -260,7 +247,7 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
     const double otherHeight = p.Second.Views()[2].Height;
     const double share = 2.0 * (side == 0 ? otherHeight : height) / (height + otherHeight);
     const double tau = chart.StripWidth(2);
-    for (int i = 0; i < pointsPerTriangle; ++i, ++points)
+    for (int i = 0; i < pointsPerTriangle; ++i)
     {
       // 0.6 is where K' is least and u^3 (1 - u)^2 greatest.
       const double u = i % 3 == 0 ? random.Uniform(0.55, 0.65) : random.Uniform();
@@ -286,9 +273,6 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
       }
     }
   }
-  std::cout << points << " points: determinant at least " << lowest << ", or " << nearestShare
-            << " times the neighbor's share\n";
-  EXPECT_GE(points, 10000000);
   EXPECT_EQ(below, 0) << where;
   // 1 + K' - 6 u^3 (1 - u)^2 is least at u = 3/5, where K' and u^3 (1 - u)^2 are both extreme: 4385
   // / 15625 = 0.28064. It is approached beside far larger neighbors, near a corner.
@@ -317,7 +301,6 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivative)
     worst = std::max(
       worst, std::abs(Cross(a, b) / affine - chart.DeterminantRatio(l)) / (1.0 + condition));
   }
-  std::cout << "determinant off by " << worst << " of its condition\n";
   EXPECT_LT(worst, 1e-14);
 }
 
