@@ -30,12 +30,14 @@ set(cubic_sources
   Mesh/BendingSolve.cxx
   Mesh/CubicMap.cxx
   Mesh/CubicTemplate.cxx
+  Mesh/CubicTriangle.cxx
   Mesh/PlanarPair.cxx
   Mesh/VertexGradient.cxx)
 set(cubic_headers
   Mesh/BendingSolve.h
   Mesh/CubicMap.h
   Mesh/CubicTemplate.h
+  Mesh/CubicTriangle.h
   Mesh/PlanarPair.h
   Mesh/VertexGradient.h)
 

@@ -415,35 +415,78 @@ Matrix2 AffineDerivative(const std::array<Vector2, 3>& from, const std::array<Ve
 }
 
 //------------------------------------------------------------------------------
-Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point)
+BarycentricFrame::BarycentricFrame(const std::array<Vector2, 3>& points)
 {
-  int apex = 0;
   double longest = -1.0;
   for (int k = 0; k < 3; ++k)
   {
     const Vector2 edge = points[PreviousCorner(k)] - points[NextCorner(k)];
     const double squared = Dot(edge, edge);
-    apex = squared > longest ? k : apex;
+    this->Apex = squared > longest ? k : this->Apex;
     longest = squared > longest ? squared : longest;
   }
-  const Vector2 start = points[NextCorner(apex)];
-  const Vector2 edge = points[PreviousCorner(apex)] - start;
-  const Vector2 toApex = points[apex] - start;
-  const Vector2 d = point - start;
-  const double height = Cross(edge, d) / Cross(edge, toApex);
-  const double along = (Dot(edge, d) - height * Dot(edge, toApex)) / longest;
-  Barycentric l;
-  l[apex] = height;
-  l[PreviousCorner(apex)] = along;
-  l[NextCorner(apex)] = 1.0 - height - along;
-  return l;
+  this->Start = points[NextCorner(this->Apex)];
+  const Vector2 edge = points[PreviousCorner(this->Apex)] - this->Start;
+  const Vector2 toApex = points[this->Apex] - this->Start;
+  this->Along = (1.0 / longest) * edge;
+  this->Across = (1.0 / Cross(edge, toApex)) * Vector2{ -edge.y, edge.x };
+  this->Foot = Dot(this->Along, toApex);
 }
 
 //------------------------------------------------------------------------------
-CubicPiece FindPiece(const Barycentric& l)
+Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point)
 {
-  const int k = l[0] <= l[1] ? (l[0] <= l[2] ? 0 : 2) : (l[1] <= l[2] ? 1 : 2);
-  return { k, l[NextCorner(k)] - l[k], l[PreviousCorner(k)] - l[k], 3.0 * l[k] };
+  return BarycentricFrame(points)(point);
+}
+
+//------------------------------------------------------------------------------
+CubicNet::CubicNet(const CubicElement& element)
+{
+  const CubicOrdinates<Vector2> b = GetOrdinates(element);
+  std::array<Vector2, 3> images;
+  for (int i = 0; i < 3; ++i)
+  {
+    images[i] = element.Affine * element.Points[i];
+  }
+  const Vector2 centroid = (1.0 / 3.0) * (images[0] + images[1] + images[2]);
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    const std::array<Vector2, 10> displacements{ b.Corner[i], b.AfterStart[k], b.BeforeEnd[k],
+      b.Corner[j], b.Inner[i], b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j], b.Center };
+    int n = 0;
+    for (int third = 0; third <= 3; ++third)
+    {
+      for (int second = 0; second + third <= 3; ++second, ++n)
+      {
+        const double first = 3.0 - second - third;
+        this->Pieces[k][n] = displacements[n] +
+          (1.0 / 3.0) * (first * images[i] + double(second) * images[j] + double(third) * centroid);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+Vector2 CubicNet::Evaluate(
+  const Barycentric& l, const std::array<Vector2, 3>& points, Matrix2& derivative) const
+{
+  const CubicPiece piece = FindPiece(l);
+  Vector2 start;
+  Vector2 end;
+  Vector2 centroid;
+  this->Reduce(piece, start, end, centroid);
+  const Vector2 corner = points[NextCorner(piece.Opposite)];
+  const Vector2 along = points[PreviousCorner(piece.Opposite)] - corner;
+  const Vector2 inward = (1.0 / 3.0) * (along + (points[piece.Opposite] - corner));
+  // The matrix that takes the two steps to three times the differences of start, end and centroid.
+  const double scale = 3.0 / Cross(along, inward);
+  const Vector2 alongImage = scale * (end - start);
+  const Vector2 inwardImage = scale * (centroid - start);
+  derivative = { inward.y * alongImage - along.y * inwardImage,
+    along.x * inwardImage - inward.x * alongImage };
+  return piece.Start * start + piece.End * end + piece.Centroid * centroid;
 }
 
 //------------------------------------------------------------------------------

@@ -116,13 +116,90 @@ struct CubicPiece
   double Centroid;
 };
 
-CubicPiece FindPiece(const Barycentric& l);
+inline CubicPiece FindPiece(const Barycentric& l)
+{
+  const int k = l[0] <= l[1] ? (l[0] <= l[2] ? 0 : 2) : (l[1] <= l[2] ? 1 : 2);
+  return { k, l[NextCorner(k)] - l[k], l[PreviousCorner(k)] - l[k], 3.0 * l[k] };
+}
 
 CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element);
 
 /// D and its derivative at a point with barycentric coordinates @a l.
 void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& ordinates,
   const Barycentric& l, Vector2& value, Matrix2& derivative);
+
+/// Barycentric coordinates as ToBarycentric gives them, prepared for many points of one triangle.
+class BarycentricFrame
+{
+public:
+  BarycentricFrame() = default;
+  explicit BarycentricFrame(const std::array<Vector2, 3>& points);
+
+  Barycentric operator()(const Vector2& point) const
+  {
+    const Vector2 d = point - this->Start;
+    const double height = Dot(this->Across, d);
+    const double along = Dot(this->Along, d) - height * this->Foot;
+    Barycentric l;
+    l[this->Apex] = height;
+    l[PreviousCorner(this->Apex)] = along;
+    l[NextCorner(this->Apex)] = 1.0 - height - along;
+    return l;
+  }
+
+private:
+  int Apex = 0;
+  Vector2 Start;
+  Vector2 Along;
+  Vector2 Across;
+  /// Of the apex, over the length of the longest edge.
+  double Foot = 0.0;
+};
+
+/// The Bernstein ordinates of f, not only of D, of one element: the fastest way to its values.
+class CubicNet
+{
+public:
+  CubicNet() = default;
+  explicit CubicNet(const CubicElement& element);
+
+  /// f at a point with barycentric coordinates @a l.
+  Vector2 operator()(const Barycentric& l) const
+  {
+    const CubicPiece piece = FindPiece(l);
+    Vector2 start;
+    Vector2 end;
+    Vector2 centroid;
+    this->Reduce(piece, start, end, centroid);
+    return piece.Start * start + piece.End * end + piece.Centroid * centroid;
+  }
+
+  /// f, and its derivative by the steps between the corners of the piece: with the derivative that
+  /// Evaluate gives, it agrees up to rounding, which a thin element magnifies.
+  Vector2 Evaluate(
+    const Barycentric& l, const std::array<Vector2, 3>& points, Matrix2& derivative) const;
+
+private:
+  void Reduce(const CubicPiece& piece, Vector2& start, Vector2& end, Vector2& centroid) const
+  {
+    const std::array<Vector2, 10>& b = this->Pieces[piece.Opposite];
+    const double u = piece.Start;
+    const double v = piece.End;
+    const double w = piece.Centroid;
+    const double uu = u * u;
+    const double uv = 2.0 * u * v;
+    const double vv = v * v;
+    const double uw = 2.0 * u * w;
+    const double vw = 2.0 * v * w;
+    const double ww = w * w;
+    start = uu * b[0] + uv * b[1] + vv * b[2] + uw * b[4] + vw * b[5] + ww * b[7];
+    end = uu * b[1] + uv * b[2] + vv * b[3] + uw * b[5] + vw * b[6] + ww * b[8];
+    centroid = uu * b[4] + uv * b[5] + vv * b[6] + uw * b[7] + vw * b[8] + ww * b[9];
+  }
+
+  /// Of the piece opposite each corner, row by row from its edge to the centroid.
+  std::array<std::array<Vector2, 10>, 3> Pieces;
+};
 
 /// The weights of a quartic's Bernstein coefficients: start, end and centroid of its piece.
 struct QuarticIndex

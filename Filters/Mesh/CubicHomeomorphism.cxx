@@ -75,6 +75,26 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     });
 }
 
+Vector2 CubicHomeomorphism::MapPoint(
+  Domain from, TriangleIndex triangle, const Vector2& inFrame, CubicTriangle& prepared) const
+{
+  Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
+  int number = this->Numbers[triangle];
+  const bool mirrored = this->Mirrored[number] != 0;
+  Vector2 image;
+  if (from == Domain::Source)
+  {
+    image = this->Map->MapPoint(number, point, prepared);
+    image.x = mirrored ? -image.x : image.x;
+  }
+  else
+  {
+    point.x = mirrored ? -point.x : point.x;
+    this->Map->FindPreimage(point, number, image, prepared);
+  }
+  return image;
+}
+
 void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame,
   Vector2& image, Matrix2& derivative) const
 {

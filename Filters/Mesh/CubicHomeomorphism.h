@@ -28,6 +28,10 @@ public:
 
   const CubicMap& GetMap() const { return *this->Map; }
 
+  /// The image of a point of a triangle's frame, in the plane of the other mesh.
+  Vector2 MapPoint(
+    Domain from, TriangleIndex triangle, const Vector2& inFrame, CubicTriangle& prepared) const;
+
   /// The image of a point of a triangle's frame, and the derivative from frame to frame. Both are
   /// in the plane of the other mesh.
   void MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame, Vector2& image,

@@ -171,15 +171,23 @@ Vector2 Solve(const Matrix2& m, const Vector2& v)
 // The edge through which a point relative to corner 0 lies outside farthest, -1 if it is inside.
 int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
 {
+  // Corner 0 is the origin, so a point on an edge is on it from both sides.
+  std::array<double, 3> heights;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vector2 start = corners[NextCorner(k)];
+    heights[k] = Cross(corners[PreviousCorner(k)] - start, point - start);
+  }
+  if (heights[0] >= 0.0 && heights[1] >= 0.0 && heights[2] >= 0.0)
+  {
+    return -1;
+  }
   int exit = -1;
   double farthest = 0.0;
   for (int k = 0; k < 3; ++k)
   {
-    const Vector2 start = corners[NextCorner(k)];
-    const Vector2 edge = corners[PreviousCorner(k)] - start;
-    // Corner 0 is the origin, so a point on an edge is on it from both sides.
-    const double height = Cross(edge, point - start);
-    const double relative = height / Dot(edge, edge);
+    const Vector2 edge = corners[PreviousCorner(k)] - corners[NextCorner(k)];
+    const double relative = heights[k] / Dot(edge, edge);
     if (relative < farthest)
     {
       farthest = relative;
@@ -339,90 +347,151 @@ void CubicMap::MapFine(
 }
 
 //------------------------------------------------------------------------------
-void CubicMap::MapPoint(
-  int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+Vector2 CubicMap::MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const
 {
   const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
   const PlanarPair& pair = this->GetFine();
   const int first = pair.Triangles[child][0];
-  this->MapFine(child, point - pair.Source[first], image, derivative);
-  image = pair.Target[first] + image;
+  prepared.Set(child);
+  return pair.Target[first] + prepared.Map(point - pair.Source[first]);
 }
 
 //------------------------------------------------------------------------------
-bool CubicMap::FindPreimage(const Vector2& image, int& triangle, Vector2& point) const
+void CubicMap::MapPoint(
+  int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+{
+  const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
+  Vector2 local;
+  this->MapFine(
+    child, point - this->GetFine().Source[this->GetFine().Triangles[child][0]], local, derivative);
+  // To the same bits as without a derivative.
+  CubicTriangle prepared = this->Prepare();
+  image = this->MapPoint(triangle, point, prepared);
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::Walk(int& triangle, Vector2& point) const
+{
+  const PlanarPair& pair = this->GetFine();
+  for (int step = 0; step < 1000; ++step)
+  {
+    const std::array<Vector2, 3> corners = pair.GetSourceCorners(triangle);
+    const int exit = FindExit(corners, point);
+    if (exit < 0)
+    {
+      return;
+    }
+    const int neighbor = pair.Neighbors[triangle][exit];
+    if (neighbor < 0)
+    {
+      // The nearest point of the boundary edge.
+      const Vector2 start = corners[NextCorner(exit)];
+      const Vector2 edge = corners[PreviousCorner(exit)] - start;
+      const double s = std::clamp(Dot(point - start, edge) / Dot(edge, edge), 0.0, 1.0);
+      point = start + s * edge;
+      return;
+    }
+    point =
+      point + (pair.Source[pair.Triangles[triangle][0]] - pair.Source[pair.Triangles[neighbor][0]]);
+    triangle = neighbor;
+  }
+}
+
+//------------------------------------------------------------------------------
+bool CubicMap::FindPreimage(
+  const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const
 {
   // Newton's method from the piecewise linear preimage, walking over the triangles. All positions
   // are relative to corner 0 of the current triangle.
   const PlanarPair& pair = this->GetFine();
   const Vector2 origin = pair.Target[this->Pair.Triangles[triangle][0]];
-  Vector2 x = Solve(this->Pair.GetAffine(triangle), image - origin);
   int t = triangle;
+  Vector2 x;
   if (this->Levels > 0)
   {
-    const Vector2 absolute = this->Pair.Source[this->Pair.Triangles[triangle][0]] + x;
+    const Vector2 absolute = this->Pair.Source[this->Pair.Triangles[triangle][0]] +
+      Solve(this->Pair.GetAffine(triangle), image - origin);
     t = this->FindChild(triangle, absolute);
     x = absolute - pair.Source[pair.Triangles[t][0]];
   }
-  const auto walk = [&pair](int& at, Vector2& to) {
-    for (int step = 0; step < 1000; ++step)
-    {
-      const std::array<Vector2, 3> corners = pair.GetSourceCorners(at);
-      const int exit = FindExit(corners, to);
-      if (exit < 0)
-      {
-        return;
-      }
-      const int neighbor = pair.Neighbors[at][exit];
-      if (neighbor < 0)
-      {
-        // The nearest point of the boundary edge.
-        const Vector2 start = corners[NextCorner(exit)];
-        const Vector2 edge = corners[PreviousCorner(exit)] - start;
-        const double s = std::clamp(Dot(to - start, edge) / Dot(edge, edge), 0.0, 1.0);
-        to = start + s * edge;
-        return;
-      }
-      to = to + (pair.Source[pair.Triangles[at][0]] - pair.Source[pair.Triangles[neighbor][0]]);
-      at = neighbor;
-    }
-  };
-  walk(t, x);
-  Vector2 value;
-  Matrix2 derivative;
-  const auto evaluate = [&](int at, const Vector2& from) {
-    this->MapFine(at, from, value, derivative);
-    return (image - pair.Target[pair.Triangles[at][0]]) - value;
-  };
-  Vector2 residual = evaluate(t, x);
-  double size = MaxNorm(residual);
-  bool done = false;
-  for (int step = 0; step < NewtonSteps && !done && size > 0.0; ++step)
+  else
   {
-    const Vector2 move = Solve(derivative, residual);
-    double share = 1.0;
-    bool better = false;
-    for (int half = 0; half < 30 && !better; ++half, share *= 0.5)
+    prepared.Set(t);
+    x = Solve(prepared.GetAffine(), image - origin);
+  }
+  this->Walk(t, x);
+  double size = 0.0;
+  Vector2 residual;
+  Matrix2 derivative;
+  // Whole steps first, with the derivative that comes with the value.
+  {
+    int at = t;
+    Vector2 from = x;
+    double last = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < 20; ++step)
     {
-      int next = t;
-      Vector2 to = x + share * move;
-      walk(next, to);
-      const Vector2 nextResidual = evaluate(next, to);
-      const double nextSize = MaxNorm(nextResidual);
-      if (nextSize < size)
-      {
-        better = true;
-        t = next;
-        x = to;
-        residual = nextResidual;
-        size = nextSize;
-      }
-      else if (size <= this->ResidualTolerance)
+      prepared.Set(at);
+      bool isAffine;
+      const Vector2 value = prepared.Map(from, derivative, isAffine);
+      residual = (image - pair.Target[pair.Triangles[at][0]]) - value;
+      size = MaxNorm(residual);
+      if (!(size < last))
       {
         break;
       }
+      last = size;
+      t = at;
+      x = from;
+      if (size <= 0.5 * this->ResidualTolerance)
+      {
+        break;
+      }
+      from = from + Solve(derivative, residual);
+      if (step > 0 || !isAffine)
+      {
+        this->Walk(at, from);
+      }
     }
-    done = !better;
+    size = last;
+  }
+  if (!(size <= this->ResidualTolerance))
+  {
+    const auto evaluate = [&](int at, const Vector2& from) {
+      Vector2 value;
+      this->MapFine(at, from, value, derivative);
+      prepared.Set(at);
+      return (image - pair.Target[pair.Triangles[at][0]]) - prepared.Map(from);
+    };
+    residual = evaluate(t, x);
+    size = MaxNorm(residual);
+    bool done = false;
+    for (int step = 0; step < NewtonSteps && !done && size > 0.0; ++step)
+    {
+      const Vector2 move = Solve(derivative, residual);
+      double share = 1.0;
+      bool better = false;
+      for (int half = 0; half < 30 && !better; ++half, share *= 0.5)
+      {
+        int next = t;
+        Vector2 to = x + share * move;
+        this->Walk(next, to);
+        const Vector2 nextResidual = evaluate(next, to);
+        const double nextSize = MaxNorm(nextResidual);
+        if (nextSize < size)
+        {
+          better = true;
+          t = next;
+          x = to;
+          residual = nextResidual;
+          size = nextSize;
+        }
+        else if (size <= this->ResidualTolerance)
+        {
+          break;
+        }
+      }
+      done = !better;
+    }
   }
   if (!(size <= this->ResidualTolerance))
   {
@@ -435,13 +504,10 @@ bool CubicMap::FindPreimage(const Vector2& image, int& triangle, Vector2& point)
       point = better;
       return true;
     }
-    triangle = t >> (2 * this->Levels);
-    point = pair.Source[pair.Triangles[t][0]] + x;
-    return false;
   }
   triangle = t >> (2 * this->Levels);
   point = pair.Source[pair.Triangles[t][0]] + x;
-  return true;
+  return size <= this->ResidualTolerance;
 }
 
 //------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 
 #include "Mesh/BendingSolve.h"
 #include "Mesh/CubicTemplate.h"
+#include "Mesh/CubicTriangle.h"
 #include "Mesh/PlanarPair.h"
 
 #include <cstdint>
@@ -78,13 +79,25 @@ public:
   /// positive.
   const std::vector<double>& GetCertificates() const { return this->Certificates; }
 
+  /// What the functions below need to be fast for many points, one triangle after another.
+  CubicTriangle Prepare() const { return CubicTriangle(*this->Template, this->Bending.get()); }
+
+  /// The image of a point of a triangle.
+  Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const;
+
   /// The image of a point of a triangle, and the derivative there.
   void MapPoint(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
 
   /// The point that is mapped to @a image, and the triangle in which it lies. @a triangle is where
   /// the piecewise linear map has it. Returns false if no point of the domain is found, which
   /// happens to an image outside the target's domain only.
-  bool FindPreimage(const Vector2& image, int& triangle, Vector2& point) const;
+  bool FindPreimage(
+    const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const;
+  bool FindPreimage(const Vector2& image, int& triangle, Vector2& point) const
+  {
+    CubicTriangle prepared = this->Prepare();
+    return this->FindPreimage(image, triangle, point, prepared);
+  }
 
   /// Calls @a visit with every element of a triangle of the pair, relative to the given origins in
   /// the source and in the target, and the factor by which it is shrunk about them. Endless rings
@@ -98,6 +111,8 @@ private:
   const PlanarPair& GetFine() const { return this->Fine ? *this->Fine : this->Pair; }
   int FindChild(int triangle, const Vector2& point) const;
   void MapFine(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
+  /// Moves a point relative to corner 0 of a triangle, and the triangle, to where the point is.
+  void Walk(int& triangle, Vector2& point) const;
   bool SearchPreimage(const Vector2& image, int& triangle, Vector2& point) const;
   void VisitFine(int triangle,
     const std::function<void(const CubicElement& element, const Vector2& sourceOrigin,

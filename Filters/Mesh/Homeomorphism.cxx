@@ -533,15 +533,33 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
   }
 }
 
+/// Maps the points by the Cubic system.
 void Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
 {
-  for (int i = 0; i < block.Count; ++i)
-  {
-    if (block.Triangles[i] >= 0 && block.Corners[i] < 0)
-    {
-      this->MapPoint(from, block.GetSurfacePoint(i), block.Images[i]);
-    }
-  }
+  CubicTriangle prepared = this->Cubic->GetMap().Prepare();
+  ForEachRun(
+    block,
+    [&](int begin, int end, TriangleIndex) {
+      for (int i = begin; i < end; ++i)
+      {
+        this->MapByCubic(from, block.GetSurfacePoint(i), prepared, block.Images[i]);
+      }
+    },
+    [](int) {});
+}
+
+void Homeomorphism::MapByCubic(
+  Domain from, const SurfacePoint& surfacePoint, CubicTriangle& prepared, double image[3]) const
+{
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+  const Vector2 inPlane = this->Cubic->MapPoint(
+    this->ToCubic(from), surfacePoint.Triangle, surfacePoint.Point.InPlane, prepared);
+  // Heights are measured as in the triangle's frame.
+  const double orientation =
+    target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
+  target.FromNormalized(
+    { inPlane.x, inPlane.y, orientation * this->OffsetOfImage(from, surfacePoint.Point.Offset) },
+    image);
 }
 
 /// From barycentric coordinates in the target's affine chart of a triangle to its points.
@@ -603,14 +621,8 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   }
   if (this->Cubic)
   {
-    Vector2 inPlane;
-    Matrix2 derivative;
-    this->Cubic->MapPoint(
-      this->ToCubic(from), surfacePoint.Triangle, surfacePoint.Point.InPlane, inPlane, derivative);
-    // Heights are measured as in the triangle's frame.
-    const double orientation =
-      target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
-    target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
+    CubicTriangle prepared = this->Cubic->GetMap().Prepare();
+    this->MapByCubic(from, surfacePoint, prepared, image);
     return;
   }
   FramePoint point;
@@ -623,9 +635,8 @@ Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vec
 {
   if (this->Cubic)
   {
-    Vector2 inPlane;
-    Matrix2 derivative;
-    this->Cubic->MapPoint(this->ToCubic(from), triangle, point, inPlane, derivative);
+    CubicTriangle prepared = this->Cubic->GetMap().Prepare();
+    const Vector2 inPlane = this->Cubic->MapPoint(this->ToCubic(from), triangle, point, prepared);
     return this->Pair->GetGeometry(Opposite(from)).GetPlaneFrame(triangle).ToFrame(inPlane);
   }
   return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {

@@ -185,6 +185,8 @@ private:
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;
   void MapByCubics(Domain from, PointBlock& block) const;
+  void MapByCubic(
+    Domain from, const SurfacePoint& surfacePoint, CubicTriangle& prepared, double image[3]) const;
   Domain ToCubic(Domain domain) const { return this->IsCubicInverted ? Opposite(domain) : domain; }
   template <typename Coordinates>
   void LeaveTriangle(Domain from, TriangleIndex triangle, int begin, int end,
