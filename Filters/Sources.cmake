@@ -36,6 +36,7 @@ set(cubic_sources
 set(cubic_headers
   Mesh/BendingSolve.h
   Mesh/CubicMap.h
+  Mesh/CubicMapOptions.h
   Mesh/CubicTemplate.h
   Mesh/CubicTriangle.h
   Mesh/PlanarPair.h

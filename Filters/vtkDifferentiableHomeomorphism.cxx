@@ -3,6 +3,7 @@
 
 #include "vtkDifferentiableHomeomorphism.h"
 
+#include "Mesh/CubicHomeomorphism.h"
 #include "Pipeline/AttributeTransformation.h"
 #include "Pipeline/CellPoints.h"
 #include "Pipeline/CompositeData.h"

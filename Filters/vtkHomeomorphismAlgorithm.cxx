@@ -3,6 +3,7 @@
 
 #include "vtkHomeomorphismAlgorithm.h"
 
+#include "Mesh/CubicHomeomorphism.h"
 #include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/HomeomorphismCache.h"
 #include "Pipeline/Options.h"

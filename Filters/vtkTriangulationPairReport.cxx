@@ -5,6 +5,7 @@
 
 #include "Construction/MapStatistics.h"
 #include "Construction/PairStatistics.h"
+#include "Mesh/CubicHomeomorphism.h"
 #include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/Options.h"
 #include "Pipeline/Requests.h"

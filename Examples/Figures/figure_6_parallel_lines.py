@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parallel lines over the publication's pair of polygons, in the three systems."""
+"""Parallel lines over the publication's pair of polygons, in the four systems."""
 
 import numpy
 from drawing import INK, SYSTEMS, Coordinates, Page, close_up, cross, draw_edges, edges_of, fill, map_between, stroke, \
@@ -32,8 +32,8 @@ print(f"{len(TRIANGLES)} triangles, all concordant in both; {len(lines)} pieces 
 
 edges, counts = edges_of(TRIANGLES)
 rim = edges[counts == 1]
-page = Page(1240, 900)
-for column, system in enumerate((None, *SYSTEMS)):
+page = Page(1550, 900)
+for column, system in enumerate((None, *SYSTEMS, "cubic")):
     mesh = TARGET if system else SOURCE
     f = map_between(SOURCE, TARGET, TRIANGLES, system) if system else lambda points: points
     page.label(155 + 310 * column, 874, system.capitalize() if system else "Source", 22)

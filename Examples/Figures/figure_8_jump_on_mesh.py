@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The jump of the Jacobian across the edges of a pair of meshes, in the three systems: of two drawn faces, and with
+"""The jump of the Jacobian across the edges of a pair of meshes, in the four systems: of two drawn faces, and with
 --photographs after the folder of two photographs (Debian's package gtkmorph-example)."""
 
 import sys
@@ -82,7 +82,7 @@ def view_of(points):
 
 
 def draw(name, meshes, triangles, draw_side):
-    page = Page(1240, 505)
+    page = Page(1552, 505)
     page.label(103, 481, "Source and target", 19)
     for side, points in enumerate(meshes):
         axes = page.panel(8, 8 if side else 236, 190, 222, view_of(points))
@@ -91,7 +91,7 @@ def draw(name, meshes, triangles, draw_side):
     edges, counts = edges_of(triangles)
     discordant = sum(~(Coordinates(meshes[0], triangles).concordant & Coordinates(meshes[1], triangles).concordant))
     print(f"{'':8} {'triangles':>10} {'discordant':>10} {'least jump':>14} {'largest jump':>14}")
-    for k, system in enumerate(SYSTEMS):
+    for k, system in enumerate((*SYSTEMS, "cubic")):
         continuity = measure_continuity(*meshes, triangles, system)
         lines, cells = continuity.GetOutput(0), continuity.GetOutput(1)
         of_edges, of_triangles = (vtk_to_numpy(d.GetCellData().GetArray("JacobianJump")) for d in (lines, cells))
@@ -111,7 +111,7 @@ def draw(name, meshes, triangles, draw_side):
         digits, power = f"{largest:.1e}".split("e")
         text = f"{largest:.2f}" if largest >= 0.01 else f"${digits} \\times 10^{{{int(power)}}}$"
         page.label(left + 152, 16, "largest jump " + text, 16)
-    bar = page.figure.add_axes([1163 / 1240, 60 / 505, 16 / 1240, 380 / 505])
+    bar = page.figure.add_axes([1475 / 1552, 60 / 505, 16 / 1552, 380 / 505])
     page.figure.colorbar(ScalarMappable(NORM, COLORS), cax=bar, ticks=10.0 ** numpy.arange(-12, 1, 3))
     bar.minorticks_off()
     page.save(name)

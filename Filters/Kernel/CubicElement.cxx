@@ -398,6 +398,46 @@ double LeastOf(const Quartic& quartic, double enough, int subdivisions)
   return std::max(least, std::min(first, LeastOf(halves[1], enough, subdivisions - 1)));
 }
 
+// A lower bound of the determinant if D' is so small beside L that rounding cannot matter, else
+// minus infinity. With N = L^-1 D', each coefficient is det L times a mean of mixed determinants of
+// I + N at two ordinates, 1 + (tr N_i + tr N_j) / 2 + ..., which are at least 1 - 2 |N| - |N|^2.
+double BoundByNorms(const CubicElement& element)
+{
+  constexpr double greatest = 0.15;
+  constexpr double greatestCondition = 1e4;
+  constexpr double rounding = 1e-6;
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  const bool isRight = element.Right.Corner >= 0;
+  const double squares = SquaredNorm(element.Affine);
+  const double determinant = element.Affine.Determinant();
+  if (!(squares < greatestCondition * determinant))
+  {
+    return none;
+  }
+  if (!isRight)
+  {
+    const Vector2 a = element.Points[1] - element.Points[0];
+    const Vector2 b = element.Points[2] - element.Points[0];
+    if (!(Cross(a, b) > 1e-2 * (Dot(a, a) + Dot(b, b))))
+    {
+      return none;
+    }
+  }
+  const DerivativeOrdinates<double> d =
+    isRight ? MakeRightDerivative<double>(element) : MakeDerivative<double>(element);
+  const auto norm = [](const Matrix<double>& m) {
+    return Dot(m.First, m.First) + Dot(m.Second, m.Second);
+  };
+  double longest = norm(d.Center);
+  for (int i = 0; i < 3; ++i)
+  {
+    longest = std::max({ longest, norm(d.Corner[i]), norm(d.Edge[i]), norm(d.Spoke[i]) });
+  }
+  // The Frobenius norm of L^-1 is that of L over the determinant.
+  const double ratio = std::sqrt(longest * squares) / determinant;
+  return ratio < greatest ? determinant * (1.0 - ratio * (2.0 + ratio) - rounding) : none;
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -448,45 +488,45 @@ CubicNet::CubicNet(const CubicElement& element)
   {
     images[i] = element.Affine * element.Points[i];
   }
-  const Vector2 centroid = (1.0 / 3.0) * (images[0] + images[1] + images[2]);
+  const Vector2 center = (1.0 / 3.0) * (images[0] + images[1] + images[2]);
+  // A third of the way from one point to another.
+  const auto third = [](const Vector2& from, const Vector2& to) {
+    return (1.0 / 3.0) * (2.0 * from + to);
+  };
   for (int k = 0; k < 3; ++k)
   {
-    const int i = NextCorner(k);
-    const int j = PreviousCorner(k);
-    const std::array<Vector2, 10> displacements{ b.Corner[i], b.AfterStart[k], b.BeforeEnd[k],
-      b.Corner[j], b.Inner[i], b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j], b.Center };
-    int n = 0;
-    for (int third = 0; third <= 3; ++third)
-    {
-      for (int second = 0; second + third <= 3; ++second, ++n)
-      {
-        const double first = 3.0 - second - third;
-        this->Pieces[k][n] = displacements[n] +
-          (1.0 / 3.0) * (first * images[i] + double(second) * images[j] + double(third) * centroid);
-      }
-    }
+    const Vector2 start = images[NextCorner(k)];
+    const Vector2 end = images[PreviousCorner(k)];
+    this->Ordinates[k] = images[k] + b.Corner[k];
+    this->Ordinates[AfterStart + k] = third(start, end) + b.AfterStart[k];
+    this->Ordinates[BeforeEnd + k] = third(end, start) + b.BeforeEnd[k];
+    this->Ordinates[Inner + k] = third(images[k], center) + b.Inner[k];
+    this->Ordinates[Middle + k] = (1.0 / 3.0) * (start + end + center) + b.Middle[k];
+    this->Ordinates[Spoke + k] = third(center, images[k]) + b.Spoke[k];
   }
+  this->Ordinates[Center] = center + b.Center;
 }
 
 //------------------------------------------------------------------------------
-Vector2 CubicNet::Evaluate(
-  const Barycentric& l, const std::array<Vector2, 3>& points, Matrix2& derivative) const
+Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
+  const Vector2& image, Vector2& step) const
 {
   const CubicPiece piece = FindPiece(l);
   Vector2 start;
   Vector2 end;
   Vector2 centroid;
   this->Reduce(piece, start, end, centroid);
+  const Vector2 residual =
+    image - (piece.Start * start + piece.End * end + piece.Centroid * centroid);
+  // A third of the derivatives along the piece's edge and towards the centroid.
+  const Vector2 first = end - start;
+  const Vector2 second = centroid - start;
   const Vector2 corner = points[NextCorner(piece.Opposite)];
   const Vector2 along = points[PreviousCorner(piece.Opposite)] - corner;
   const Vector2 inward = (1.0 / 3.0) * (along + (points[piece.Opposite] - corner));
-  // The matrix that takes the two steps to three times the differences of start, end and centroid.
-  const double scale = 3.0 / Cross(along, inward);
-  const Vector2 alongImage = scale * (end - start);
-  const Vector2 inwardImage = scale * (centroid - start);
-  derivative = { inward.y * alongImage - along.y * inwardImage,
-    along.x * inwardImage - inward.x * alongImage };
-  return piece.Start * start + piece.End * end + piece.Centroid * centroid;
+  const double scale = 1.0 / (3.0 * Cross(first, second));
+  step = (scale * Cross(residual, second)) * along + (scale * Cross(first, residual)) * inward;
+  return residual;
 }
 
 //------------------------------------------------------------------------------
@@ -569,6 +609,11 @@ DeterminantCoefficients GetDeterminantCoefficients(const CubicElement& element)
 //------------------------------------------------------------------------------
 double LeastDeterminant(const CubicElement& element, double enough, int subdivisions)
 {
+  const double bound = BoundByNorms(element);
+  if (bound > enough)
+  {
+    return bound;
+  }
   std::array<RunningError, 45> coefficients;
   MakeDeterminant<RunningError>(element, coefficients);
   double least = std::numeric_limits<double>::infinity();
@@ -576,8 +621,8 @@ double LeastDeterminant(const CubicElement& element, double enough, int subdivis
   {
     Quartic quartic;
     std::copy_n(coefficients.begin() + 15 * k, 15, quartic.begin());
-    const double bound = LeastOf(quartic, enough, subdivisions);
-    least = bound < least || std::isnan(bound) ? bound : least;
+    const double here = LeastOf(quartic, enough, subdivisions);
+    least = here < least || std::isnan(here) ? here : least;
   }
   // What is not a number certifies nothing.
   return std::isnan(least) ? -std::numeric_limits<double>::infinity() : least;

@@ -12,6 +12,7 @@
 #include "Kernel/Geometry.h"
 
 #include <array>
+#include <cstdint>
 
 namespace homeomorphism
 {
@@ -174,15 +175,18 @@ public:
     return piece.Start * start + piece.End * end + piece.Centroid * centroid;
   }
 
-  /// f, and its derivative by the steps between the corners of the piece: with the derivative that
-  /// Evaluate gives, it agrees up to rounding, which a thin element magnifies.
-  Vector2 Evaluate(
-    const Barycentric& l, const std::array<Vector2, 3>& points, Matrix2& derivative) const;
+  /// How far f is from @a image at a point with barycentric coordinates @a l, and Newton's step
+  /// towards the point that has this image. Rounding may spoil the step in thin elements.
+  Vector2 GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
+    const Vector2& image, Vector2& step) const;
 
 private:
   void Reduce(const CubicPiece& piece, Vector2& start, Vector2& end, Vector2& centroid) const
   {
-    const std::array<Vector2, 10>& b = this->Pieces[piece.Opposite];
+    const std::array<Vector2, 19>& b = this->Ordinates;
+    const int k = piece.Opposite;
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
     const double u = piece.Start;
     const double v = piece.End;
     const double w = piece.Centroid;
@@ -192,13 +196,25 @@ private:
     const double uw = 2.0 * u * w;
     const double vw = 2.0 * v * w;
     const double ww = w * w;
-    start = uu * b[0] + uv * b[1] + vv * b[2] + uw * b[4] + vw * b[5] + ww * b[7];
-    end = uu * b[1] + uv * b[2] + vv * b[3] + uw * b[5] + vw * b[6] + ww * b[8];
-    centroid = uu * b[4] + uv * b[5] + vv * b[6] + uw * b[7] + vw * b[8] + ww * b[9];
+    start = uu * b[i] + uv * b[AfterStart + k] + vv * b[BeforeEnd + k] + uw * b[Inner + i] +
+      vw * b[Middle + k] + ww * b[Spoke + i];
+    end = uu * b[AfterStart + k] + uv * b[BeforeEnd + k] + vv * b[j] + uw * b[Middle + k] +
+      vw * b[Inner + j] + ww * b[Spoke + j];
+    centroid = uu * b[Inner + i] + uv * b[Middle + k] + vv * b[Inner + j] + uw * b[Spoke + i] +
+      vw * b[Spoke + j] + ww * b[Center];
   }
 
-  /// Of the piece opposite each corner, row by row from its edge to the centroid.
-  std::array<std::array<Vector2, 10>, 3> Pieces;
+  /// As in CubicOrdinates, three of a kind, the corners' first.
+  enum : std::uint8_t
+  {
+    AfterStart = 3,
+    BeforeEnd = 6,
+    Inner = 9,
+    Middle = 12,
+    Spoke = 15,
+    Center = 18
+  };
+  std::array<Vector2, 19> Ordinates;
 };
 
 /// The weights of a quartic's Bernstein coefficients: start, end and centroid of its piece.
@@ -217,8 +233,9 @@ using DeterminantCoefficients = std::array<double, 45>;
 
 DeterminantCoefficients GetDeterminantCoefficients(const CubicElement& element);
 
-/// A lower bound of det f' on the triangle, the least Bernstein coefficient less what rounding may
-/// have done to it. Positive means positive everywhere: for the map that these doubles define, with
+/// A lower bound of det f' on the triangle: where D' is small beside Affine, from the lengths of
+/// its ordinates; elsewhere the least Bernstein coefficient less what rounding may have done to it.
+/// Positive means positive everywhere: for the map that these doubles define, with
 /// no rounding. Where the least coefficient is below @a enough, pieces are halved up to
 /// @a subdivisions times, which raises it towards the least determinant.
 double LeastDeterminant(const CubicElement& element, double enough = 0.0, int subdivisions = 6);

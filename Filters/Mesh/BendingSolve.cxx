@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace homeomorphism
 {
@@ -171,6 +172,7 @@ private:
   bool IsFreePoint(int point) const { return !this->IsFree.empty() && this->IsFree[point] != 0; }
 
   void FindBoundary();
+  bool SolveWhole(BendingSolution& solution);
   void Build();
   void MakeForms();
   NodeForms MakeEdgeForms(int number);
@@ -830,6 +832,215 @@ BendingSolution Solver::Extract() const
 }
 
 //------------------------------------------------------------------------------
+// All triangles whole, all values fixed: the derivatives at the points alone, by conjugate
+// gradients from the template's. They are well conditioned at any number of triangles. Returns
+// whether the result is certified.
+bool Solver::SolveWhole(BendingSolution& solution)
+{
+  const int points = this->Pair.GetNumberOfPoints();
+  const int triangles = this->Pair.GetNumberOfTriangles();
+  std::vector<Matrix2> gradients(static_cast<std::size_t>(points));
+  // The directions in which a derivative is unknown: both, one along a straight boundary, or none.
+  std::vector<std::uint8_t> isBoundary(static_cast<std::size_t>(points), 0);
+  for (int point = 0; point < points; ++point)
+  {
+    gradients[point] = this->Template.GetDerivative(point);
+  }
+  for (const auto& entry : this->Boundary)
+  {
+    const BoundaryPoint& boundary = entry.second;
+    Matrix2& gradient = gradients[entry.first];
+    isBoundary[entry.first] = 1;
+    gradient = boundary.Straight
+      ? gradient + OuterProduct(boundary.Slope - gradient * boundary.Tangent, boundary.Tangent)
+      : boundary.Derivative;
+  }
+  const auto project = [&](int point, const Matrix2& m) {
+    if (isBoundary[point] == 0)
+    {
+      return m;
+    }
+    const BoundaryPoint& boundary = this->Boundary.at(point);
+    const Vector2 normal = Normal(boundary.Tangent);
+    return boundary.Straight ? OuterProduct(m * normal, normal) : Matrix2{};
+  };
+  // Symmetric blocks (xx, xy, yx, yy) between points, for each point those of larger number too.
+  using Block = std::array<double, 4>;
+  const auto times = [](const Matrix2& m, const Block& b) {
+    return Matrix2{ b[0] * m.ImageOfX + b[1] * m.ImageOfY, b[2] * m.ImageOfX + b[3] * m.ImageOfY };
+  };
+  std::vector<std::int32_t> first(static_cast<std::size_t>(points) + 1, 0);
+  const PointFans fans(this->Pair);
+  const auto visitNeighbors = [&](int point, auto&& visit) {
+    visit(point);
+    int last = -1;
+    const bool closed = fans.ForEach(this->Pair, point, [&](int t, int c) {
+      visit(this->Pair.Triangles[t][NextCorner(c)]);
+      last = this->Pair.Triangles[t][PreviousCorner(c)];
+    });
+    if (!closed && last >= 0)
+    {
+      visit(last);
+    }
+  };
+  for (int point = 0; point < points; ++point)
+  {
+    if (fans.Touching[point] != 0)
+    {
+      return false;
+    }
+    int count = 0;
+    visitNeighbors(point, [&count](int) { ++count; });
+    first[point + 1] = first[point] + count;
+  }
+  std::vector<std::int32_t> columns(static_cast<std::size_t>(first.back()));
+  std::vector<Block> blocks(columns.size(), Block{});
+  std::vector<Matrix2> residual(static_cast<std::size_t>(points), Matrix2{});
+  for (int point = 0; point < points; ++point)
+  {
+    int at = first[point];
+    visitNeighbors(point, [&](int neighbor) { columns[at++] = neighbor; });
+  }
+  const auto find = [&](int row, int column) -> Block& {
+    int at = first[row];
+    while (columns[at] != column)
+    {
+      ++at;
+    }
+    return blocks[at];
+  };
+  double energy = 0.0;
+  for (int t = 0; t < triangles; ++t)
+  {
+    const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[t];
+    const BendingMatrix bending = GetBendingMatrix(this->Pair.GetSourceCorners(t));
+    std::array<Matrix2, 3> own;
+    for (int i = 0; i < 3; ++i)
+    {
+      own[i] = gradients[corners[i]] - this->Affine[t];
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      Matrix2 force{};
+      for (int j = 0; j < 3; ++j)
+      {
+        Block& block = find(corners[i], corners[j]);
+        for (int a = 0; a < 2; ++a)
+        {
+          for (int b = 0; b < 2; ++b)
+          {
+            const double entry = bending[3 * i + 1 + a][3 * j + 1 + b];
+            block[2 * a + b] += entry;
+            Vector2& along = a == 0 ? force.ImageOfX : force.ImageOfY;
+            along = along + entry * (b == 0 ? own[j].ImageOfX : own[j].ImageOfY);
+          }
+        }
+      }
+      residual[corners[i]] = residual[corners[i]] - project(corners[i], force);
+      energy += Dot(force.ImageOfX, own[i].ImageOfX) + Dot(force.ImageOfY, own[i].ImageOfY);
+    }
+  }
+  // The inverses of the diagonal blocks precondition.
+  std::vector<Block> inverses(static_cast<std::size_t>(points));
+  for (int point = 0; point < points; ++point)
+  {
+    const Block& b = blocks[first[point]];
+    if (fans.First[point] < 0)
+    {
+      continue;
+    }
+    if (isBoundary[point] != 0)
+    {
+      const Vector2 n = Normal(this->Boundary.at(point).Tangent);
+      const double s = 1.0 / (b[0] * n.x * n.x + 2.0 * b[1] * n.x * n.y + b[3] * n.y * n.y);
+      inverses[point] = { s * n.x * n.x, s * n.x * n.y, s * n.x * n.y, s * n.y * n.y };
+      continue;
+    }
+    const double s = 1.0 / (b[0] * b[3] - b[1] * b[2]);
+    inverses[point] = { s * b[3], -s * b[1], -s * b[2], s * b[0] };
+  }
+  // Both components at once, each with its own steps. Sums in a fixed order.
+  const auto dot = [&](const std::vector<Matrix2>& a, const std::vector<Matrix2>& b) {
+    Vector2 sum;
+    for (int point = 0; point < points; ++point)
+    {
+      sum.x +=
+        a[point].ImageOfX.x * b[point].ImageOfX.x + a[point].ImageOfY.x * b[point].ImageOfY.x;
+      sum.y +=
+        a[point].ImageOfX.y * b[point].ImageOfX.y + a[point].ImageOfY.y * b[point].ImageOfY.y;
+    }
+    return sum;
+  };
+  const auto scaled = [](const Vector2& s, const Matrix2& m) {
+    return Matrix2{ { s.x * m.ImageOfX.x, s.y * m.ImageOfX.y },
+      { s.x * m.ImageOfY.x, s.y * m.ImageOfY.y } };
+  };
+  std::vector<Matrix2> step(residual.size());
+  std::vector<Matrix2> image(residual.size());
+  std::vector<Matrix2> conditioned(residual.size());
+  const auto forAll = [&](auto&& body) {
+    this->Parallel(points, [&body](std::int64_t begin, std::int64_t end) {
+      for (int point = static_cast<int>(begin); point < end; ++point)
+      {
+        body(point);
+      }
+    });
+  };
+  forAll([&](int point) { conditioned[point] = times(residual[point], inverses[point]); });
+  step = conditioned;
+  Vector2 product = dot(residual, conditioned);
+  const Vector2 start = product;
+  constexpr int mostSteps = 1000;
+  constexpr double enough = 1e-24;
+  for (int n = 0; n < mostSteps && (product.x > enough * start.x || product.y > enough * start.y);
+       ++n)
+  {
+    forAll([&](int point) {
+      Matrix2 sum{};
+      for (int at = first[point]; at < first[point + 1]; ++at)
+      {
+        sum = sum + times(step[columns[at]], blocks[at]);
+      }
+      image[point] = project(point, sum);
+    });
+    const Vector2 curvature = dot(step, image);
+    const Vector2 share{ curvature.x > 0.0 ? product.x / curvature.x : 0.0,
+      curvature.y > 0.0 ? product.y / curvature.y : 0.0 };
+    forAll([&](int point) {
+      gradients[point] = gradients[point] + scaled(share, step[point]);
+      residual[point] = residual[point] - scaled(share, image[point]);
+      conditioned[point] = times(residual[point], inverses[point]);
+    });
+    energy -= Dot(share, product);
+    const Vector2 next = dot(residual, conditioned);
+    const Vector2 turn{ product.x > 0.0 ? next.x / product.x : 0.0,
+      product.y > 0.0 ? next.y / product.y : 0.0 };
+    product = next;
+    forAll([&](int point) { step[point] = conditioned[point] + scaled(turn, step[point]); });
+  }
+  solution.Cuts.assign(static_cast<std::size_t>(triangles), -1);
+  solution.Points.resize(static_cast<std::size_t>(points));
+  for (int point = 0; point < points; ++point)
+  {
+    solution.Points[point] = { {}, gradients[point] };
+  }
+  std::vector<std::uint8_t> failed(static_cast<std::size_t>(triangles), 0);
+  this->Parallel(triangles, [&](std::int64_t begin, std::int64_t end) {
+    for (int t = static_cast<int>(begin); t < end; ++t)
+    {
+      const CubicElement element = solution.GetWhole(this->Pair, this->Affine[t], t);
+      const double least = this->Options.CertificateMargin * this->Affine[t].Determinant();
+      failed[t] = !(LeastDeterminant(element, least, 4) >= least) ||
+        (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
+          !(GreatestDisplacement(element) <= this->Options.MaximumDeviation));
+    }
+  });
+  solution.Statistics.Rounds = 1;
+  solution.Statistics.Energy = energy;
+  return std::none_of(failed.begin(), failed.end(), [](std::uint8_t f) { return f != 0; });
+}
+
+//------------------------------------------------------------------------------
 BendingSolution Solver::Run()
 {
   this->FindBoundary();
@@ -843,8 +1054,13 @@ BendingSolution Solver::Run()
       }
     }
   }
-  this->Build();
+  const bool isCut = std::find(this->IsCut.begin(), this->IsCut.end(), 1) != this->IsCut.end();
   BendingSolution best;
+  if (!isCut && this->IsFree.empty() && this->SolveWhole(best))
+  {
+    return best;
+  }
+  this->Build();
   double bestEnergy = std::numeric_limits<double>::infinity();
   for (int round = 0; round < MaximumRounds; ++round)
   {

@@ -55,6 +55,8 @@ struct BendingSolution
   std::vector<BendingNode> Points;
   /// Of each triangle, where its nodes are in CutNodes, or -1.
   std::vector<std::int32_t> Cuts;
+  /// Of whole triangles, relative to corner 0; empty if all triangles are cut.
+  std::vector<CubicNet> Nets;
   /// Nodes 3 to 14 of a TriangleCut.
   std::vector<std::array<BendingNode, 12>> CutNodes;
   BendingStatistics Statistics;

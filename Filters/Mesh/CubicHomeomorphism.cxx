@@ -6,7 +6,6 @@
 #include "vtkSMPTools.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
 
 namespace homeomorphism
@@ -21,9 +20,8 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
   const TriangleIndex count = topology.GetNumberOfTriangles();
   PlanarPair planar;
   this->Numbers.assign(count, -1);
-  std::vector<std::uint8_t> reversed;
   // Parts that touch in a point may be mirrored independently: then the point is taken twice.
-  std::array<std::unordered_map<std::int32_t, std::int32_t>, 2> pointNumbers;
+  std::array<std::vector<std::int32_t>, 2> pointNumbers;
   for (TriangleIndex t = 0; t < count; ++t)
   {
     if (topology.IsMasked(t))
@@ -37,23 +35,28 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     {
       std::swap(corners[1], corners[2]);
     }
+    std::vector<std::int32_t>& numbers = pointNumbers[mirrored ? 1 : 0];
     for (std::int32_t& corner : corners)
     {
-      const auto number = pointNumbers[mirrored ? 1 : 0].emplace(
-        corner, static_cast<std::int32_t>(planar.Source.size()));
-      if (number.second)
+      if (static_cast<std::size_t>(corner) >= numbers.size())
       {
+        numbers.resize(static_cast<std::size_t>(corner) + 1, -1);
+      }
+      std::int32_t& number = numbers[static_cast<std::size_t>(corner)];
+      if (number < 0)
+      {
+        number = static_cast<std::int32_t>(planar.Source.size());
         this->Points.push_back(corner);
         planar.Source.push_back(source.GetPlanePoint(corner));
         const Vector2& image = target.GetPlanePoint(corner);
         planar.Target.push_back(mirrored ? Vector2{ -image.x, image.y } : image);
       }
-      corner = number.first->second;
+      corner = number;
     }
     this->Numbers[t] = static_cast<std::int32_t>(planar.Triangles.size());
     this->Triangles.push_back(t);
     this->Mirrored.push_back(mirrored);
-    reversed.push_back(isReversed);
+    this->Reversed.push_back(isReversed);
     planar.Triangles.push_back(corners);
   }
   planar.Neighbors.resize(planar.Triangles.size());
@@ -63,7 +66,7 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     {
       const TriangleIndex twin = topology.GetTwin(this->Triangles[n], k).Triangle;
       // Edge k is opposite corner k, and two corners may have been exchanged.
-      const int edge = reversed[n] && k > 0 ? 3 - k : k;
+      const int edge = this->Reversed[n] && k > 0 ? 3 - k : k;
       planar.Neighbors[n][edge] = twin < 0 ? -1 : this->Numbers[twin];
     }
   }
@@ -75,13 +78,20 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     });
 }
 
-Vector2 CubicHomeomorphism::MapPoint(
-  Domain from, TriangleIndex triangle, const Vector2& inFrame, CubicTriangle& prepared) const
+Vector2 CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
+  const Vector2& inFrame, CubicTriangle& prepared) const
 {
-  Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
   int number = this->Numbers[triangle];
   const bool mirrored = this->Mirrored[number] != 0;
   Vector2 image;
+  const bool isReversed = this->Reversed[number] != 0;
+  const Barycentric turned{ l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] };
+  if (this->Map->MapDirectly(from == Domain::Target, number, turned, image))
+  {
+    image.x = from == Domain::Source && mirrored ? -image.x : image.x;
+    return image;
+  }
+  Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
   if (from == Domain::Source)
   {
     image = this->Map->MapPoint(number, point, prepared);

@@ -28,9 +28,23 @@ public:
 
   const CubicMap& GetMap() const { return *this->Map; }
 
-  /// The image of a point of a triangle's frame, in the plane of the other mesh.
-  Vector2 MapPoint(
-    Domain from, TriangleIndex triangle, const Vector2& inFrame, CubicTriangle& prepared) const;
+  /// Fetches what MapPoint reads of a triangle into the processor's cache.
+  void PrefetchTriangle(TriangleIndex triangle) const
+  {
+    const CubicNet* net = this->Map->GetNet(this->Numbers[triangle]);
+    if (net)
+    {
+      for (std::size_t at = 0; at < sizeof(CubicNet); at += 64)
+      {
+        Prefetch(reinterpret_cast<const char*>(net) + at);
+      }
+    }
+  }
+
+  /// The image of a point, in the plane of the other mesh, from its barycentric coordinates by the
+  /// triangle's corners and its place in the triangle's frame.
+  Vector2 MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
+    const Vector2& inFrame, CubicTriangle& prepared) const;
 
   /// The image of a point of a triangle's frame, and the derivative from frame to frame. Both are
   /// in the plane of the other mesh.
@@ -56,6 +70,8 @@ private:
   std::vector<std::int32_t> Triangles;
   std::vector<std::int32_t> Points;
   std::vector<std::uint8_t> Mirrored;
+  /// Whether a triangle's corners 1 and 2 are exchanged in the map.
+  std::vector<std::uint8_t> Reversed;
 };
 
 } // namespace homeomorphism

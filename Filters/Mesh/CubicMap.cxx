@@ -232,6 +232,21 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
       this->Bending.reset();
     }
   }
+  if (this->Bending && std::count(this->Bending->Cuts.begin(), this->Bending->Cuts.end(), -1) > 0)
+  {
+    const PlanarPair& fine = this->GetFine();
+    this->Bending->Nets.resize(fine.Triangles.size());
+    parallelFor(fine.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+      for (int t = static_cast<int>(begin); t < end; ++t)
+      {
+        if (this->Bending->Cuts[t] < 0)
+        {
+          this->Bending->Nets[t] =
+            CubicNet(this->Bending->GetWhole(fine, this->Template->GetAffine(t), t));
+        }
+      }
+    });
+  }
   double coordinates = 0.0;
   for (const Vector2& target : this->Pair.Target)
   {
@@ -315,7 +330,7 @@ void CubicMap::MapFine(
     return;
   }
   const PlanarPair& pair = this->GetFine();
-  const Matrix2 affine = pair.GetAffine(triangle);
+  const Matrix2& affine = this->Template->GetAffine(triangle);
   const std::array<std::int32_t, 3>& corners = pair.Triangles[triangle];
   CubicElement element;
   Vector2 local = point;
@@ -420,47 +435,52 @@ bool CubicMap::FindPreimage(
     x = Solve(prepared.GetAffine(), image - origin);
   }
   this->Walk(t, x);
-  double size = 0.0;
   Vector2 residual;
   Matrix2 derivative;
-  // Whole steps first, with the derivative that comes with the value.
+  double size = std::numeric_limits<double>::infinity();
+  // Whole steps first, on the prepared triangles.
+  int at = t;
+  Vector2 from = x;
+  double lastMove = 0.0;
+  for (int step = 0; step < 20; ++step)
   {
-    int at = t;
-    Vector2 from = x;
-    double last = std::numeric_limits<double>::infinity();
-    for (int step = 0; step < 20; ++step)
+    prepared.Set(at);
+    Vector2 move;
+    residual = prepared.GetResidual(from, image - pair.Target[pair.Triangles[at][0]], move);
+    const double now = MaxNorm(residual);
+    if (!(now < size))
     {
-      prepared.Set(at);
-      bool isAffine;
-      const Vector2 value = prepared.Map(from, derivative, isAffine);
-      residual = (image - pair.Target[pair.Triangles[at][0]]) - value;
-      size = MaxNorm(residual);
-      if (!(size < last))
-      {
-        break;
-      }
-      last = size;
+      break;
+    }
+    t = at;
+    x = from;
+    // The error of a step is about a constant times the square of its length, and so is the error
+    // of the next.
+    const double length = MaxNorm(move);
+    const double next = step > 0 ? now * (length / lastMove) * (length / lastMove) : now;
+    size = now;
+    if (now <= 0.5 * this->ResidualTolerance)
+    {
+      break;
+    }
+    from = from + move;
+    this->Walk(at, from);
+    if (next <= 0.01 * this->ResidualTolerance)
+    {
       t = at;
       x = from;
-      if (size <= 0.5 * this->ResidualTolerance)
-      {
-        break;
-      }
-      from = from + Solve(derivative, residual);
-      if (step > 0 || !isAffine)
-      {
-        this->Walk(at, from);
-      }
+      size = next;
+      break;
     }
-    size = last;
+    lastMove = length;
   }
   if (!(size <= this->ResidualTolerance))
   {
-    const auto evaluate = [&](int at, const Vector2& from) {
+    const auto evaluate = [&](int inside, const Vector2& start) {
       Vector2 value;
-      this->MapFine(at, from, value, derivative);
-      prepared.Set(at);
-      return (image - pair.Target[pair.Triangles[at][0]]) - prepared.Map(from);
+      this->MapFine(inside, start, value, derivative);
+      prepared.Set(inside);
+      return (image - pair.Target[pair.Triangles[inside][0]]) - prepared.Map(start);
     };
     residual = evaluate(t, x);
     size = MaxNorm(residual);
@@ -589,7 +609,7 @@ void CubicMap::VisitFine(int triangle,
 {
   const PlanarPair& pair = this->GetFine();
   const std::array<std::int32_t, 3>& corners = pair.Triangles[triangle];
-  const Matrix2 affine = pair.GetAffine(triangle);
+  const Matrix2& affine = this->Template->GetAffine(triangle);
   if (this->Bending && this->Bending->Cuts[triangle] < 0)
   {
     visit(this->Bending->GetWhole(pair, affine, triangle), pair.Source[corners[0]],

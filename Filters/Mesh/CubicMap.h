@@ -9,45 +9,18 @@
 #define homeomorphism_CubicMap_h
 
 #include "Mesh/BendingSolve.h"
+#include "Mesh/CubicMapOptions.h"
 #include "Mesh/CubicTemplate.h"
 #include "Mesh/CubicTriangle.h"
 #include "Mesh/PlanarPair.h"
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <vector>
 
 namespace homeomorphism
 {
-
-/// Which certified map is taken.
-enum class CubicBending
-{
-  /// The template: in closed form, as local as the pair.
-  Local = 0,
-  /// The one of least bending that could be certified.
-  Least = 1
-};
-
-struct CubicMapOptions
-{
-  CubicBending Bending = CubicBending::Least;
-  /// The greatest distance from the piecewise linear map, in the units of the target.
-  double MaximumDeviation = std::numeric_limits<double>::infinity();
-  /// See BendingOptions.
-  double CertificateMargin = 0.02;
-  /// With least bending: how often triangles are cut into four before.
-  int FairnessRefinement = 0;
-
-  bool operator==(const CubicMapOptions& other) const
-  {
-    return this->Bending == other.Bending && this->MaximumDeviation == other.MaximumDeviation &&
-      this->CertificateMargin == other.CertificateMargin &&
-      this->FairnessRefinement == other.FairnessRefinement;
-  }
-};
 
 struct CubicMapStatistics
 {
@@ -81,6 +54,38 @@ public:
 
   /// What the functions below need to be fast for many points, one triangle after another.
   CubicTriangle Prepare() const { return CubicTriangle(*this->Template, this->Bending.get()); }
+
+  /// What MapDirectly reads of a triangle, null if little.
+  const CubicNet* GetNet(int triangle) const
+  {
+    return this->Levels == 0 && this->Bending && !this->Bending->Nets.empty()
+      ? &this->Bending->Nets[triangle]
+      : nullptr;
+  }
+
+  /// The image of the point of a triangle with barycentric coordinates @a l, or its preimage, if
+  /// that takes no more than a formula: returns whether.
+  bool MapDirectly(bool inverse, int triangle, const Barycentric& l, Vector2& image) const
+  {
+    if (this->Levels > 0)
+    {
+      return false;
+    }
+    const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[triangle];
+    if (this->Bending)
+    {
+      if (inverse || this->Bending->Cuts[triangle] >= 0)
+      {
+        return false;
+      }
+      image = this->Pair.Target[corners[0]] + this->Bending->Nets[triangle](l);
+      return true;
+    }
+    const std::vector<Vector2>& points = inverse ? this->Pair.Source : this->Pair.Target;
+    const Vector2 origin = points[corners[0]];
+    image = origin + l[1] * (points[corners[1]] - origin) + l[2] * (points[corners[2]] - origin);
+    return this->Template->IsInMiddle(triangle, l);
+  }
 
   /// The image of a point of a triangle.
   Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const;

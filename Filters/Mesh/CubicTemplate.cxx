@@ -242,7 +242,9 @@ CubicTemplate::CubicTemplate(
   , Derivatives(pair.Source.size())
   , Kinds(pair.Source.size(), VertexKind::Differentiable)
   , Boundary(pair.Source.size(), 0)
+  , Affines(pair.Triangles.size())
   , Heights(pair.Triangles.size())
+  , Certificates(pair.Triangles.size(), 0.0F)
 {
   const PointFans fans(pair);
   const std::int64_t points = pair.GetNumberOfPoints();
@@ -250,16 +252,22 @@ CubicTemplate::CubicTemplate(
     for (int point = static_cast<int>(begin); point < end; ++point)
     {
       double shortest = std::numeric_limits<double>::infinity();
-      const PointFan fan = fans.Get(pair, point);
-      for (int t : fan.Triangles)
-      {
-        const int c = pair.GetCorner(t, point);
-        const std::array<Vector2, 3> corners = pair.GetSourceCorners(t, c);
-        shortest = std::min(
-          { shortest, Length(corners[NextCorner(c)]), Length(corners[PreviousCorner(c)]) });
-      }
-      this->Radii[point] = EdgeShare * shortest;
-      this->Boundary[point] = fan.Closed ? 0 : 1;
+      const bool closed = fans.ForEach(pair, point, [&](int t, int c) {
+        const Vector2 here = pair.Source[point];
+        const Vector2 next = pair.Source[pair.Triangles[t][NextCorner(c)]] - here;
+        const Vector2 previous = pair.Source[pair.Triangles[t][PreviousCorner(c)]] - here;
+        shortest = std::min({ shortest, Dot(next, next), Dot(previous, previous) });
+      });
+      this->Radii[point] = EdgeShare * std::sqrt(shortest);
+      this->Boundary[point] = closed ? 0 : 1;
+    }
+  });
+  std::vector<Bounds> bounds(pair.Triangles.size());
+  parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+    for (int t = static_cast<int>(begin); t < end; ++t)
+    {
+      this->Affines[t] = pair.GetAffine(t);
+      bounds[t].Determinant = this->Affines[t].Determinant();
     }
   });
   // Of the points, those that are not differentiable.
@@ -276,7 +284,7 @@ CubicTemplate::CubicTemplate(
       static_cast<std::int64_t>(triangles.size()), [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n)
         {
-          this->SetHeights(triangles[n], options.MaximumDeviation);
+          this->SetHeights(triangles[n], options.MaximumDeviation, bounds);
         }
       });
     parallelFor(
@@ -288,7 +296,11 @@ CubicTemplate::CubicTemplate(
           {
             continue;
           }
-          exceptions[point] = this->FindDerivative(point, fans);
+          exceptions[point].reset();
+          if (!this->TakeMean(point, fans, bounds))
+          {
+            exceptions[point] = this->FindDerivative(point, fans);
+          }
           factors[point] = 1.0;
           if (options.MaximumDeviation < std::numeric_limits<double>::max())
           {
@@ -321,6 +333,18 @@ CubicTemplate::CubicTemplate(
     SortUnique(next);
     changed = std::move(next);
   }
+  for (std::size_t t = 0; t < bounds.size(); ++t)
+  {
+    const std::array<float, 3>& corners = bounds[t].Corners;
+    this->Certificates[t] = std::min({ corners[0], corners[1], corners[2] });
+  }
+  this->Middles.resize(bounds.size());
+  parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+    for (int t = static_cast<int>(begin); t < end; ++t)
+    {
+      this->SetMiddle(t);
+    }
+  });
   for (std::unique_ptr<Exception>& exception : exceptions)
   {
     if (exception)
@@ -331,24 +355,25 @@ CubicTemplate::CubicTemplate(
 }
 
 //------------------------------------------------------------------------------
-void CubicTemplate::SetHeights(int triangle, double maximumDeviation)
+void CubicTemplate::SetHeights(int triangle, double maximumDeviation, std::vector<Bounds>& bounds)
 {
   const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(triangle);
-  const Matrix2 affine = this->Pair.GetAffine(triangle);
-  const double d = affine.Determinant();
+  const std::array<std::int32_t, 3>& points = this->Pair.Triangles[triangle];
+  Bounds& own = bounds[triangle];
+  const Matrix2& affine = this->Affines[triangle];
+  const double d = own.Determinant;
   std::array<double, 3> lengths;
   double share = 1.0;
   for (int k = 0; k < 3; ++k)
   {
     lengths[k] = Length(corners[PreviousCorner(k)] - corners[NextCorner(k)]);
+    const double radius =
+      std::min(this->Radii[points[NextCorner(k)]], this->Radii[points[PreviousCorner(k)]]);
+    share = std::min(share, radius / lengths[k]);
   }
-  for (int k = 0; k < 3; ++k)
-  {
-    for (int corner : { NextCorner(k), PreviousCorner(k) })
-    {
-      share = std::min(share, this->Radii[this->Pair.Triangles[triangle][corner]] / lengths[k]);
-    }
-  }
+  const double condition = std::sqrt(SquaredNorm(affine)) / d;
+  own.Fall = 0.0;
+  own.Slope = 0.0;
   for (int k = 0; k < 3; ++k)
   {
     const Vector2 edge = corners[PreviousCorner(k)] - corners[NextCorner(k)];
@@ -361,19 +386,110 @@ void CubicTemplate::SetHeights(int triangle, double maximumDeviation)
     const int neighbor = this->Pair.Neighbors[triangle][k];
     if (neighbor >= 0)
     {
-      const Matrix2 across = this->Pair.GetAffine(neighbor);
-      const double e = across.Determinant();
+      const Matrix2& across = this->Affines[neighbor];
+      const double e = bounds[neighbor].Determinant;
       const Vector2 normal = (1.0 / length) * Normal(edge);
       const Vector2 turn = (across - affine) * normal;
-      const double start = this->Radii[this->Pair.Triangles[triangle][NextCorner(k)]];
-      const double end = this->Radii[this->Pair.Triangles[triangle][PreviousCorner(k)]];
-      const double leg = std::min(4.0 / 3.0 * (length - start - end), 3.0 * std::min(start, end));
+      const double start = this->Radii[points[NextCorner(k)]];
+      const double end = this->Radii[points[PreviousCorner(k)]];
+      const double strip = length - start - end;
+      const double leg = std::min(4.0 / 3.0 * strip, 3.0 * std::min(start, end));
       const double slope = std::abs(Cross(turn, affine * normal));
+      const double size = Length(turn);
       m = std::min(m, Slack * leg * std::min(d, e) / slope);
-      m = std::min(m, 1.5 * maximumDeviation * (d + e) / (d * Length(turn)));
+      m = std::min(m, 1.5 * maximumDeviation * (d + e) / (d * size));
+      // As in Theorem 1: g_n is at most c, g_t at most 3/2 c m / strip or 2/3 c m / radius.
+      const double c = d / (d + e);
+      own.Fall = std::max(own.Fall, c / d * (std::abs(e - d) + slope * 2.0 * m / leg));
+      own.Slope = std::max(own.Slope, condition * size * c * (1.0 + 2.0 * m / leg));
     }
     this->Heights[triangle][k] = m;
   }
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::SetMiddle(int triangle)
+{
+  const TriangleCut cut = this->GetCut(triangle);
+  MiddleBounds& bounds = this->Middles[triangle];
+  const double area = Cross(cut.Corners[1], cut.Corners[2]);
+  for (int k = 0; k < 3; ++k)
+  {
+    bounds.Least[k] = cut.Heights[k] * cut.Lengths[k] / area;
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    // The least coordinate of the corner's inner points, which are r and m from the vertex.
+    const int out = PreviousCorner(c);
+    const int in = NextCorner(c);
+    const Vector2 opposite = cut.Along[c];
+    double least = 1.0;
+    for (const Vector2& node : { cut.GetNode(9 + 2 * out, c), cut.GetNode(10 + 2 * in, c) })
+    {
+      // The height over the opposite edge falls as the node leaves the vertex.
+      least = std::min(least, 1.0 + Cross(opposite, node) * cut.Lengths[c] / area);
+    }
+    bounds.Greatest[c] = least;
+  }
+}
+
+//------------------------------------------------------------------------------
+bool CubicTemplate::TakeMean(int point, const PointFans& fans, std::vector<Bounds>& bounds)
+{
+  // The least bound that is taken without looking closer, and the greatest condition number of a
+  // derivative with which rounding is certainly far below what is added for it.
+  constexpr double enough = 0.3;
+  constexpr double greatestCondition = 1e4;
+  constexpr double rounding = 1e-6;
+  Matrix2 mean{};
+  double total = 0.0;
+  bool close = fans.Touching[point] == 0;
+  const bool closed = fans.ForEach(this->Pair, point, [&](int t, int c) {
+    const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(t, c);
+    const double area = Cross(corners[NextCorner(c)], corners[PreviousCorner(c)]);
+    mean = mean + area * this->Affines[t];
+    total += area;
+    close = close && bounds[t].Fall < 1.0 - enough;
+    bounds[t].Corners[c] = 0.0F;
+  });
+  if (!closed || !close)
+  {
+    return false;
+  }
+  mean = (1.0 / total) * mean;
+  const double radius = this->Radii[point];
+  fans.ForEach(this->Pair, point, [&](int t, int c) {
+    if (!close)
+    {
+      return;
+    }
+    Bounds& own = bounds[t];
+    const double squares = SquaredNorm(this->Affines[t]);
+    const double condition = squares / own.Determinant;
+    // The sine of the angle between the inner points beside the corner.
+    const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(t, c);
+    const Vector2& out = corners[NextCorner(c)];
+    const Vector2& in = corners[PreviousCorner(c)];
+    const Vector2 first =
+      (1.0 / Length(out)) * (radius * out + this->Heights[t][PreviousCorner(c)] * Normal(out));
+    const Vector2 last =
+      (1.0 / Length(in)) * (radius * in - this->Heights[t][NextCorner(c)] * Normal(in));
+    const double sine = Cross(first, last) / std::sqrt(Dot(first, first) * Dot(last, last));
+    // See "Vertices at once" in Documentation/cubic.md.
+    const double turn = std::sqrt(SquaredNorm(mean - this->Affines[t]) * squares) /
+      own.Determinant * (1.0 + 2.8 / sine);
+    const double bound = 1.0 - own.Fall - turn * (2.0 + 2.0 * own.Slope + turn) - rounding;
+    close = sine > 0.0 && condition < greatestCondition && bound > enough;
+    own.Corners[c] = static_cast<float>(bound);
+  });
+  if (!close)
+  {
+    fans.ForEach(this->Pair, point, [&](int t, int c) { bounds[t].Corners[c] = 0.0F; });
+    return false;
+  }
+  this->Derivatives[point] = mean;
+  this->Kinds[point] = VertexKind::Differentiable;
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -384,7 +500,7 @@ VertexFan CubicTemplate::GetFan(int point, const PointFan& fan) const
   for (int t : fan.Triangles)
   {
     result.Sectors.push_back(
-      GetSector(this->GetCut(t), this->Pair.GetAffine(t), this->Pair.GetCorner(t, point)));
+      GetSector(this->GetCut(t), this->GetAffine(t), this->Pair.GetCorner(t, point)));
   }
   return result;
 }
@@ -461,7 +577,7 @@ double CubicTemplate::GetDeviation(const PointFan& fan, int point, const Excepti
   double greatest = 0.0;
   for (const int t : fan.Triangles)
   {
-    const Matrix2 affine = this->Pair.GetAffine(t);
+    const Matrix2 affine = this->GetAffine(t);
     const int corner = this->Pair.GetCorner(t, point);
     if (exception)
     {
@@ -541,7 +657,7 @@ Matrix2 CubicTemplate::GetGradient(
   }
   // Across the edge only: w n^T is what the two affine maps differ by.
   const Vector2 normal = Normal(cut.Along[(node - 3) / 2]);
-  const Matrix2 across = this->Pair.GetAffine(neighbor);
+  const Matrix2 across = this->GetAffine(neighbor);
   const double d = affine.Determinant();
   const double share = d / (d + across.Determinant());
   return OuterProduct(share * ((across - affine) * normal), normal);
@@ -640,7 +756,7 @@ void CubicTemplate::Evaluate(
   int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
 {
   const TriangleCut cut = this->GetCut(triangle);
-  const Matrix2 affine = this->Pair.GetAffine(triangle);
+  const Matrix2 affine = this->GetAffine(triangle);
   const int number = cut.Find(point);
   if (number >= TriangleCut::FirstMiddle)
   {
@@ -713,8 +829,12 @@ void CubicTemplate::VisitRings(const Exception& exception, int triangle,
 //------------------------------------------------------------------------------
 double CubicTemplate::GetCertificate(int triangle) const
 {
+  if (this->Certificates[triangle] > 0.0F)
+  {
+    return this->Certificates[triangle];
+  }
   const TriangleCut cut = this->GetCut(triangle);
-  const Matrix2 affine = this->Pair.GetAffine(triangle);
+  const Matrix2 affine = this->GetAffine(triangle);
   const double determinant = affine.Determinant();
   // The middle is affine.
   double least = determinant;

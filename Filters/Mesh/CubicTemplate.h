@@ -96,6 +96,9 @@ public:
 
   const PlanarPair& GetPair() const { return this->Pair; }
 
+  /// The piecewise linear map's derivative.
+  const Matrix2& GetAffine(int triangle) const { return this->Affines[triangle]; }
+
   VertexKind GetKind(int point) const { return this->Kinds[point]; }
   bool IsBoundary(int point) const { return this->Boundary[point] != 0; }
   /// Whether a point lies on a boundary that is straight there in both meshes, to the rounding of
@@ -114,6 +117,19 @@ public:
   /// The derivative at a node of a cut less the triangle's own affine one. Not for a corner that is
   /// not differentiable.
   Matrix2 GetGradient(const TriangleCut& cut, const Matrix2& affine, int triangle, int node) const;
+
+  /// Whether a point with these barycentric coordinates lies in the middle of its triangle, where
+  /// the map is affine, beyond doubt.
+  bool IsInMiddle(int triangle, const Barycentric& l) const
+  {
+    const MiddleBounds& bounds = this->Middles[triangle];
+    bool isIn = true;
+    for (int k = 0; k < 3; ++k)
+    {
+      isIn = isIn & (l[k] > bounds.Least[k]) & (l[k] < bounds.Greatest[k]);
+    }
+    return isIn;
+  }
 
   /// The element, relative to the cut's GetOrigin(element) in the source and in the target. Not for
   /// those at a corner that is not differentiable.
@@ -147,7 +163,23 @@ private:
   };
 
   const Exception& GetException(int point) const;
-  void SetHeights(int triangle, double maximumDeviation);
+  /// Of a triangle while the template is made.
+  struct Bounds
+  {
+    double Determinant = 0.0;
+    /// How far, at most, the determinant falls below the affine one beside the edges, over the
+    /// affine one, with L at the corners; and |D'| there over the least stretch of L.
+    double Fall = 0.0;
+    double Slope = 0.0;
+    /// A lower bound of the determinant in each corner over the affine one, 0 if unknown.
+    std::array<float, 3> Corners{};
+  };
+
+  void SetHeights(int triangle, double maximumDeviation, std::vector<Bounds>& bounds);
+  void SetMiddle(int triangle);
+  /// Takes the mean derivative at an inner point if that certifies its corners, which is so where
+  /// the derivatives of the triangles differ little.
+  bool TakeMean(int point, const PointFans& fans, std::vector<Bounds>& bounds);
   /// Sets a point's derivative and kind. Returns what it needs if it is not differentiable.
   std::unique_ptr<Exception> FindDerivative(int point, const PointFans& fans);
   /// A bound of the distance from the piecewise linear map in the corners at a point.
@@ -161,7 +193,17 @@ private:
   std::vector<VertexKind> Kinds;
   /// 1 on the boundary, 2 where it is straight.
   std::vector<std::uint8_t> Boundary;
+  std::vector<Matrix2> Affines;
   std::vector<std::array<double, 3>> Heights;
+  /// Of each barycentric coordinate between the strip of an edge and the corner opposite it.
+  struct MiddleBounds
+  {
+    std::array<double, 3> Least;
+    std::array<double, 3> Greatest;
+  };
+  std::vector<MiddleBounds> Middles;
+  /// Of triangles that are certified by bounds, and 0.
+  std::vector<float> Certificates;
   /// Ascending by point.
   std::vector<Exception> Exceptions;
 };

@@ -7,18 +7,17 @@ namespace homeomorphism
 {
 
 //------------------------------------------------------------------------------
-const CubicTriangle::Element& CubicTriangle::Make(const CubicElement& element, int origin)
+void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin)
 {
   this->Elements.emplace_back();
   Element& made = this->Elements.back();
   const PlanarPair& pair = this->Template.GetPair();
   const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Triangle];
-  made.Points = element.Points;
-  made.Frame = BarycentricFrame(element.Points);
-  made.Net = CubicNet(element);
+  made.Points = points;
+  made.Frame = BarycentricFrame(points);
+  made.Net = net;
   made.SourceOrigin = pair.Source[corners[origin]] - pair.Source[corners[0]];
   made.TargetOrigin = pair.Target[corners[origin]] - pair.Target[corners[0]];
-  return made;
 }
 
 //------------------------------------------------------------------------------
@@ -31,11 +30,11 @@ void CubicTriangle::Set(int triangle)
   this->Triangle = triangle;
   this->Elements.clear();
   const PlanarPair& pair = this->Template.GetPair();
-  this->Affine = pair.GetAffine(triangle);
+  this->Affine = this->Template.GetAffine(triangle);
   this->IsWhole = this->Bending && this->Bending->Cuts[triangle] < 0;
   if (this->IsWhole)
   {
-    this->Make(this->Bending->GetWhole(pair, this->Affine, triangle), 0);
+    this->Make(pair.GetSourceCorners(triangle), this->Bending->Nets[triangle], 0);
     return;
   }
   this->Cut = this->Template.GetCut(triangle);
@@ -91,10 +90,10 @@ const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point, int& rin
   {
     this->Made[number] = static_cast<std::int8_t>(this->Elements.size());
     const PlanarPair& pair = this->Template.GetPair();
-    this->Make(this->Bending
-        ? this->Bending->GetElement(pair, cut, this->Affine, this->Triangle, number)
-        : this->Template.GetElement(cut, this->Affine, this->Triangle, number),
-      origin);
+    const CubicElement element = this->Bending
+      ? this->Bending->GetElement(pair, cut, this->Affine, this->Triangle, number)
+      : this->Template.GetElement(cut, this->Affine, this->Triangle, number);
+    this->Make(element.Points, CubicNet(element), origin);
   }
   return &this->Elements[this->Made[number]];
 }
@@ -109,23 +108,31 @@ Vector2 CubicTriangle::Map(const Vector2& point)
     return element->TargetOrigin + element->Net(element->Frame(point - element->SourceOrigin));
   }
   Matrix2 derivative;
-  bool isAffine;
-  return this->Map(point, derivative, isAffine);
+  return this->MapOutside(point, ringCorner, derivative);
 }
 
 //------------------------------------------------------------------------------
-Vector2 CubicTriangle::Map(const Vector2& point, Matrix2& derivative, bool& isAffine)
+Vector2 CubicTriangle::GetResidual(const Vector2& point, const Vector2& image, Vector2& step)
 {
   int ringCorner;
   const Element* element = this->Find(point, ringCorner);
-  isAffine = !element && ringCorner < 0;
   if (element)
   {
-    return element->TargetOrigin +
-      element->Net.Evaluate(
-        element->Frame(point - element->SourceOrigin), element->Points, derivative);
+    return element->Net.GetResidual(element->Frame(point - element->SourceOrigin), element->Points,
+      image - element->TargetOrigin, step);
   }
-  if (isAffine)
+  Matrix2 derivative;
+  const Vector2 residual = image - this->MapOutside(point, ringCorner, derivative);
+  const double determinant = derivative.Determinant();
+  step = { Cross(residual, derivative.ImageOfY) / determinant,
+    Cross(derivative.ImageOfX, residual) / determinant };
+  return residual;
+}
+
+//------------------------------------------------------------------------------
+Vector2 CubicTriangle::MapOutside(const Vector2& point, int ringCorner, Matrix2& derivative) const
+{
+  if (ringCorner < 0)
   {
     derivative = this->Affine;
     return this->Affine * point;

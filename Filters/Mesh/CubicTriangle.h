@@ -37,9 +37,8 @@ public:
   /// The image of a point relative to that of corner 0, both relative to it.
   Vector2 Map(const Vector2& point);
 
-  /// The same with the derivative, which rounding may spoil in thin elements. @a isAffine: the map
-  /// is affine around the point.
-  Vector2 Map(const Vector2& point, Matrix2& derivative, bool& isAffine);
+  /// How far the image of a point is from @a image, and Newton's step towards its preimage.
+  Vector2 GetResidual(const Vector2& point, const Vector2& image, Vector2& step);
 
 private:
   struct Element
@@ -52,9 +51,11 @@ private:
     Vector2 TargetOrigin;
   };
 
-  const Element& Make(const CubicElement& element, int origin);
+  void Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin);
   /// The element that contains a point, null if the map is affine or inside rings there.
   const Element* Find(const Vector2& point, int& ringCorner);
+  /// Where there is no element.
+  Vector2 MapOutside(const Vector2& point, int ringCorner, Matrix2& derivative) const;
 
   const CubicTemplate& Template;
   const BendingSolution* Bending;

@@ -3,6 +3,7 @@
 
 #include "Homeomorphism.h"
 
+#include "CubicHomeomorphism.h"
 #include "MeshValidation.h"
 
 #include "Kernel/Simd/Vectorize.h"
@@ -536,24 +537,29 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
 /// Maps the points by the Cubic system.
 void Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
 {
+  // Prefetch to hide memory latency.
+  ForEachRun(
+    block, [&](int, int, TriangleIndex t) { this->Cubic->PrefetchTriangle(t); }, [](int) {});
   CubicTriangle prepared = this->Cubic->GetMap().Prepare();
   ForEachRun(
     block,
-    [&](int begin, int end, TriangleIndex) {
+    [&](int begin, int end, TriangleIndex t) {
+      const std::array<const double*, 3> l = this->ByCorner(from, t, block);
       for (int i = begin; i < end; ++i)
       {
-        this->MapByCubic(from, block.GetSurfacePoint(i), prepared, block.Images[i]);
+        this->MapByCubic(
+          from, block.GetSurfacePoint(i), { l[0][i], l[1][i], l[2][i] }, prepared, block.Images[i]);
       }
     },
     [](int) {});
 }
 
-void Homeomorphism::MapByCubic(
-  Domain from, const SurfacePoint& surfacePoint, CubicTriangle& prepared, double image[3]) const
+void Homeomorphism::MapByCubic(Domain from, const SurfacePoint& surfacePoint, const Barycentric& l,
+  CubicTriangle& prepared, double image[3]) const
 {
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const Vector2 inPlane = this->Cubic->MapPoint(
-    this->ToCubic(from), surfacePoint.Triangle, surfacePoint.Point.InPlane, prepared);
+    this->ToCubic(from), surfacePoint.Triangle, l, surfacePoint.Point.InPlane, prepared);
   // Heights are measured as in the triangle's frame.
   const double orientation =
     target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
@@ -622,7 +628,10 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   if (this->Cubic)
   {
     CubicTriangle prepared = this->Cubic->GetMap().Prepare();
-    this->MapByCubic(from, surfacePoint, prepared, image);
+    const Barycentric l = this->Pair->GetGeometry(from)
+                            .GetShape(surfacePoint.Triangle)
+                            .ToBarycentric(surfacePoint.Point.InPlane);
+    this->MapByCubic(from, surfacePoint, l, prepared, image);
     return;
   }
   FramePoint point;
@@ -636,7 +645,9 @@ Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vec
   if (this->Cubic)
   {
     CubicTriangle prepared = this->Cubic->GetMap().Prepare();
-    const Vector2 inPlane = this->Cubic->MapPoint(this->ToCubic(from), triangle, point, prepared);
+    const Barycentric l = this->Pair->GetGeometry(from).GetShape(triangle).ToBarycentric(point);
+    const Vector2 inPlane =
+      this->Cubic->MapPoint(this->ToCubic(from), triangle, l, point, prepared);
     return this->Pair->GetGeometry(Opposite(from)).GetPlaneFrame(triangle).ToFrame(inPlane);
   }
   return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {

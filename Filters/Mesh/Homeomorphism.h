@@ -9,7 +9,7 @@
 #define homeomorphism_Homeomorphism_h
 
 #include "ChartedTriangulation.h"
-#include "CubicHomeomorphism.h"
+#include "CubicMapOptions.h"
 #include "TriangulationPair.h"
 
 #include <memory>
@@ -19,6 +19,9 @@ class vtkPolyData;
 
 namespace homeomorphism
 {
+
+class CubicHomeomorphism;
+class CubicTriangle;
 
 /// How a pair of meshes, or one triangulation, is to be understood.
 struct HomeomorphismOptions
@@ -185,8 +188,8 @@ private:
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;
   void MapByCubics(Domain from, PointBlock& block) const;
-  void MapByCubic(
-    Domain from, const SurfacePoint& surfacePoint, CubicTriangle& prepared, double image[3]) const;
+  void MapByCubic(Domain from, const SurfacePoint& surfacePoint, const Barycentric& l,
+    CubicTriangle& prepared, double image[3]) const;
   Domain ToCubic(Domain domain) const { return this->IsCubicInverted ? Opposite(domain) : domain; }
   template <typename Coordinates>
   void LeaveTriangle(Domain from, TriangleIndex triangle, int begin, int end,

@@ -91,6 +91,24 @@ struct PointFans
 
   PointFan Get(const PlanarPair& pair, int point) const;
 
+  /// Calls visit(triangle, corner) with the fan's triangles. Returns whether it is closed.
+  template <typename Visit>
+  bool ForEach(const PlanarPair& pair, int point, Visit&& visit) const
+  {
+    const int first = this->First[point];
+    for (int t = first; t >= 0;)
+    {
+      const int corner = pair.GetCorner(t, point);
+      visit(t, corner);
+      t = pair.Neighbors[t][NextCorner(corner)];
+      if (t == first)
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
   std::vector<std::int32_t> First;
   std::vector<std::uint8_t> Touching;
 };

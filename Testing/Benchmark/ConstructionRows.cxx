@@ -49,16 +49,17 @@ double Status(const std::string& name)
   throw std::runtime_error("no " + name + " in /proc/self/status");
 }
 
-void AddHomeomorphism(
-  const Workload& workload, const std::string& name, CoordinateSystem system, Rows& rows)
+void AddHomeomorphism(const Workload& workload, const std::string& name, CoordinateSystem system,
+  Rows& rows, CubicBending bending = CubicBending::Least)
 {
   auto map = std::make_shared<std::shared_ptr<const Homeomorphism>>();
   Row& row = rows["construct/" + name];
   // Destroying the previous result is not timed.
   row.Before = [map](Task&) { map->reset(); };
-  row.Run = [map, system, &workload](Task&) {
+  row.Run = [map, system, bending, &workload](Task&) {
     HomeomorphismOptions options;
     options.System = system;
+    options.Cubic.Bending = bending;
     MeshDiagnostics problems;
     *map = Homeomorphism::Make(workload.Source, workload.Target, options, problems);
     if (!*map)
@@ -75,6 +76,8 @@ void AddConstructionRows(const Workload& workload, Rows& rows)
   AddHomeomorphism(workload, "Linear", CoordinateSystem::Linear, rows);
   AddHomeomorphism(workload, "Contour", CoordinateSystem::Contour, rows);
   AddHomeomorphism(workload, "Smooth", CoordinateSystem::Smooth, rows);
+  AddHomeomorphism(workload, "CubicLocal", CoordinateSystem::Cubic, rows, CubicBending::Local);
+  AddHomeomorphism(workload, "CubicLeast", CoordinateSystem::Cubic, rows);
 
   auto locator = std::make_shared<vtkSmartPointer<vtkStaticCellLocator>>();
   Row& row = rows["construct/vtkStaticCellLocator"];

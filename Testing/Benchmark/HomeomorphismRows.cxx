@@ -26,17 +26,24 @@ using namespace homeomorphism;
 namespace
 {
 
-const std::array<const char*, 3> systemNames{ "Linear", "Contour", "Smooth" };
-const std::array<CoordinateSystem, 3> systems{ CoordinateSystem::Linear, CoordinateSystem::Contour,
-  CoordinateSystem::Smooth };
+struct System
+{
+  const char* Name;
+  CoordinateSystem Coordinates;
+  CubicBending Bending;
+};
+const std::array<System, 5> systems{ { { "Linear", CoordinateSystem::Linear, {} },
+  { "Contour", CoordinateSystem::Contour, {} }, { "Smooth", CoordinateSystem::Smooth, {} },
+  { "CubicLocal", CoordinateSystem::Cubic, CubicBending::Local },
+  { "CubicLeast", CoordinateSystem::Cubic, CubicBending::Least } } };
 
 /// Made at first use, for both directions.
 class LazyHomeomorphism
 {
 public:
-  LazyHomeomorphism(const Workload& workload, CoordinateSystem system)
+  LazyHomeomorphism(const Workload& workload, const System& system)
     : Meshes(workload)
-    , System(system)
+    , Wanted(system)
   {
   }
 
@@ -45,7 +52,8 @@ public:
     if (!this->Map)
     {
       HomeomorphismOptions options;
-      options.System = this->System;
+      options.System = this->Wanted.Coordinates;
+      options.Cubic.Bending = this->Wanted.Bending;
       MeshDiagnostics problems;
       this->Map = Homeomorphism::Make(this->Meshes.Source, this->Meshes.Target, options, problems);
       if (!this->Map)
@@ -58,7 +66,7 @@ public:
 
 private:
   const Workload& Meshes;
-  CoordinateSystem System;
+  const System& Wanted;
   std::shared_ptr<const Homeomorphism> Map;
 };
 
@@ -81,12 +89,13 @@ void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
   }
 }
 
-void AddTransform(const Workload& workload, int system, Rows& rows)
+void AddTransform(const Workload& workload, const System& system, Rows& rows)
 {
   auto forward = vtkSmartPointer<vtkHomeomorphismTransform>::New();
   forward->SetSource(workload.Source);
   forward->SetTarget(workload.Target);
-  forward->SetCoordinateSystem(system);
+  forward->SetCoordinateSystem(static_cast<int>(system.Coordinates));
+  forward->SetCubicBending(static_cast<int>(system.Bending));
   for (const bool inverse : { false, true })
   {
     vtkSmartPointer<vtkAbstractTransform> transform = forward;
@@ -94,7 +103,7 @@ void AddTransform(const Workload& workload, int system, Rows& rows)
     {
       transform = forward->GetInverse();
     }
-    Row& row = rows[std::string("transform/") + systemNames[system] + Direction(inverse)];
+    Row& row = rows[std::string("transform/") + system.Name + Direction(inverse)];
     row.Before = [forward, transform](Task& task) {
       // An updated transform shares its prepared map with its inverse.
       forward->Update();
@@ -106,7 +115,7 @@ void AddTransform(const Workload& workload, int system, Rows& rows)
   }
 }
 
-void AddFilter(const Workload& workload, int system, Rows& rows)
+void AddFilter(const Workload& workload, const System& system, Rows& rows)
 {
   for (const bool inverse : { false, true })
   {
@@ -115,9 +124,10 @@ void AddFilter(const Workload& workload, int system, Rows& rows)
     filter->SetSourceData(workload.Source);
     filter->SetTargetData(workload.Target);
     filter->SetDataObject(data);
-    filter->SetCoordinateSystem(system);
+    filter->SetCoordinateSystem(static_cast<int>(system.Coordinates));
+    filter->SetCubicBending(static_cast<int>(system.Bending));
     filter->SetInverse(inverse);
-    Row& row = rows[std::string("filter/") + systemNames[system] + Direction(inverse)];
+    Row& row = rows[std::string("filter/") + system.Name + Direction(inverse)];
     row.Before = [data, filter](Task& task) {
       if (filter->GetNumberOfMeshBuilds() == 0)
       {
@@ -138,15 +148,15 @@ void AddFilter(const Workload& workload, int system, Rows& rows)
 
 void AddHomeomorphismRows(const Workload& workload, Rows& rows)
 {
-  for (int system = 0; system < 3; ++system)
+  for (const System& system : systems)
   {
     AddTransform(workload, system, rows);
     AddFilter(workload, system, rows);
-    auto map = std::make_shared<LazyHomeomorphism>(workload, systems[system]);
+    auto map = std::make_shared<LazyHomeomorphism>(workload, system);
     for (const bool inverse : { false, true })
     {
       const Domain from = inverse ? Domain::Target : Domain::Source;
-      Row& row = rows[std::string("pointwise/") + systemNames[system] + Direction(inverse)];
+      Row& row = rows[std::string("pointwise/") + system.Name + Direction(inverse)];
       row.Before = [map](Task&) { map->Get(); };
       row.Run = [map, from](Task& task) { MapPointByPoint(map->Get(), from, task); };
     }

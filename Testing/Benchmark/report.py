@@ -67,6 +67,12 @@ def goals(r):
         add(f"Smooth {d} / PROJ tinshift", smooth, r.median("small", f"tinshift/{d}"), 1.0 / 3.0)
         add(f"Contour {d} / SciPy CloughTocher2DInterpolator", r.median("small", f"transform/Contour/{d}"),
             r.median("small", f"CloughTocher2DInterpolator/{d}"), 1.0)
+    for name in ("CubicLocal", "CubicLeast"):
+        forward = r.median("small", f"transform/{name}/forward")
+        add(f"{name} forward / Smooth forward", forward, r.median("small", "transform/Smooth/forward"), 1.0)
+        add(f"{name} forward / SciPy CloughTocher2DInterpolator", forward,
+            r.median("small", "CloughTocher2DInterpolator/forward"), 0.35)
+        add(f"{name} inverse / forward", r.median("small", f"transform/{name}/inverse"), forward, 2.5)
     for d in DIRECTIONS:
         small = r.median("small", f"transform/Smooth/{d}")
         for part, words in (("large, dense", "more points than triangles"), ("large, scan", "fewer points than triangles")):

@@ -455,3 +455,79 @@ TEST(CubicElement, RightAnglesChangeNothingButRounding)
     EXPECT_LT(std::sqrt(SquaredNorm(derivative[0] - derivative[1])), 1e-13 / height / height);
   }
 }
+
+// A random element whose derivative differs from its affine map's by up to @a change.
+namespace
+{
+CubicElement RandomElement(std::mt19937_64& random, double change)
+{
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto vector = [&] { return Vector2{ uniform(random), uniform(random) }; };
+  CubicElement element;
+  do
+  {
+    element.Points = { vector(), vector(), vector() };
+  } while (
+    !(Cross(element.Points[1] - element.Points[0], element.Points[2] - element.Points[0]) > 0.05));
+  do
+  {
+    element.Affine = { vector(), vector() };
+  } while (!(element.Affine.Determinant() > 0.05));
+  for (int i = 0; i < 3; ++i)
+  {
+    element.Values[i] = change * vector();
+    element.Gradients[i] = change * Matrix2{ vector(), vector() };
+  }
+  return element;
+}
+}
+
+TEST(CubicElement, NetsAgreeWithTheElement)
+{
+  std::mt19937_64 random(21);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int n = 0; n < 2000; ++n)
+  {
+    const CubicElement element = RandomElement(random, 0.5);
+    const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
+    const CubicNet net(element);
+    Barycentric l{ uniform(random), uniform(random), uniform(random) };
+    const double sum = l[0] + l[1] + l[2];
+    l = { l[0] / sum, l[1] / sum, l[2] / sum };
+    Vector2 value;
+    Matrix2 gradient;
+    Evaluate(element, ordinates, l, value, gradient);
+    const Vector2 point = PointAt(element.Points, l);
+    const Barycentric again = BarycentricFrame(element.Points)(point);
+    const Vector2 image = element.Affine * point + value;
+    EXPECT_LT(Norm(net(l) - image), 1e-14);
+    // Newton's step brings the derivative to the residual.
+    const Vector2 target{ uniform(random), uniform(random) };
+    Vector2 step;
+    const Vector2 residual = net.GetResidual(l, element.Points, target, step);
+    EXPECT_LT(Norm(residual - (target - image)), 1e-14);
+    const Matrix2 derivative = element.Affine + gradient;
+    EXPECT_LT(Norm(derivative * step - residual), 1e-12 * (1.0 + Norm(step)));
+    for (int i = 0; i < 3; ++i)
+    {
+      EXPECT_NEAR(again[i], l[i], 1e-13);
+    }
+  }
+}
+
+TEST(CubicElement, BoundsByNormsAreBelowAllCoefficients)
+{
+  std::mt19937_64 random(22);
+  int bounded = 0;
+  for (int n = 0; n < 20000; ++n)
+  {
+    const CubicElement element = RandomElement(random, std::pow(10.0, -4.0 * (n % 100) / 100.0));
+    const DeterminantCoefficients c = GetDeterminantCoefficients(element);
+    const double least = *std::min_element(c.begin(), c.end());
+    // Without subdivision no bound is above the least coefficient.
+    const double bound = LeastDeterminant(element, 0.0, 0);
+    EXPECT_LE(bound, least + 1e-14 * std::abs(least));
+    bounded += bound > 0.0 && bound < 0.999999 * least ? 1 : 0;
+  }
+  EXPECT_GT(bounded, 2000);
+}

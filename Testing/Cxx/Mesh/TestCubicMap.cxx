@@ -520,3 +520,94 @@ TEST(CubicMap, DoesNotDependOnThreads)
     EXPECT_EQ(image[0].y, image[1].y);
   }
 }
+
+TEST(CubicMap, BoundsOfSmoothPairsAreBelowAllCoefficients)
+{
+  for (double size : { 0.02, 0.1, 0.2 })
+  {
+    std::mt19937_64 random(31);
+    PlanarPair pair = JitteredGrid(random, 40, 0.3);
+    for (Vector2& p : pair.Target)
+    {
+      p = p + size * std::sin(3.0 * p.x) * Vector2{ std::sin(4.0 * p.y), std::cos(2.0 * p.x) };
+    }
+    const CubicMap map(pair, Options(CubicBending::Local));
+    int bounded = 0;
+    for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+    {
+      double least = pair.GetAffine(t).Determinant();
+      map.VisitElements(
+        t, [&least](const CubicElement& element, const Vector2&, const Vector2&, double) {
+          for (double coefficient : GetDeterminantCoefficients(element))
+          {
+            least = std::min(least, coefficient);
+          }
+        });
+      const double certificate = map.GetCertificates()[static_cast<std::size_t>(t)];
+      const double ratio = least / pair.GetAffine(t).Determinant();
+      EXPECT_GT(certificate, 0.0);
+      // Subdivision raises coefficients, but only small ones.
+      EXPECT_LE(certificate, std::max(ratio, 1e-3) + 1e-12) << t;
+      bounded += certificate > 0.3 && certificate < ratio - 1e-6 ? 1 : 0;
+    }
+    EXPECT_GT(2 * bounded, pair.GetNumberOfTriangles());
+  }
+}
+
+TEST(CubicMap, ConjugateGradientsFindWhatEliminationFinds)
+{
+  std::mt19937_64 random(33);
+  PlanarPair pair = JitteredGrid(random, 12, 0.2);
+  for (Vector2& p : pair.Target)
+  {
+    p = p + 0.05 * std::sin(3.0 * p.x) * Vector2{ std::sin(4.0 * p.y), std::cos(2.0 * p.x) };
+  }
+  const CubicTemplate cubicTemplate(pair, {});
+  const BendingSolution gradients = SolveForLeastBending(cubicTemplate, {}, {});
+  // With a list of free points, none of which is, the general solver is taken.
+  const BendingSolution elimination =
+    SolveForLeastBending(cubicTemplate, {}, std::vector<std::uint8_t>(pair.Source.size(), 0));
+  EXPECT_EQ(gradients.Statistics.Rounds, 1);
+  EXPECT_EQ(elimination.Statistics.Rounds, 1);
+  EXPECT_NEAR(gradients.Statistics.Energy, elimination.Statistics.Energy,
+    1e-11 * elimination.Statistics.Energy);
+  for (std::size_t n = 0; n < pair.Source.size(); ++n)
+  {
+    EXPECT_LT(
+      std::sqrt(SquaredNorm(gradients.Points[n].Gradient - elimination.Points[n].Gradient)), 1e-10);
+  }
+}
+
+TEST(CubicMap, PreparedTrianglesChangeNothing)
+{
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (double strength : { 0.0, 1.2 })
+    {
+      const CubicMap map(RandomPair(7, strength, 6), Options(bending));
+      const PlanarPair& pair = map.GetPair();
+      CubicTriangle kept = map.Prepare();
+      Sampler sampler(pair, 8);
+      for (int n = 0; n < 2000; ++n)
+      {
+        const Sample sample = sampler();
+        const Vector2 point = PointAt(pair, pair.Source, sample);
+        CubicTriangle fresh = map.Prepare();
+        const Vector2 image = map.MapPoint(sample.Triangle, point, kept);
+        const Vector2 again = map.MapPoint(sample.Triangle, point, fresh);
+        EXPECT_EQ(image.x, again.x);
+        EXPECT_EQ(image.y, again.y);
+        Vector2 direct;
+        if (map.MapDirectly(false, sample.Triangle, sample.At, direct))
+        {
+          EXPECT_LT(Norm(direct - image), 1e-14);
+          Vector2 preimage;
+          if (map.MapDirectly(true, sample.Triangle, sample.At, preimage))
+          {
+            EXPECT_LT(Norm(preimage - point), 1e-14);
+          }
+        }
+      }
+    }
+  }
+}
