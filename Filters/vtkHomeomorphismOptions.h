@@ -16,8 +16,8 @@
  *   planes only). See Documentation/cubic.md.
  * - `CubicBending`: which map of the CUBIC system: LEAST (default; bends least among those that
  *   could be certified) or LOCAL (in closed form; moving a point changes the map nearby only).
- * - `MaximumDeviation`: the greatest distance of the SMOOTH and CUBIC systems' images from LINEAR's,
- *   in the target's units, positive. Unlimited by default. CONTOUR has no such limit.
+ * - `MaximumDeviation`: the greatest distance of the SMOOTH and CUBIC systems' images from
+ * LINEAR's, in the target's units, positive. Unlimited by default. CONTOUR has no such limit.
  * - `CertificateMargin`: with LEAST, how far above zero the certificate of the determinant has to
  *   be: relative to LINEAR's determinant, or, in triangles that are cut, to LOCAL's certificate.
  *   0.02 by default, in [0, 0.5].

@@ -454,8 +454,8 @@ bool CubicMap::FindPreimage(
     }
     t = at;
     x = from;
-    // The error of a step is about a constant times the square of its length, and so is the error
-    // of the next.
+    // Within one element, the error of a step is about a constant times the square of its length,
+    // and so is the error of the next.
     const double length = MaxNorm(move);
     const double next = step > 0 ? now * (length / lastMove) * (length / lastMove) : now;
     size = now;
@@ -465,7 +465,7 @@ bool CubicMap::FindPreimage(
     }
     from = from + move;
     this->Walk(at, from);
-    if (next <= 0.01 * this->ResidualTolerance)
+    if (at == t && prepared.IsWhole() && next <= 1e-3 * this->ResidualTolerance)
     {
       t = at;
       x = from;

@@ -31,8 +31,8 @@ void CubicTriangle::Set(int triangle)
   this->Elements.clear();
   const PlanarPair& pair = this->Template.GetPair();
   this->Affine = this->Template.GetAffine(triangle);
-  this->IsWhole = this->Bending && this->Bending->Cuts[triangle] < 0;
-  if (this->IsWhole)
+  this->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
+  if (this->Whole)
   {
     this->Make(pair.GetSourceCorners(triangle), this->Bending->Nets[triangle], 0);
     return;
@@ -55,7 +55,7 @@ void CubicTriangle::Set(int triangle)
 const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point, int& ringCorner)
 {
   ringCorner = -1;
-  if (this->IsWhole)
+  if (this->Whole)
   {
     return &this->Elements[0];
   }

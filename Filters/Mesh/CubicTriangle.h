@@ -31,6 +31,8 @@ public:
   }
 
   void Set(int triangle);
+  /// Whether the map is one element there.
+  bool IsWhole() const { return this->Whole; }
   /// Of the piecewise linear map.
   const Matrix2& GetAffine() const { return this->Affine; }
 
@@ -60,7 +62,7 @@ private:
   const CubicTemplate& Template;
   const BendingSolution* Bending;
   int Triangle = -1;
-  bool IsWhole = false;
+  bool Whole = false;
   Matrix2 Affine;
   TriangleCut Cut;
   /// Half planes of the points in the middle hexagon: those beyond the line of a corner's inner

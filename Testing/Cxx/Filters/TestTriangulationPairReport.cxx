@@ -63,7 +63,9 @@ TEST(TriangulationPairReport, AnAffinePairHasOneDistortionAndDoesNotBend)
   EXPECT_NEAR(report->GetStatistic("SmallestStretch"), 0.5, 1e-12);
   EXPECT_NEAR(report->GetStatistic("SourceArea"), 25.0, 1e-12);
   EXPECT_NEAR(report->GetStatistic("TargetArea"), 37.5, 1e-12);
-  EXPECT_NEAR(report->GetStatistic("CubicCertificate"), 1.0, 1e-12);
+  // A lower bound, which leaves room for rounding.
+  EXPECT_NEAR(report->GetStatistic("CubicCertificate"), 1.0, 2e-6);
+  EXPECT_LE(report->GetStatistic("CubicCertificate"), 1.0);
   EXPECT_NEAR(report->GetStatistic("CubicBendingEnergy"), 0.0, 1e-20);
   EXPECT_EQ(report->GetStatistic("CubicExceptionalBoundaryVertices"), 0.0);
   for (const char* name : { "Linear", "Smooth", "Cubic" })

@@ -365,6 +365,23 @@ TEST(CubicMap, NeedlesAreCertified)
     pair.FindNeighbors();
     const CubicMap map(pair, Options(CubicBending::Local));
     EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+    double size = 0.0;
+    for (const Vector2& p : pair.Target)
+    {
+      size = std::max(size, Norm(p));
+    }
+    Sampler sampler(pair, 52);
+    for (int k = 0; k < 40; ++k)
+    {
+      const Sample sample = sampler();
+      CubicTriangle prepared = map.Prepare();
+      const Vector2 image =
+        map.MapPoint(sample.Triangle, PointAt(pair, pair.Source, sample), prepared);
+      int triangle = LocateImage(pair, image, sample.Triangle);
+      Vector2 back;
+      ASSERT_TRUE(map.FindPreimage(image, triangle, back));
+      EXPECT_LE(Norm(map.MapPoint(triangle, back, prepared) - image), 1e-13 * size) << n;
+    }
   }
 }
 
