@@ -3,8 +3,8 @@
 """What every command promises about files: outputs whole or absent, nothing overwritten, pipes, interrupts, damaged
 files; and meshes of many formats, with meshio as an independent writer."""
 
-import json
 import contextlib
+import json
 import os
 import signal
 import subprocess
