@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Makes pairs of difficult figures, checks each, and prints a table in Markdown:
-//   StressPairs [--large]
+//   StressPairs
+// or the row and the largest memory of a number of smoothly displaced landmarks:
+//   StressPairs --smooth NUMBER
 // or, as CSV, the smallest angle and the shares of obtuse and discordant triangles that are reached
 // with a number of added points:
 //   StressPairs --curve NAME MAXIMUM
@@ -15,6 +17,8 @@
 #include <ctime>
 #include <functional>
 #include <iostream>
+
+#include <sys/resource.h> // for the memory
 
 using namespace figures;
 using homeomorphism::MakeIsomorphicTriangulation;
@@ -119,7 +123,7 @@ FigurePair Scaled(FigurePair figure, double x, double y, double scale, bool toFl
   return figure;
 }
 
-void Table(bool large)
+void Table()
 {
   std::cout << "| figure | points | added | smallest angle | seconds | result |\n"
                "| --- | ---: | ---: | ---: | ---: | --- |\n";
@@ -138,7 +142,7 @@ void Table(bool large)
       Row(name, figure, options);
     }
   }
-  for (const double spacings : { 0.1, 0.25, 0.5, 1.0, 2.0 })
+  for (const double spacings : { 0.1, 0.25, 0.5, 1.0, 1.5, 2.0 })
   {
     char name[40];
     std::snprintf(name, sizeof(name), "noise of %g spacings", spacings);
@@ -162,12 +166,15 @@ void Table(bool large)
   Row("1024 holes, landmarks in their bays", Holes(32, 1024));
   Row("Web Mercator coordinates", Scaled(Noise(500, 0.3, 3), 1.5e7, 4e6, 1e3, false));
   Row("national grid, float", Scaled(Noise(500, 0.3, 3), 3.5e6, 6.7e6, 1e5, true));
-  Row("smooth", Smooth(10000, 4));
-  Row("smooth", Smooth(100000, 4));
-  if (large)
-  {
-    Row("smooth", Smooth(1000000, 4));
-  }
+}
+
+/// For one number of landmarks, so that the largest memory is its own.
+void Growth(int number)
+{
+  Row("smooth", Smooth(number, 4));
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("%d smooth landmarks: at most %.0f MB\n", number, usage.ru_maxrss / 1e3);
 }
 
 int Curve(const std::string& name, int maximum)
@@ -215,6 +222,11 @@ int main(int argc, char** argv)
   {
     return Curve(argv[2], std::atoi(argv[3]));
   }
-  Table(argc > 1 && std::strcmp(argv[1], "--large") == 0);
+  if (argc == 3 && std::strcmp(argv[1], "--smooth") == 0)
+  {
+    Growth(std::atoi(argv[2]));
+    return Failures == 0 ? 0 : 1;
+  }
+  Table();
   return Failures == 0 ? 0 : 1;
 }
