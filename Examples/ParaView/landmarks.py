@@ -93,6 +93,7 @@ if __name__ == "__main__":
     pair.UpdatePipeline()
     source, target = OutputPort(pair, 0), OutputPort(pair, 1)
     mapped = DifferentiableHomeomorphism(Source=source, Target=target, Data=grid)
+    pair.UpdatePropertyInformation()
     print("Points added:", pair.NumberOfAddedPoints)
 
     layout = CreateLayout("A pair made from landmarks")
