@@ -294,3 +294,39 @@ def test_kinds_that_do_not_fit(dhm, pair):
                                ("p.csv", "new", "no extension"), ("p.csv", "", "empty"), ("p.csv", "new.gpkg", ".gpkg")):
         dhm.refuse(USAGE, "map", "pair.json", data, "-o", output, says=says)
     dhm.refuse(USAGE, "coordinates", "pair.json", "a.off", "-o", "new.obj", says=".vtp")
+
+
+# --- Systems
+
+
+def test_defaults_are_said_and_surfaces_are_mapped_smoothly(dhm, pair):
+    Image = pytest.importorskip("PIL.Image")
+    Image.fromarray(numpy.zeros((2, 2), "u1")).save(dhm.path("i.png"))
+    write_csv(dhm.path("p.csv"), [[0.5, 0.5]])
+    bent = numpy.column_stack((pair.source, pair.source[:, 0] ** 2))
+    write_mesh(dhm.path("bent.off"), bent, pair.triangles)
+    for arguments, system in (
+            (["map", *MESHES, "p.csv", "-o", "-"], "smooth"), (["map", "pair.json", "p.csv", "-o", "-"], "linear"),
+            (["warp", *MESHES, "i.png", "-o", "w.png"], "cubic"), (["warp", "pair.json", "i.png", "-o", "l.png"], "linear"),
+            (["morph", *MESHES, "-n", "2", "-o", "m%d.vtp"], "cubic"),
+            (["morph", "bent.off", "bent.off", "-n", "2", "-o", "b%d.vtp"], "smooth")):
+        assert f"coordinate system is {system}" in dhm(*arguments).err
+        assert "coordinate system" not in dhm(*arguments, "--force", "--system", "linear").err
+    dhm.refuse(REFUSED, "map", "bent.off", "bent.off", "p.csv", "-s", "cubic", "-o", "n.csv", says="Smooth")
+
+
+def test_cubic_and_its_options(dhm, pair):
+    """A map other than Smooth's, with an inverse, near Linear if it has to be."""
+    points = inside_points(pair, 300)
+    linear, smooth = (xy(map_points(dhm, MESHES, points, "-s", s)) for s in ("linear", "smooth"))
+    seen = [smooth]
+    for options in ([], ["--bending", "local"], ["--fairness", "1"], ["--max-deviation", "1e-3"]):
+        options = ["--system", "cubic", *options]
+        images = xy(map_points(dhm, MESHES, points, *options))
+        assert all(numpy.abs(images - other).max() > 1e-4 for other in seen)
+        seen.append(images)
+        numpy.testing.assert_allclose(xy(map_points(dhm, MESHES, images, "-i", *options)), points, rtol=0, atol=1e-12)
+    assert numpy.hypot(*(seen[-1] - linear).T).max() <= 1e-3 < numpy.hypot(*(seen[1] - linear).T).max()
+    for values in ("0", "-1", "x"):
+        dhm.refuse(USAGE, "map", *MESHES, "p.csv", "--max-deviation=" + values, "-o", "n.csv", says="--max-deviation")
+    dhm.refuse(USAGE, "map", *MESHES, "p.csv", "--fairness=9", "-o", "n.csv", says="--fairness")
