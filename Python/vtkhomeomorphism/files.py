@@ -204,6 +204,15 @@ class Output:
         return Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE)
 
     def _commit(self):
+        folder, main = os.path.split(self.path)
+        os.stat(self.path)
+        for name in os.listdir(folder):
+            # Some libraries do not tell that a disk is full: then there is no room for more.
+            with open(os.path.join(folder, name), "r+b") as file:
+                size = file.seek(0, os.SEEK_END)
+                file.write(bytes(1 << 16))
+                file.flush()
+                file.truncate(size)
         if self.special:
             standard = self.name == "standard output"
             with open(self.path, "rb") as file, contextlib.ExitStack() as stack:
@@ -211,9 +220,7 @@ class Output:
                 shutil.copyfileobj(file, goal)
                 goal.flush()
             return
-        os.stat(self.path)
         # Files beside the output come first, so that it exists only if it is complete.
-        folder, main = os.path.split(self.path)
         for name in sorted(os.listdir(folder), key=lambda name: name == main):
             goal = os.path.join(self.folder, name)
             self._require_new(goal)

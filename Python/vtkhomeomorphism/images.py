@@ -373,7 +373,7 @@ class TiffWriter:
     def __init__(self, output, grid, bands, dtype, has_alpha, nodata=None):
         rasterio = import_extra("rasterio", f"Writing {output.name}")
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-        self.rasterio, self.output, self.grid = rasterio, output, grid
+        self.rasterio, self.output = rasterio, output
         to_ground = grid.turn or rasterio.Affine(grid.dx, 0, grid.x, 0, grid.dy, grid.y)
         place = {"crs": grid.crs, "transform": to_ground * rasterio.Affine(1, 0, -0.5, 0, -1, 0.5)}
         self.file = rasterio.open(
@@ -390,12 +390,8 @@ class TiffWriter:
         self.file.write(numpy.moveaxis(pixels, 2, 0), window=window)
 
     def close(self):
-        """Reads the end again, because GDAL does not report a full disk."""
-        last = self.rasterio.windows.Window(self.grid.width - 1, self.grid.height - 1, 1, 1)
         try:
             self.file.close()
-            with self.rasterio.open(self.output.path) as file:
-                file.read(window=last)
         except self.rasterio.errors.RasterioError as error:
             raise Failure(f"Cannot write {self.output.name}: {error}", FILE) from None
 

@@ -3,6 +3,9 @@
 """Vector data (GeoPackage, GeoJSON, Shapefile, FlatGeobuf) by geopandas: geometries are mapped vertex by vertex,
 attributes and layers are kept."""
 
+import contextlib
+import io
+
 import numpy
 
 from .files import FILE, Failure, import_extra, quote_message
@@ -39,9 +42,11 @@ def write(layers, output):
     if len(layers) > 1 and output.format != "gpkg":
         raise Failure(f"{output.name} can hold one layer, not {len(layers)} ({', '.join(layers)}): write a .gpkg.")
     try:
-        for name, layer in layers.items():
-            options = {"layer": name} if output.format == "gpkg" else {}
-            layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
+        # GDAL's messages are in the exceptions.
+        with contextlib.redirect_stderr(io.StringIO()):
+            for name, layer in layers.items():
+                options = {"layer": name} if output.format == "gpkg" else {}
+                layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
         # Read again, because GDAL does not tell when a disk is full at the end.
         written = [len(layer) for layer in _read(output.path).values()]
     except OSError:

@@ -153,3 +153,17 @@ def test_missing_libraries_are_named(dhm, shift, parcels):
     dhm.refuse(FILE, "map", "shift.json", "in.gpkg", "-o", "new.gpkg", says=("geopandas", "python3-geopandas", "pip"))
     write_csv(dhm.path("p.csv"), inside_points(shift, 5))
     dhm("map", "shift.json", "p.csv", "-o", "out.csv")
+
+
+@pytest.mark.parametrize("extension", ["gpkg", "geojson", "shp", "fgb"])
+def test_full_disks(dhm, shift, parcels, extension):
+    parcels[:1].to_file(dhm.path("in.gpkg"), driver="GPKG")
+    command = ["map", "shift.json", "in.gpkg", "-o", f"out.{extension}"]
+    dhm(*command)
+    sizes = {path.name: path.stat().st_size for path in dhm.folder.glob("out.*")}
+    for path in dhm.folder.glob("out.*"):
+        path.unlink()
+    for limit in (0, max(sizes.values()) // 2, max(sizes.values()) - 1):
+        dhm.refuse(FILE, *command, limit=limit, says=f"out.{extension}")
+    dhm(*command)
+    assert {path.name: path.stat().st_size for path in dhm.folder.glob("out.*")} == sizes

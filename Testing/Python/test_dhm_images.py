@@ -2,6 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """dhm warp, with Pillow, tifffile and rasterio as independent readers and writers."""
 
+import json
+import shutil
+import subprocess
+
 import numpy
 import pytest
 from conftest import FILE, REFUSED, USAGE
@@ -245,6 +249,15 @@ def test_geotiff_pixels_are_where_the_inverse_says(dhm, shift):
         rows, columns = numpy.nonzero(numpy.isfinite(values[0]))
         places = numpy.column_stack(rasterio.transform.xy(file.transform, rows, columns))
     assert len(rows) > 0.9 * 120 * 90
+    if shutil.which("gdalinfo"):
+        ran = subprocess.run(["gdalinfo", "-json", dhm.path("out.tif")], stdout=subprocess.PIPE, check=True)
+        said = json.loads(ran.stdout)
+        assert 'ID["EPSG",3067]]' in said["coordinateSystem"]["wkt"] and said["bands"][0]["noDataValue"] == "NaN"
+        corners = numpy.array([said["cornerCoordinates"][name] for name in ("lowerLeft", "upperRight")])
+        # The raster covers what the image of the first one covers, of its mesh's 2000 by 1600.
+        low, high = shift.target.min(axis=0), shift.target.max(axis=0)
+        assert (corners[0] > low).all() and (corners[1] < high).all()
+        assert numpy.ptp(corners, axis=0) == pytest.approx([1200, 900], rel=0.2)
     some = numpy.random.default_rng(12).choice(len(rows), 300, replace=False)
     origins = xy(map_points(dhm, ["shift.json"], places[some], "--inverse"))
     found = values[:, rows[some], columns[some]].T + [3384000, 6672000]
