@@ -644,23 +644,29 @@ double GreatestDisplacement(const CubicElement& element)
   return std::sqrt(greatest);
 }
 
-//------------------------------------------------------------------------------
-BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
+namespace
 {
+
+// The matrix of an even number of the nine functions, or of all.
+template <std::size_t Count>
+BendingMatrix MakeBendingMatrix(
+  const std::array<Vector2, 3>& points, const std::array<int, Count>& functions)
+{
+  constexpr std::size_t pairs = (Count + 1) / 2;
   // Two basis functions at a time, as the components of one map.
-  std::array<CubicOrdinates<Vector2>, 5> basis;
-  for (int n = 0; n < 9; ++n)
+  std::array<CubicOrdinates<Vector2>, pairs> basis;
+  for (std::size_t n = 0; n < Count; n += 2)
   {
     CubicElement element{ points, {}, {}, {} };
-    for (int m = n; m <= std::min(n + 1, 8); ++m)
+    for (std::size_t at = n; at < std::min(n + 2, Count); ++at)
     {
+      const int m = functions[at];
       Vector2& target = m % 3 == 0
         ? element.Values[m / 3]
         : (m % 3 == 1 ? element.Gradients[m / 3].ImageOfX : element.Gradients[m / 3].ImageOfY);
-      (m == n ? target.x : target.y) = 1.0;
+      (at == n ? target.x : target.y) = 1.0;
     }
     basis[n / 2] = GetOrdinates(element);
-    ++n;
   }
   const double area = 0.5 * Cross(points[1] - points[0], points[2] - points[0]);
   BendingMatrix matrix{};
@@ -675,8 +681,8 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
     const Vector2 alongX{ toCentroid.y / cross, -edge.y / cross };
     const Vector2 alongY{ -toCentroid.x / cross, edge.x / cross };
     // Second derivatives xx, xy, yy of the nine functions at the corners of the piece.
-    double hessians[3][3][9];
-    for (int pair = 0; pair < 5; ++pair)
+    double hessians[3][3][2 * pairs];
+    for (std::size_t pair = 0; pair < pairs; ++pair)
     {
       const CubicOrdinates<Vector2>& b = basis[pair];
       // Rows of the control net towards the end (columns) and the centroid (rows).
@@ -699,12 +705,9 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
         hessians[corner][0][2 * pair] = xx.x;
         hessians[corner][1][2 * pair] = xy.x;
         hessians[corner][2][2 * pair] = yy.x;
-        if (pair < 4)
-        {
-          hessians[corner][0][2 * pair + 1] = xx.y;
-          hessians[corner][1][2 * pair + 1] = xy.y;
-          hessians[corner][2][2 * pair + 1] = yy.y;
-        }
+        hessians[corner][0][2 * pair + 1] = xx.y;
+        hessians[corner][1][2 * pair + 1] = xy.y;
+        hessians[corner][2][2 * pair + 1] = yy.y;
       }
     }
     // Second derivatives are linear in a piece: the midpoints of its edges integrate their squares.
@@ -713,16 +716,16 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
       for (int part = 0; part < 3; ++part)
       {
         const double weight = (part == 1 ? 2.0 : 1.0) * area / 9.0 * 0.25;
-        double middle[9];
-        for (int n = 0; n < 9; ++n)
+        double middle[Count];
+        for (std::size_t n = 0; n < Count; ++n)
         {
           middle[n] = hessians[corner][part][n] + hessians[NextCorner(corner)][part][n];
         }
-        for (int m = 0; m < 9; ++m)
+        for (std::size_t m = 0; m < Count; ++m)
         {
-          for (int n = 0; n <= m; ++n)
+          for (std::size_t n = 0; n <= m; ++n)
           {
-            matrix[m][n] += weight * middle[m] * middle[n];
+            matrix[functions[m]][functions[n]] += weight * middle[m] * middle[n];
           }
         }
       }
@@ -736,6 +739,20 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
     }
   }
   return matrix;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
+{
+  return MakeBendingMatrix<9>(points, { 0, 1, 2, 3, 4, 5, 6, 7, 8 });
+}
+
+//------------------------------------------------------------------------------
+BendingMatrix GetBendingMatrixOfDerivatives(const std::array<Vector2, 3>& points)
+{
+  return MakeBendingMatrix<6>(points, { 1, 2, 4, 5, 7, 8 });
 }
 
 } // namespace homeomorphism

@@ -913,7 +913,7 @@ bool Solver::SolveWhole(BendingSolution& solution)
   for (int t = 0; t < triangles; ++t)
   {
     const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[t];
-    const BendingMatrix bending = GetBendingMatrix(this->Pair.GetSourceCorners(t));
+    const BendingMatrix bending = GetBendingMatrixOfDerivatives(this->Pair.GetSourceCorners(t));
     std::array<Matrix2, 3> own;
     for (int i = 0; i < 3; ++i)
     {
