@@ -762,10 +762,12 @@ VertexRings::Outline GetHomogeneousOutline(const VertexFan& fan)
   return outline;
 }
 
-//------------------------------------------------------------------------------
-bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
+namespace
 {
-  const Matrix2 derivative = fan.Closed ? FitLinear(fan) : FitBoundary(fan);
+
+// Rings towards a linear map.
+bool FindRingsTowards(const Matrix2& derivative, const VertexFan& fan, VertexRings& rings)
+{
   const StarHomotopy homotopy(fan, derivative);
   const double ratioLogarithm = std::log(VertexRings::Ratio);
   // The innermost outline must stay well above what coordinates beside the vertex can represent.
@@ -836,6 +838,31 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
     }
   }
   rings.Outlines.clear();
+  return false;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
+{
+  if (!fan.Closed)
+  {
+    return FindRingsTowards(FitBoundary(fan), fan, rings);
+  }
+  // Where the way to the fit is too long, maps that distort more or less may be closer. The fit is
+  // the sum of a similarity and of what is left.
+  const Matrix2 fit = FitLinear(fan);
+  const Matrix2 turned{ { fit.ImageOfY.y, -fit.ImageOfY.x }, { -fit.ImageOfX.y, fit.ImageOfX.x } };
+  const Matrix2 similarity = 0.5 * (fit + turned);
+  for (double share : { 1.0, 0.0, 0.5, 1.3 })
+  {
+    const Matrix2 derivative = similarity + share * (fit - similarity);
+    if (derivative.Determinant() > 0.0 && FindRingsTowards(derivative, fan, rings))
+    {
+      return true;
+    }
+  }
   return false;
 }
 
