@@ -855,7 +855,7 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
   const Matrix2 fit = FitLinear(fan);
   const Matrix2 turned{ { fit.ImageOfY.y, -fit.ImageOfY.x }, { -fit.ImageOfX.y, fit.ImageOfX.x } };
   const Matrix2 similarity = 0.5 * (fit + turned);
-  for (double share : { 1.0, 0.0, 0.5, 1.3 })
+  for (double share : { 1.0, 0.0, 0.5, 1.3, -0.5, 1.6, 0.25 })
   {
     const Matrix2 derivative = similarity + share * (fit - similarity);
     if (derivative.Determinant() > 0.0 && FindRingsTowards(derivative, fan, rings))
