@@ -68,3 +68,29 @@ def test_points_that_do_not_exist_are_refused():
     source, target = _landmarks(5)
     with pytest.raises(ValueError, match=r"segments\[0\]"):
         isomorphic_triangulation(source, target, segments=[[0, 99]])
+
+
+def test_necessary_points_are_refused_beyond_the_limit():
+    random = numpy.random.default_rng(4)
+    source, target = random.random((20, 2)), random.random((20, 2))
+    needed = isomorphic_triangulation(source, target).added_points
+    assert needed > 1
+    with pytest.raises(ValueError, match="points"):
+        isomorphic_triangulation(source, target, maximum_added_points=1)
+    assert isomorphic_triangulation(source, target, maximum_added_points=10000).added_points >= needed
+
+
+def test_the_frame_of_an_image_is_predicted():
+    """A quadratic map goes on beyond the landmarks, a wrong landmark notwithstanding."""
+    source = numpy.random.default_rng(6).uniform(0.1, 0.9, (80, 2))
+
+    def bend(points):
+        return points + 0.1 * points[:, ::-1] ** 2
+
+    target = bend(source)
+    target[3] += 0.05
+    pair = isomorphic_triangulation(source, target, frame=((0, 1, 0, 1), None))
+    assert pair.suspicious()[0] == 3 and pair.added_points == 0
+    rim = pair.source[80:]
+    assert numpy.allclose(rim.min(axis=0), -0.01) and numpy.allclose(rim.max(axis=0), 1.01)
+    assert numpy.allclose(pair.target[80:], bend(rim), atol=1e-9)
