@@ -264,8 +264,7 @@ TEST(BijectivityOfSmooth, HoldsForNeedles)
   ExpectBijective(Smooth, { pair.Source, target }, 91);
 }
 
-// --- Ill-conditioned cases
-// --------------------------------------------------------------------------
+// --- Ill-conditioned cases -----------------------------------------------------------------------
 
 /// Beside a far smaller neighbor the columns of the Jacobian are almost parallel, and the
 /// difference of their products would be inaccurate.

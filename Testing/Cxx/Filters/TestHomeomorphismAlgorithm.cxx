@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestHomeomorphismAlgorithm.cxx
-/// What the filters have in common: meshes shared by threads, meshes overwritten in place, error
-/// codes, and the warning about points that miss a surface.
+/// What the filters have in common: meshes shared by threads, meshes overwritten in place, and
+/// the warnings about blocks without points and points that miss a surface.
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkInformation.h"
 #include "vtkJacobianContinuity.h"
@@ -86,12 +85,8 @@ TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
     vtkNew<vtkPolyData> target;
     source->ShallowCopy(pair.Source);
     target->ShallowCopy(pair.Target);
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->InsertNextPoint(point);
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    const auto filter = MakeFilter(Smooth, { source.Get(), target.Get() }, data);
+    const auto filter = MakeFilter(
+      Smooth, { source.Get(), target.Get() }, MakeCloud({ { point[0], point[1], point[2] } }));
     filter->Update();
     compare(DataOf(filter)->GetPoint(0));
     vtkNew<vtkResampleThroughHomeomorphism> resample;
@@ -157,38 +152,7 @@ TEST(HomeomorphismAlgorithm, ModifiedMeshesAreReadAgain)
   }
 }
 
-TEST(HomeomorphismAlgorithm, RefusedInputsHaveErrorCodes)
-{
-  const MeshPair pair = MakePlanarPair(4, 73);
-  vtkNew<vtkTable> table;
-  const auto map = MakeFilter(Smooth, pair, table);
-  vtkNew<vtkTriangularCoordinates> coordinates;
-  coordinates->SetSourceData(pair.Source);
-  coordinates->SetDataObject(table);
-  vtkNew<vtkResampleThroughHomeomorphism> resample;
-  resample->SetSourceData(pair.Source);
-  resample->SetTargetData(pair.Target);
-  resample->SetDataObject(table);
-  for (vtkHomeomorphismAlgorithm* filter :
-    std::initializer_list<vtkHomeomorphismAlgorithm*>{ map, coordinates, resample })
-  {
-    SCOPED_TRACE(filter->GetClassName());
-    Messages messages(filter);
-    filter->Update();
-    EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::DATA_REFUSED);
-    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
-    filter->SetDataObject(pair.Source);
-    filter->Update();
-    EXPECT_EQ(filter->GetErrorCode(), 0u);
-    EXPECT_GE(filter->GetNumberOfOutsidePoints(), 0);
-    filter->SetInputDataObject(0, table);
-    filter->Update();
-    EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::MESHES_REFUSED);
-    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
-  }
-}
-
-TEST(HomeomorphismAlgorithm, BlocksWithoutPointsAreNamed)
+TEST(HomeomorphismAlgorithm, BlocksWithoutPointsAreNamedAndLeftOut)
 {
   const MeshPair pair = MakePlanarPair(4, 74);
   vtkNew<vtkTable> table;
@@ -207,49 +171,20 @@ TEST(HomeomorphismAlgorithm, BlocksWithoutPointsAreNamed)
   EXPECT_EQ(output->GetBlock(1), nullptr);
 }
 
-TEST(HomeomorphismAlgorithm, AbortedUpdatesHaveAnErrorCode)
-{
-  const MeshPair pair = MakePlanarPair(4, 75);
-  const auto filter = MakeFilter(Smooth, pair);
-  // Before VTK 9.3, the executive clears requests that were made before an update.
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
-    vtkAlgorithm::SafeDownCast(caller)->AbortExecuteOn();
-  });
-  const unsigned long observer = filter->AddObserver(vtkCommand::ProgressEvent, abort);
-  filter->Update();
-  EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::UPDATE_ABORTED);
-  filter->RemoveObserver(observer);
-  filter->AbortExecuteOff();
-  filter->Modified();
-  filter->Update();
-  EXPECT_EQ(filter->GetErrorCode(), 0u);
-}
-
 TEST(HomeomorphismAlgorithm, PointsThatMissASurfaceAreExplained)
 {
   // Points of a curved surface, rounded to four decimals.
   const MeshPair pair = MakeClosedPair(4, 76);
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (vtkIdType cell = 0; cell < pair.Source->GetNumberOfCells(); ++cell)
+  std::vector<Point> points;
+  for (const Triangle& triangle : TrianglesOf(pair.Source))
   {
-    double center[3] = { 0.0, 0.0, 0.0 };
-    vtkNew<vtkIdList> ids;
-    pair.Source->GetCellPoints(cell, ids);
-    for (const vtkIdType id : *ids)
+    points.push_back(CentroidOf(pair.Source, triangle));
+    for (double& coordinate : points.back())
     {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        center[axis] += pair.Source->GetPoint(id)[axis] / 3.0;
-      }
+      coordinate = std::round(1e4 * coordinate) / 1e4;
     }
-    points->InsertNextPoint(std::round(1e4 * center[0]) / 1e4, std::round(1e4 * center[1]) / 1e4,
-      std::round(1e4 * center[2]) / 1e4);
   }
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  const auto filter = MakeFilter(Smooth, pair, data);
+  const auto filter = MakeFilter(Smooth, pair, MakeCloud(points));
   double tolerance = 0.0;
   {
     Messages messages(filter);
