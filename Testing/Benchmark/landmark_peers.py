@@ -66,7 +66,7 @@ def round_trip(points, back):
 def main():
     warnings.simplefilter("ignore")
     print("| landmarks | | folded triangles, forward and inverse | points that do not return | largest distance | "
-          "making, s | mapping there and back, s |\n| --- | --- | ---: | ---: | ---: | ---: | ---: |")
+          "triangulation, s | round trip, s |\n| --- | --- | ---: | ---: | ---: | ---: | ---: |")
     for name, source, target in data(sys.argv[1]):
         points = inside_points(source)
         peer = PiecewiseAffineTransform()
