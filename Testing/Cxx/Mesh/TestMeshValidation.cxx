@@ -7,6 +7,7 @@
 #include "Fixtures/Defects.h"
 #include "Fixtures/FilterRuns.h"
 
+#include "vtkCellData.h"
 #include "vtkCutter.h"
 #include "vtkDataSetTriangleFilter.h"
 #include "vtkFlyingEdges3D.h"
