@@ -59,7 +59,7 @@ def rounding(pair):
 
 
 def main(count):
-    networks = [("made network", make_network(), (0.01, 0.001))]
+    networks = [("generated network", make_network(), (0.01, 0.001))]
     files = [("needle_shift", SHARED_DATA / "cases" / "needle_shift.json", (0.05, 0.001)),
              ("Finland", SHARED_DATA / "fi_nls_ykj_etrs35fin.json", (0.01, 0.001))]
     for name, path, limits in files:
