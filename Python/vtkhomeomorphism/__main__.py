@@ -17,14 +17,14 @@ from .vtkfiles import capture_messages
 @click.group(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="""
-    A pair of meshes is one file that has both (PROJ's triangulation files, or a mesh with the target's positions as a
-    point array) or two files, SOURCE and TARGET. Meshes: .json .vtp .vtk .vtu .obj .off .ply .stl, xmorph's .mesh.
-    Landmarks are a pair, too: .csv (source x, y, target x, y), .points of QGIS, IIIF georeference annotations, BigWarp.
-    - is standard input or output.
+    A pair of meshes is one file with both meshes (a PROJ triangulation file, or a mesh with the target's positions as a
+    point array) or two files, SOURCE and TARGET. Mesh formats: .json .vtp .vtk .vtu .obj .off .ply .stl, xmorph's .mesh.
+    A file of landmarks also defines a pair: .csv (source x, y, target x, y), QGIS .points, IIIF georeference
+    annotations, BigWarp. The name - stands for standard input or output.
 
     \b
-    Exit status: 0 done (check: valid), 1 the data are refused (check: not valid),
-                 2 wrong usage, 3 a file cannot be read or written.
+    Exit status: 0 success (check: valid pair), 1 data refused (check: invalid pair),
+                 2 usage error, 3 file cannot be read or written.
     Examples:
       dhm check shift.json
       dhm map shift.json points.csv -o shifted.csv
@@ -39,7 +39,7 @@ from .vtkfiles import capture_messages
 @click.version_option(__version__, prog_name="dhm", message="dhm %(version)s")
 @options.quiet
 def dhm():
-    """Maps data between the domains of two triangulations with the same triangles, one to one and smoothly, with an
+    """Map data between the domains of two triangulations with the same triangles, smoothly and one to one, with an
     exact inverse."""
 
 
@@ -55,7 +55,7 @@ def main():
     os.environ.setdefault("CPL_LOG", os.devnull)
     # By default GDAL keeps a twentieth of the memory.
     os.environ.setdefault("GDAL_CACHEMAX", "200")
-    # Libraries that cannot write tell so when their objects are deleted, too.
+    # Libraries also report failed writes when their objects are deleted.
     sys.unraisablehook = lambda what: None
     try:
         dhm.main(prog_name="dhm", standalone_mode=False)

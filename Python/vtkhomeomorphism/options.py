@@ -35,11 +35,11 @@ def add(*options):
 
 quiet = click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Print errors only.",
                      callback=lambda context, param, value: set_quiet(value))
-force = click.option("-f", "--force", is_flag=True, help="Replace files that exist.")
+force = click.option("-f", "--force", is_flag=True, help="Replace existing files.")
 inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the target's domain to the source's.")
-mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles instead of refusing the meshes.")
+mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles instead of refusing the pair.")
 format_option = click.option("--input-format", default="", metavar="EXTENSION",
-                             help="Format of standard input (-): json of a pair, csv of data, png of an image by default.")
+                             help="Format of standard input (-); default: json for a pair, csv for data, png for an image.")
 
 
 def output(help, default):
@@ -76,15 +76,15 @@ def pair_files(names):
         return add(
             click.argument("files", nargs=-1, metavar=names),
             click.option("--target-array", default="Target", metavar="NAME", show_default=True,
-                         help="Point array with the target's positions, where one file has both meshes."),
+                         help="Point array with the target's positions if one file has both meshes."),
             click.option("--target-uv", is_flag=True,
-                         help="Take an OBJ file's texture coordinates (vt, without seams) as the target."),
+                         help="Use the texture coordinates of an OBJ file (vt, without seams) as the target."),
             click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
-                         help="Of xmorph's meshes that do not fill their pictures: the size of its working picture "
-                              "(resulting_size in a session's file)."),
+                         help="For xmorph meshes that do not fill their images: the size of xmorph's working image "
+                              "(resulting_size in its session file)."),
             click.option("--scan", default=(), multiple=True, metavar="FILE",
-                         help="Of landmarks in an image's pixels: the image, whose rectangle is the source's domain. Given "
-                              "again, the target's image."),
+                         help="For landmarks in an image's pixels: the image; its rectangle is the source's domain. A second "
+                              "--scan is the target's image."),
             click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
             format_option,
         )(wrapped)
@@ -93,7 +93,7 @@ def pair_files(names):
 
 
 def scan_grids(inputs):
-    """The pixels of the images of --scan, None where not given."""
+    """The pixel grids of the images of --scan; None for an image that is not given."""
     grids = [None, None]
     for side, name in enumerate(inputs.scan[:2]):
         with Input(name) as file:
@@ -131,19 +131,19 @@ def map_settings(default):
             click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
                          help="Coordinate system: linear (piecewise), contour (the published construction), smooth (twice "
                               "continuously differentiable except at vertices) or cubic (continuously differentiable at "
-                              f"vertices too; meshes in planes). Default: {default}."),
+                              f"vertices too; planar meshes). Default: {default}."),
             click.option("--bending", type=click.Choice(list(BENDINGS)), default="least", show_default=True,
-                         help="Cubic: bend least, or depend on near vertices only."),
+                         help="Cubic: least bending, or a local map that depends on nearby vertices only."),
             click.option("--max-deviation", type=POSITIVE, metavar="DISTANCE",
                          help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
             click.option("--fairness", type=click.IntRange(0, 4), default=0, metavar="LEVELS", show_default=True,
-                         help="Cubic: how often triangles are divided into four, to bend less."),
+                         help="Cubic: number of times that triangles are divided into four, for less bending."),
             click.option("--incenter", is_flag=True, help="Contour: start the contours at the incenter."),
             click.option("--linear-where-discordant", is_flag=True,
-                         help="Contour: map discordant triangles by Linear instead of refusing them."),
+                         help="Contour: map discordant triangles by Linear instead of refusing the pair."),
             click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
-                         help="Greatest distance from the domain of a point that is mapped like the nearest point of the "
-                              "domain, relative to the domain's diagonal (default: rounding only)."),
+                         help="Map points outside the domain, up to this distance, like the nearest point of the domain; "
+                              "relative to the diagonal of the domain (default: rounding only)."),
             mask_option,
         )(wrapped)
 

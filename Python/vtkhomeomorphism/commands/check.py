@@ -70,16 +70,17 @@ def print_table(columns):
 
 @click.command("check")
 @click.option("--json", "as_json", is_flag=True, help="Write the report as JSON, with all cell ids.")
-@click.option("--quick", is_flag=True, help="Validate the meshes only, without measuring determinants and continuity.")
-@click.option("--plot", default="", metavar="FILE", help="Draw the pair with invalid triangles marked: .png .svg .pdf.")
+@click.option("--quick", is_flag=True, help="Validate the meshes only; do not measure determinants and continuity.")
+@click.option("--plot", default="", metavar="FILE", help="Plot the pair and mark invalid triangles: .png .svg .pdf.")
 @options.force
 @options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, as_json, quick, plot, force):
-    """Report whether two meshes define a map, and its properties.
+    """Validate a pair of meshes and measure its maps.
 
-    The exit status is 0 if they do, otherwise 1. Measurements exclude invalid triangles. Creases are interior edges where the derivative of the map is not the same on
-    both sides, measured from values of the map. Lengths and areas are in units of the meshes."""
+    The exit status is 0 if the pair is valid, otherwise 1. Invalid triangles are not measured. A crease is an interior
+    edge at which the derivatives on the two sides differ, as measured from values of the map. Lengths and areas are in
+    the meshes' units."""
     output = Output(plot, "", force, plots.FORMATS, "a plot") if plot else None
     pair = options.read_pair(inputs)
     report = Report(pair, maps=not quick, continuity=not quick)

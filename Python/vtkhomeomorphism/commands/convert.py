@@ -23,8 +23,8 @@ def describe(metadata, input_crs, output_crs):
 
 
 @click.command("convert")
-@options.output("The pair: .json (PROJ's triangulation file), .vtp or .vtk with the target's positions as a point "
-                "array; with --target-output the source alone: .vtp .vtk .obj .off .ply.", "json")
+@options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk with the target's positions as a point "
+                "array; with --target-output, the source only: .vtp .vtk .obj .off .ply.", "json")
 @click.option("--target-output", default="", metavar="FILE", help="Write the target to a separate file.")
 @crs_options
 @options.mask_option

@@ -39,8 +39,8 @@ class Coordinates:
 def command(files, input_format, data, settings):
     """Attach triangular coordinates in a mesh to points.
 
-    MESH is the triangulation (of a triangulation file the source), DATA as for dhm map. The arrays: TriangleId,
-    EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1 on the
-    edge), vtkValidPointMask."""
+    MESH is the triangulation (the source of a pair in one file). DATA is the same as for dhm map. The arrays are
+    TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1
+    on the edge) and vtkValidPointMask."""
     mesh = pair.read_mesh(files[0], input_format)
     data.process(files[1], input_format, Coordinates(mesh, settings, files[0]), moves=False)

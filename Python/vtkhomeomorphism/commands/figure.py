@@ -45,18 +45,18 @@ def read_close_up(text):
 @click.command("figure")
 @options.output("The figure: .png .svg .pdf, or - for standard output.", "png")
 @options.map_settings("smooth; for a PROJ triangulation file linear")
-@click.option("--all-systems", is_flag=True, help="Draw one panel per coordinate system.")
+@click.option("--all-systems", is_flag=True, help="Draw one panel for each coordinate system.")
 @click.option("--grid", type=click.IntRange(1, 500), default=16, metavar="NUMBER", show_default=True,
-              help="Squares of the grid along the longer side.")
-@click.option("--image", default="", metavar="FILE", help="Image over the source, drawn and warped below.")
-@click.option("--close-up", default="", metavar="X,Y,R", help="Add close-ups: the center and half the side of a square "
-              "in the target.")
+              help="Number of grid squares along the longer side.")
+@click.option("--image", default="", metavar="FILE", help="Image over the source, drawn below the grid and warped with it.")
+@click.option("--close-up", default="", metavar="X,Y,R",
+              help="Add close-ups of a square in the target: its center and half its side.")
 @click.option("--width", type=options.Number(50, 5000), default=420.0, metavar="NUMBER", show_default=True,
               help="Width of a panel in pixels.")
 @options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, output, force, output_format, settings, all_systems, grid, image, close_up, width):
-    """Draw a grid on the source and mapped onto the target. The meshes are in a plane."""
+    """Draw a grid over the source and its image over the target. Meshes must be planar."""
     close_up = read_close_up(close_up) if close_up else None
     target = Output(output, output_format, force, plots.FORMATS, "a figure")
     raster, dark = None, False

@@ -14,26 +14,28 @@ from ..mapping import PointMap
 @options.map_settings("smooth; for a PROJ triangulation file linear, which is its official meaning")
 @options.inverse
 @click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (vector data; "
-              "default: what the triangulation file says, or the data's own).")
+              "default: that of the file of the pair, or of the data).")
 @click.option("--densify", type=options.POSITIVE, metavar="LENGTH",
-              help="Divide the segments of vector data so that none is longer; they stay straight between mapped ends.")
-@click.option("-j", "--jacobian", is_flag=True, help="Add the derivative at each point: Jacobian, 9 numbers row by row.")
-@click.option("--determinant", is_flag=True, help="Add the ratio of areas at each point: JacobianDeterminant.")
-@click.option("--triangle-id", is_flag=True, help="Add the cell id of each point's triangle: TriangleId.")
+              help="Divide longer segments of vector data first; segments are straight between their mapped ends.")
+@click.option("-j", "--jacobian", is_flag=True,
+              help="Add the array Jacobian: the derivative at each point, 9 numbers in row-major order.")
+@click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas at each point.")
+@click.option("--triangle-id", is_flag=True, help="Add the array TriangleId: the cell id of each point's triangle.")
 @click.option("--transform-all-vectors", is_flag=True, help="Transform all arrays of 3, 6 and 9 components by the "
-              "derivative, not only the active vectors, normals and tensors.")
-@click.option("--keep-vectors", is_flag=True, help="Keep the components of vectors, normals and tensors.")
+              "derivative, in addition to active vectors, normals and tensors.")
+@click.option("--keep-vectors", is_flag=True, help="Do not transform active vectors, normals and tensors.")
 @options.pair_files("SOURCE [TARGET] DATA")
 @options.quiet
 def command(inputs, data, settings, inverse, densify, jacobian, determinant, triangle_id, transform_all_vectors,
             keep_vectors):
     """Map data from the source's domain to the target's.
 
-    DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl),
-    VTK's (.vtp .vtu .vts .vtr .vti .vtm .vtk), or an image, whose pixels move as points (to warp it, use dhm warp).
+    DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl), a
+    VTK file (.vtp .vtu .vts .vtr .vti .vtm .vtk), or an image, whose pixels are mapped as points (use dhm warp to warp
+    it).
 
-    Points outside the domain become nan and are marked 0 in vtkValidPointMask; features outside become empty. For a
-    PROJ triangulation file, heights (a third coordinate) and the fallback strategy are those of PROJ."""
+    Points outside the domain become nan and have the value 0 in vtkValidPointMask; features outside become empty. For a
+    PROJ triangulation file, heights (a third coordinate) and the fallback strategy are handled as in PROJ."""
     inputs.crs = None if inverse else data.crs
     pair = options.read_pair(inputs)
     work = PointMap(pair, settings.choose(pair), inverse)

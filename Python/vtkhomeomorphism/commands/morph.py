@@ -67,27 +67,27 @@ def blend(first, second, t):
 
 
 @click.command("morph")
-@click.option("-o", "--output", required=True, metavar="FILES", help="Name of the frames, with %d or %03d for the "
-              "number: frame-%03d.png.")
+@click.option("-o", "--output", required=True, metavar="FILES", help="Names of the frames, with %d or %03d for the "
+              "number, such as frame-%03d.png.")
 @options.force
 @click.option("--source-image", default="", metavar="FILE", help="Image over the source.")
-@click.option("--target-image", default="", metavar="FILE", help="Image over the target; with both, one fades into the "
-              "other.")
+@click.option("--target-image", default="", metavar="FILE", help="Image over the target. With both images, the first fades "
+              "into the second.")
 @click.option("--data", default="", metavar="FILE", help="Data over the source, instead of images (default: the source "
               "mesh).")
 @click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER", show_default=True,
-              help="Number of frames, the first and the last included.")
+              help="Number of frames, including the first and the last.")
 @click.option("--path", type=click.Choice(list(PATHS)), default="best", show_default=True,
-              help="Paths of points: straight, rotating with the mesh as a whole, or the path with fewer folds.")
+              help="Paths of the points: straight, rotating with the mesh as a whole, or the one with fewer folds.")
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source image's).")
 @background_option
 @options.map_settings("cubic; on surfaces smooth; for a PROJ triangulation file linear")
 @options.pair_files("SOURCE [TARGET]")
 @options.quiet
 def command(inputs, output, force, source_image, target_image, data, frames, path, size, background, settings):
-    """Make frames of images or data on the way to the target.
+    """Morph images or data from the source to the target, in frames.
 
-    If a triangle would be folded in a frame, nothing is written (status 1)."""
+    If a triangle is folded in a frame, nothing is written (status 1)."""
     names = (source_image, target_image)
     format = format_of(output)
     if any(names) and data:

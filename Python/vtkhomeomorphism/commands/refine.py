@@ -19,9 +19,9 @@ PROJ_LIMIT = 10 * 1024 * 1024
 
 
 @click.command("refine")
-@options.output("The finer pair: .json (PROJ's triangulation file), .vtp, .vtk, or - for standard output.", "json")
+@options.output("The refined pair: .json (PROJ triangulation file), .vtp, .vtk, or - for standard output.", "json")
 @click.option("-t", "--max-error", type=options.POSITIVE, required=True, metavar="DISTANCE",
-              help="Greatest distance between the piecewise linear map and the map, in units of the target.")
+              help="Greatest distance of the refined pair's piecewise linear map from the map, in units of the target.")
 @click.option("--max-triangles", type=click.IntRange(1), default=2000000, metavar="NUMBER", show_default=True,
               help="Greatest number of triangles.")
 @options.map_settings("smooth")
@@ -30,9 +30,10 @@ PROJ_LIMIT = 10 * 1024 * 1024
 @options.quiet
 def command(inputs, output, force, output_format, max_error, max_triangles, settings, output_array, input_crs,
             output_crs):
-    """Make a finer pair for PROJ, piecewise linear within a tolerance.
+    """Refine a pair until its piecewise linear map is close to the map.
 
-    The piecewise linear map of the finer pair approximates the map of the given one, which is in a plane. Heights of a triangulation file remain the same functions of the point."""
+    PROJ can then use the refined pair instead of the map. The pair must be planar. Heights of a triangulation file
+    remain the same functions of the point."""
     target = Output(output, output_format, force, pair.FORMATS, "a pair")
     both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
     both.require_flat()

@@ -62,30 +62,33 @@ def print_report(made, marks):
 
 
 @click.command("triangulate")
-@options.output("The pair in one file: .json (PROJ's), .vtp or .vtk (the target as the point array Target).", "json")
-@click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line a row.")
-@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop a row.")
+@options.output("The pair in one file: .json (PROJ triangulation file), .vtp or .vtk (with the target as the point array "
+                "Target).", "json")
+@click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line per row.")
+@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop per row.")
 @click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic", show_default=True,
-              help="The inside of outlines, a frame around the landmarks (without outlines), or their convex hulls.")
+              help="The inside of the outlines, a frame around the landmarks, or their convex hulls; automatic: "
+                   "outline if there are outlines, else frame.")
 @click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", show_default=True,
-              help="What triangles are optimized for.")
+              help="Quality measure for which triangles are optimized.")
 @click.option("--target-angle", type=options.Number(0, 90), default=0.0, metavar="DEGREES",
-              help="Add points until no angle is smaller (default: necessary points only).")
+              help="Add points until no angle is smaller than this (default: necessary points only).")
 @click.option("--maximum-added-points", type=click.IntRange(0), metavar="NUMBER",
-              help="Greatest number of points to add (default: the necessary ones, and up to 100 for --target-angle).")
+              help="Greatest number of added points (default: the necessary ones, and up to 100 for --target-angle).")
 @click.option("--maximum-size", type=options.Number(0, 1), default=0.0, metavar="SHARE",
-              help="Divide triangles with a larger share of the domain's area.")
-@click.option("--leave-out-conflicts", is_flag=True, help="Leave out lines that conflict with others, and name them.")
-@click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks that are probably wrong.")
+              help="Divide triangles with more than this share of the domain's area.")
+@click.option("--leave-out-conflicts", is_flag=True, help="Leave out and list lines that conflict with others.")
+@click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks with the largest residuals.")
 @options.pair_files("LANDMARKS | SOURCE TARGET")
 @options.quiet
 def command(inputs, output, force, output_format, lines, outlines, domain, quality, target_angle, maximum_added_points,
             maximum_size, leave_out_conflicts, report):
     """Make a pair of meshes with the same triangles from landmarks.
 
-    LANDMARKS is a .csv (source_x, source_y, target_x, target_y, optionally id; or BigWarp's), QGIS's .points, or a IIIF
-    georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops (polygons or lines) and
-    constraint lines, with the same cells. Triangles fold in neither domain; points are added where necessary."""
+    LANDMARKS is a .csv file (source_x, source_y, target_x, target_y, optionally id; or BigWarp's format), a QGIS .points
+    file, or an IIIF georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops (polygons or
+    lines) and constraint lines, with the same cells. Triangles do not fold in either domain; points are added where
+    necessary."""
     target = Output(output, output_format, force, pair.FORMATS, "a pair")
     segments, loops = [], []
     if len(inputs.pair) == 2:

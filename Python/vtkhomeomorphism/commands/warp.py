@@ -10,8 +10,8 @@ from .. import images, options, pair
 from ..files import USAGE, Failure, Input, Output
 
 background_option = click.option(
-    "--background", default="", metavar="COLOR", help="Color outside the domain: transparent (default; white in .jpg "
-    "and .ppm; the raster's own value for no data), white, black or #rrggbb.")
+    "--background", default="", metavar="COLOR", help="Color outside the domain: transparent, white, black or "
+    "#rrggbb (default: transparent, or the raster's no-data value; white in .jpg and .ppm).")
 
 
 @click.command("warp")
@@ -20,21 +20,21 @@ background_option = click.option(
 @options.inverse
 @click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
 @click.option("--resolution", type=options.POSITIVE, metavar="LENGTH",
-              help="Size of the result's pixels on the ground (georeferenced rasters).")
-@click.option("--like", default="", metavar="FILE", help="Write the result on the pixels of this GeoTIFF.")
-@click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: what "
-              "the triangulation file says, or the raster's own).")
+              help="Pixel size of the result on the ground (georeferenced rasters).")
+@click.option("--like", default="", metavar="FILE", help="Use the pixel grid of this GeoTIFF for the result.")
+@click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: that "
+              "of the file of the pair, or of the raster).")
 @background_option
 @options.pair_files("SOURCE [TARGET] IMAGE")
 @options.quiet
 def command(inputs, output, force, output_format, settings, inverse, size, resolution, like, crs, background):
     """Warp an image from the source's domain to the target's.
 
-    IMAGE is a .png .jpg .tif .ppm or .vti. Meshes are in its pixels (the lower left pixel's center is (0, 0), y runs
-    upwards), or, for xmorph's meshes, in their own units. A GeoTIFF is mapped in its coordinate reference system,
-    piece by piece, and becomes a GeoTIFF.
+    IMAGE is a .png .jpg .tif .ppm or .vti file. Meshes are in pixel coordinates (the center of the lower left pixel is
+    (0, 0), y points upwards); xmorph meshes are in their own units. A GeoTIFF is warped in its coordinate reference
+    system, in tiles, to a GeoTIFF.
 
-    Each pixel of the result is interpolated linearly at its exact preimage."""
+    The value of each pixel is interpolated linearly at its exact preimage."""
     size = options.read_size(size)
     target = Output(output, output_format, force, images.WRITE, "an image")
     color = images.read_background(background, target.format)
