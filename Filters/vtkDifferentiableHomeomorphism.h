@@ -4,15 +4,16 @@
  * @class   vtkDifferentiableHomeomorphism
  * @brief   map data from one triangulated domain to another with the same triangles
  *
- * The filter moves the points of the data (input port 2; the source mesh if there is none) from the
- * domain of the source P to the domain of the target Q, or back (see Inverse), by a homeomorphism:
- * to the point of the corresponding triangle that has the same triangular coordinates. The inverse
- * is the map with P and Q exchanged. See Documentation/differentiability.md.
+ * The filter maps the points of the data (input port 2; by default the mesh that is mapped from)
+ * from the domain of the source P to the domain of the target Q, or back (see Inverse).
+ * Except in the CUBIC system, the image is the point of the corresponding triangle with the same
+ * triangular coordinates, and the inverse is the map with P and Q exchanged. See
+ * Documentation/differentiability.md and Documentation/cubic.md.
  *
- * Images and rectilinear grids become structured grids; other data sets keep their type, and trees
+ * Images and rectilinear grids become structured grids. Other data sets keep their type, and trees
  * of data sets their structure. All arrays are passed. Active vectors, normals and tensors of
  * points and cells are transformed by the Jacobian J of the map at the point, or at the mean of the
- * cell's points (NaN outside):
+ * cell's points. They are NaN outside:
  *
  * - vectors as tangent vectors, v becomes J v;
  * - normals by the inverse transpose, n becomes J^-T n, normalized;
@@ -22,16 +23,16 @@
  * Point arrays are added to output port 0, replacing arrays of the same name:
  *
  * - `vtkValidPointMask` (unsigned char): 1 inside, 0 outside;
- * - `UsedCoordinateSystem` (int): LINEAR or CONTOUR, -1 outside; where USE_LINEAR has an effect;
+ * - `UsedCoordinateSystem` (int): LINEAR or CONTOUR, -1 outside; if USE_LINEAR has an effect;
  * - `TriangleId` (vtkIdType): cell id in P, -1 outside; with ComputeTriangleId;
- * - `Jacobian` (double, 9 components, row-major): NaN outside. On an edge it is the limit from the
- *   triangle TriangleId; with ComputeJacobian;
+ * - `Jacobian` (double, 9 components, row-major): NaN outside; on an edge, the limit from the
+ *   triangle `TriangleId`; with ComputeJacobian;
  * - `JacobianDeterminant` (double): the ratio of areas, NaN outside; negative where a planar map
  *   reverses orientation with respect to the planes' normals; with ComputeJacobianDeterminant.
  *
- * With the CUBIC system, a mesh that is mapped itself (because there is no data) gets a cell array
- * `Certificate` (double: a lower bound of the determinant over the piecewise linear map's; the map
- * is certified one to one in the triangle if it is positive) and a point array `ExceptionalVertex`
+ * In the CUBIC system, if there is no data, the mapped mesh has a cell array `Certificate`
+ * (double: a lower bound of the determinant divided by that of the piecewise linear map; the map is
+ * certified one to one in the triangle if it is positive) and a point array `ExceptionalVertex`
  * (unsigned char: 1 where the map has no derivative).
  *
  * With MeasureContinuity, output port 1 is that of vtkJacobianContinuity; otherwise it is empty.
@@ -39,9 +40,9 @@
  * Points outside keep their coordinates and are blanked (see BlankOutside). Points that are blanked
  * in the input count as outside, so that an inverse map does not treat them as images.
  *
- * If both meshes are planar, points off P's plane are mapped with the foot of their perpendicular
- * and keep their distance from the plane. The source's normal points along the axis to which it is
- * closest; the target's encloses less than a right angle with it; J maps one to the other.
+ * If both meshes are planar, a point off P's plane is mapped like its projection to the plane and
+ * keeps its distance from the plane. The source's normal points along the axis to which it is
+ * closest; the target's normal forms an acute angle with it. J maps one normal to the other.
  *
  * @sa vtkHomeomorphismAlgorithm, vtkHomeomorphismTransform, vtkJacobianContinuity
  */
@@ -83,12 +84,12 @@ public:
   ///@}
 
   ///@{
-  /// Besides TransformActiveAttributes: TransformAllInputVectors transforms all other
-  /// floating-point arrays of 3, 6 and 9 components, as tangent vectors and tensors, except texture
+  /// In addition to TransformActiveAttributes: TransformAllInputVectors transforms all other
+  /// floating-point arrays of 3, 6 and 9 components as tangent vectors and tensors, except texture
   /// coordinates, active scalars and arrays named `Jacobian` (off by default).
-  /// SetAttributeTransformation sets how point and cell arrays of a name are transformed, whatever
-  /// the other options are. Arrays without 3, 6 or 9 components are passed unchanged. The getter
-  /// returns -1 for a name that was not set.
+  /// SetAttributeTransformation sets the transformation of point and cell arrays by name and
+  /// overrides the other options. Arrays without 3, 6 or 9 components are passed unchanged. The
+  /// getter returns -1 for a name that was not set.
   vtkHomeomorphismSwitchMacro(TransformAllInputVectors, false);
   void SetAttributeTransformation(const char* name, int transformation);
   int GetAttributeTransformation(const char* name);
@@ -97,16 +98,16 @@ public:
 
   ///@{
   /// Whether the continuity of the Jacobian is measured (output port 1). Off by default. It takes
-  /// about as long as mapping 500 points for each edge. GetJacobianContinuity() has the settings
-  /// (SamplesPerEdge, Resolution, features) and, after an update, the statistics; its meshes and
-  /// options of the map are not used.
+  /// about as long as mapping 500 points for each edge. GetJacobianContinuity() returns the filter
+  /// with the settings (SamplesPerEdge, Resolution, features) and, after an update, the statistics.
+  /// The meshes and map options of that filter are not used.
   vtkHomeomorphismSwitchMacro(MeasureContinuity, false);
   vtkJacobianContinuity* GetJacobianContinuity();
   ///@}
 
   ///@{
   /// Precision of the output's points: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION, or
-  /// DEFAULT_PRECISION (default), which is that of the data's points, double for images.
+  /// DEFAULT_PRECISION (default): that of the data's points, double for images.
   vtkSetMacro(OutputPointsPrecision, int);
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}

@@ -7,9 +7,9 @@
  * The meshes are the source P (input port 0) and the target Q (input port 1), two vtkPolyData with
  * the same cells, which must be triangles, and with corresponding points. The order of a triangle's
  * three points may differ. Both may lie in any planes or be surfaces in 3-space, closed or not.
- * Whatever piece of the output is requested, the meshes are requested whole, and what a filter
- * makes from them alone is part of piece 0. So is data that depends upstream on the same algorithms
- * as a mesh.
+ * For every piece of the output, the filters request the whole meshes. Output that depends on the
+ * meshes alone is part of piece 0. The same applies to data that depends upstream on the same
+ * algorithms as a mesh.
  *
  * The meshes are validated. Defects are reported with their kind, the number of triangles and the
  * first of their ids. They cause an error unless MaskInvalidTriangles excludes the triangles. Empty
@@ -19,8 +19,8 @@
  *
  * The options are described in vtkHomeomorphismOptions.h.
  *
- * GetErrorCode() returns 0, or one of ErrorCodes after an update that failed or was aborted. No
- * filter communicates with other processes while it executes; see ReduceStatistics.
+ * GetErrorCode() returns 0, or one of ErrorCodes after an update that failed or was aborted.
+ * Filters do not communicate with other processes while they execute; see ReduceStatistics.
  *
  * Points are processed in parallel (vtkSMPTools), and results do not depend on the number of
  * threads. Different filters may use the same meshes in different threads.
@@ -70,14 +70,14 @@ public:
   ///@}
 
   ///@{
-  /// The target mesh, input port 1. vtkTriangularCoordinates has none.
+  /// The target mesh, input port 1. vtkTriangularCoordinates has no target.
   void SetTargetConnection(vtkAlgorithmOutput* output);
   void SetTargetData(vtkPolyData* target);
   ///@}
 
   ///@{
-  /// The data, on the input port that follows the meshes: a vtkDataSet or a vtkDataObjectTree. It
-  /// is optional. vtkJacobianContinuity has none.
+  /// The data, on the input port after the meshes: a vtkDataSet or a vtkDataObjectTree. It is
+  /// optional. vtkJacobianContinuity has no such port.
   void SetDataConnection(vtkAlgorithmOutput* output);
   void SetDataObject(vtkDataObject* data);
   ///@}
@@ -92,11 +92,12 @@ public:
   vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
 
   ///@{
-  /// Of the CUBIC system's last map, 0 in others: its cubic elements (those that are repeated
-  /// without end at exceptional vertices once), triangles that are cut into 19 elements, rings of
-  /// elements around vertices, linear systems solved, the integral of the squared second
-  /// derivatives in the target's units squared, interior and boundary points at which the map has
-  /// no derivative, and triangles whose determinant is not certified to be positive.
+  /// Statistics of the last map of the CUBIC system, 0 for other systems: the numbers of cubic
+  /// elements (the infinitely many similar ones at an exceptional vertex count once), triangles cut
+  /// into 19 elements, rings of elements around vertices, and linear systems solved; the integral
+  /// of the squared second derivatives, in the target's units per unit of the source, squared; the
+  /// numbers of interior and boundary points at which the map has no derivative, and of triangles
+  /// whose determinant is not certified to be positive.
   vtkGetMacro(NumberOfCubicElements, vtkIdType);
   vtkGetMacro(NumberOfCutTriangles, vtkIdType);
   vtkGetMacro(NumberOfVertexRings, vtkIdType);
@@ -107,15 +108,15 @@ public:
   vtkGetMacro(NumberOfUncertifiedTriangles, vtkIdType);
   ///@}
 
-  /// Makes the statistics of the last update the same in all processes of @a controller (null: the
-  /// global controller; without one nothing happens). Numbers of points and of continuity features
-  /// become sums, or -1 if one process has -1; numbers of triangles and jumps become the largest.
+  /// Combines the statistics of the last update over all processes of @a controller (null: the
+  /// global controller; if there is none, nothing happens). Numbers of points and of continuity
+  /// features become sums, or -1 if a process has -1. Numbers of triangles and jumps become maxima.
   /// Every process must call this after its update, even after an error. The next update replaces
-  /// the statistics by those of its own process. ParaView's plugin calls this.
+  /// the statistics by those of its own process. The ParaView plugin calls this.
   virtual void ReduceStatistics(vtkMultiProcessController* controller);
 
-  /// The defects that the last update found in the meshes, a row for each kind and mesh. The
-  /// columns are described in Documentation/diagnostics.md; the field data array Ids has all cell
+  /// The defects that the last update found in the meshes, one row for each kind and mesh. The
+  /// columns are described in Documentation/diagnostics.md. The field data array `Ids` has all cell
   /// ids.
   vtkTable* GetDiagnostics();
 
@@ -128,7 +129,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  /// Makes output 0 like the data, or a vtkPolyData if there is none, and others vtkPolyData.
+  /// Creates output 0 with the data's type (vtkPolyData without data), and vtkPolyData for others.
   int RequestDataObject(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestInformation(
@@ -139,7 +140,7 @@ protected:
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  /// Makes the outputs. Returns 0 after an error, which it has reported with Fail.
+  /// Generates the outputs. Returns 0 after an error, which was reported with Fail.
   virtual int Execute(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) = 0;
 
@@ -148,14 +149,14 @@ protected:
   std::shared_ptr<const homeomorphism::Homeomorphism> GetMap(
     vtkPolyData* source, vtkPolyData* target);
 
-  /// Sets the error code if an input has a type that its port does not accept: then the pipeline
-  /// executes no further than RequestDataObject, which must call this.
+  /// Sets the error code if an input has a type that its port does not accept. RequestDataObject
+  /// must call this, because the pipeline then executes no further request.
   void CheckInputTypes(vtkInformationVector** inputs);
 
   /// Sets the error code and the statistics of a failed update. Returns 0.
   int Fail(int errorCode);
 
-  /// Whether a request is for piece 0, which has what is made from the meshes alone.
+  /// Whether a request is for piece 0, which has the output that depends on the meshes alone.
   static bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
   /// Whether a port's input depends on the same algorithms as an input of the ports before it. It
   /// is then requested whole as well, and its results are part of piece 0.

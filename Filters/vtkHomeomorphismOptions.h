@@ -2,47 +2,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkHomeomorphismOptions.h
- * The options that several classes have in common. Each option has a setter and a getter, switches
- * have On and Off methods as well. An option is added by a line in a list below and its description
- * here; if it changes the map, by its use in Pipeline/Options.h as well.
+ * The options that several classes have in common. Each option has a setter and a getter. Switches
+ * also have On and Off methods. To add an option, add a line to a list below and its description
+ * here. If the option changes the map, use it in Pipeline/Options.h as well.
  *
  * vtkHomeomorphismOptionsMacro() declares the options of the map, which vtkHomeomorphismAlgorithm
  * and vtkHomeomorphismTransform have:
  *
  * - `CoordinateSystem`: LINEAR (the piecewise linear map), CONTOUR (the published construction;
  *   concordant triangles only), SMOOTH (default; twice continuously differentiable except at the
- *   vertices, any triangle) or CUBIC (continuously differentiable, interior vertices included, and
- *   certified one to one; it bends least, but does not map triangles onto triangles. Meshes in
- *   planes only). See Documentation/cubic.md.
- * - `CubicBending`: which map of the CUBIC system: LEAST (default; bends least among those that
- *   could be certified) or LOCAL (in closed form; moving a point changes the map nearby only).
- * - `MaximumDeviation`: the greatest distance of the SMOOTH and CUBIC systems' images from
- * LINEAR's, in the target's units, positive. Unlimited by default. CONTOUR has no such limit.
- * - `CertificateMargin`: with LEAST, how far above zero the certificate of the determinant has to
- *   be: relative to LINEAR's determinant, or, in triangles that are cut, to LOCAL's certificate.
- *   0.02 by default, in [0, 0.5].
- * - `FairnessRefinement`: with LEAST, how often the triangles are cut into four first, 0 (default)
- *   to 4. Each level bends less and costs four times as much.
+ *   vertices, any triangle) or CUBIC (planar meshes only; continuously differentiable at interior
+ *   vertices too, certified one to one, with little bending; edges are bent, so triangles are not
+ *   mapped onto triangles). See Documentation/cubic.md.
+ * - `CubicBending`: the map of the CUBIC system: LEAST (default; the least bending for which a
+ *   certificate was found) or LOCAL (explicit; moving a point changes the map nearby only).
+ * - `MaximumDeviation`: the greatest distance of images in the SMOOTH and CUBIC systems from those
+ *   in LINEAR, in the target's units, positive. Unlimited by default. CONTOUR has no such limit.
+ * - `CertificateMargin`: with LEAST, the smallest accepted certificate of the determinant, relative
+ *   to LINEAR's determinant or, in triangles that are cut, to LOCAL's certificate. 0.02 by default,
+ *   in [0, 0.5].
+ * - `FairnessRefinement`: with LEAST, the number of times that triangles are first divided into
+ *   four, 0 (default) to 4. Each level reduces bending and takes four times as long.
  * - `CenterPoint`: where the contours of the Contour system start: CENTROID (default), or INCENTER,
  *   with which every triangle is concordant.
- * - `DiscordantTriangles`: whether triangles that are discordant in either mesh are an error in the
- *   Contour system (REFUSE, default) or are mapped by the Linear system (USE_LINEAR); the map stays
+ * - `DiscordantTriangles`: in the Contour system, triangles that are discordant in either mesh are
+ *   an error (REFUSE, default) or are mapped by the Linear system (USE_LINEAR). The map stays
  *   continuous.
- * - `Tolerance`: how far outside the domain a point may be and still be mapped like the nearest
- *   point of the domain, also off a surface, relative to the diagonal of the mesh's bounding box. 0
+ * - `Tolerance`: the distance from the domain, or from a surface, up to which points are mapped
+ *   like the nearest point of the domain, relative to the diagonal of the mesh's bounding box. 0
  *   (default) allows only for the rounding of coordinates. Not negative.
  * - `MaskInvalidTriangles`: whether triangles that are invalid by themselves (degenerate, not
- *   finite, flipped, overlapping, at a non-manifold edge) are left out with a warning, as if there
- *   were holes, instead of refusing the meshes. All mutually overlapping triangles are left out.
- *   Off by default.
+ *   finite, flipped, overlapping, at a non-manifold edge) are left out with a warning, which makes
+ *   holes, instead of refusing the meshes. All mutually overlapping triangles are left out. Off by
+ *   default.
  *
  * vtkHomeomorphismMappingMacro() declares the options of the filters that map data,
  * vtkDifferentiableHomeomorphism and vtkResampleThroughHomeomorphism:
  *
- * - `Inverse`: whether data over the target's domain is mapped to the source's instead of the other
- *   way round. Off by default.
+ * - `Inverse`: whether data over the target's domain is mapped to the source's, instead of the
+ *   reverse. Off by default.
  * - `TransformActiveAttributes`: whether the active vectors, normals and tensors are transformed by
- *   the Jacobian. On by default; when off, they keep their components.
+ *   the Jacobian. On by default. If off, they keep their components.
  * - `BlankOutside`: whether points outside (or without values) and the cells that use them are
  *   blanked in the output (vtkGhostType). On by default.
  */
@@ -50,8 +50,8 @@
 #ifndef vtkHomeomorphismOptions_h
 #define vtkHomeomorphismOptions_h
 
-/// A line for each option: name, type, default, least and greatest value. Switches have only a name
-/// and a default.
+/// One line for each option: name, type, default, least and greatest value. Switches have only a
+/// name and a default.
 #define vtkHomeomorphismOptionsList(Option, Switch)                                                \
   Option(CoordinateSystem, int, SMOOTH, LINEAR, CUBIC);                                            \
   Option(CubicBending, int, LEAST, LOCAL, LEAST);                                                  \
@@ -68,8 +68,8 @@
   Switch(TransformActiveAttributes, true);                                                         \
   Switch(BlankOutside, true)
 
-/// Declares the methods and the member of an option. In braces, because the wrapping tools of
-/// VTK 9.6 take an equals sign here for an ambiguity.
+/// Declares the methods and the member of an option. The initializer is in braces because the
+/// wrapping tools of VTK 9.6 find an equals sign ambiguous here.
 #define vtkHomeomorphismOptionMacro(name, type, value, least, greatest)                            \
 protected:                                                                                         \
   type name{ value };                                                                              \
@@ -78,7 +78,7 @@ public:                                                                         
   vtkSetClampMacro(name, type, least, greatest);                                                   \
   vtkGetMacro(name, type)
 
-/// The same of a switch.
+/// Declares the methods and the member of a switch.
 #define vtkHomeomorphismSwitchMacro(name, value)                                                   \
 protected:                                                                                         \
   bool name{ value };                                                                              \

@@ -4,21 +4,21 @@
  * @class   vtkHomeomorphismTransform
  * @brief   the homeomorphism between two planar triangulations as a VTK transform
  *
- * The map of vtkDifferentiableHomeomorphism for everything in VTK that uses a transform:
- * vtkTransformFilter, vtkGeneralTransform, or vtkImageReslice, which needs the map from the output
- * to the input, that is, GetInverse() (or source and target exchanged). The options are described
- * in vtkHomeomorphismOptions.h. Inverse and derivative are exact to a few rounding errors;
- * InverseTolerance and InverseIterations have no effect.
+ * This transform is the map of vtkDifferentiableHomeomorphism for classes that use a transform,
+ * such as vtkTransformFilter, vtkGeneralTransform or vtkImageReslice. vtkImageReslice needs the map
+ * from the output to the input: use GetInverse(), or, except in the CUBIC system, exchange source
+ * and target. The options are described in vtkHomeomorphismOptions.h. Inverse and derivative are
+ * exact to a few rounding errors; InverseTolerance and InverseIterations have no effect.
  *
  * Both meshes must be planar, in any planes. A point's distance from the source's plane becomes its
  * distance from the target's, as in vtkDifferentiableHomeomorphism.
  *
- * A point outside the domain is mapped to a point that is in no mesh or image: its three
- * coordinates are GetOutsideCoordinate(), 1e30 or, if that is more, a thousand times the meshes'
- * largest coordinate. vtkImageReslice then uses its background color (not with its Wrap or Mirror
- * modes). The derivative is NaN. If a mesh is missing or refused (an error), all are outside.
+ * A point outside the domain is mapped to a point far outside both meshes. Its three coordinates
+ * are GetOutsideCoordinate(): 1e30 or, if that is more, a thousand times the meshes' largest
+ * coordinate. vtkImageReslice then uses its background color (not with its Wrap or Mirror modes).
+ * The derivative is NaN. If a mesh is missing or refused (an error), all points are outside.
  *
- * Once updated, the transform may be used by any number of threads. Methods for arrays use
+ * After an update, any number of threads may use the transform. Methods for arrays use
  * vtkSMPTools. Copies and inverses of an updated transform share the map. Different transforms may
  * use the same meshes in different threads.
  *
@@ -46,8 +46,8 @@ public:
   vtkHomeomorphismOptionsMacro();
 
   ///@{
-  /// The source and target meshes. They are kept by reference; their modifications have effect at
-  /// the next update.
+  /// The source and target meshes. They are kept by reference; modifications take effect at the
+  /// next update.
   virtual void SetSource(vtkPolyData* source);
   vtkGetObjectMacro(Source, vtkPolyData);
   virtual void SetTarget(vtkPolyData* target);
@@ -55,9 +55,9 @@ public:
   ///@}
 
   ///@{
-  /// Whether a point is in the domain that the transform maps from (the target's if it is
-  /// inverted), and the value of all three coordinates of the image of a point that is not. Both
-  /// update the transform.
+  /// IsInside: whether a point is in the domain that the transform maps from (the target's if it is
+  /// inverted). GetOutsideCoordinate: the value of all three coordinates of the image of a point
+  /// that is not. Both methods update the transform.
   bool IsInside(const double point[3]);
   double GetOutsideCoordinate();
   ///@}

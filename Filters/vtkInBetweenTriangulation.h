@@ -5,25 +5,25 @@
  * @brief   triangulations on the way from a source to a target, for morphs
  *
  * vtkInBetweenTriangulation moves the points of a triangulation (input port 0, the source) to those
- * of another with the same triangles (input port 1, the target). At Time 0 the output is the
- * source, at Time 1 the target, both to the bit. A morph maps data from the source to the output
- * for a sequence of times, with vtkDifferentiableHomeomorphism, or images from both ends.
+ * of another with the same triangles (input port 1, the target). At Time 0 the points are exactly
+ * those of the source, at Time 1 those of the target. A morph maps data from the source to the
+ * output for a sequence of times, with vtkDifferentiableHomeomorphism, or images from both ends.
  *
- * A triangle may fold on the way: it is then turned over at some times, though it is not at the
- * ends, and there is no map to the mesh. Of each path the times at which a triangle folds follow
- * from the zeros of a quadratic polynomial. They are known before any frame is made, for the whole
- * path and not only at Time. See Path for how folds are avoided. Where no path is free of them,
- * they are reported as data (NumberOfFoldingTriangles and the following): this is no error.
+ * A triangle may fold on the way: its orientation is then reversed at some times, though not at
+ * the ends, and the output at these times is not a valid target of a map. The times follow from the
+ * zeros of a quadratic polynomial, so they are known for the whole path, not only at Time. Path
+ * selects how folds are avoided. If they cannot be avoided, they are reported as data
+ * (NumberOfFoldingTriangles and the methods after it), not as an error.
  *
  * The output has the source's cells, point data and cell data, points of double precision, and the
- * cell array `Folded` (unsigned char): 1 where the triangle has another orientation than in the
- * source at Time, or no area, decided exactly from the output's coordinates.
+ * cell array `Folded` (unsigned char): 1 if the triangle's orientation at Time differs from that in
+ * the source, or its area is zero, decided exactly from the output's coordinates.
  *
  * Folds are defined if both meshes are planar, in planes parallel to the same two axes
  * (GetPlanar). Other meshes move along straight lines, and no folds are reported.
  *
  * See vtkHomeomorphismAlgorithm for the meshes and for MaskInvalidTriangles, the only one of its
- * options that matters here: triangles left out have part neither in the path nor in the folds.
+ * options that has an effect: masked triangles are ignored for the path and for folds.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
  */
@@ -46,11 +46,11 @@ public:
   {
     /// Straight lines, at constant speed.
     STRAIGHT = 0,
-    /// The mesh turns and scales as a whole, at a constant rate, by the similarity that takes the
-    /// source to the target best (least squares over the points), and points move along straight
-    /// lines relative to it.
+    /// The mesh rotates and scales as a whole, at a constant rate, by the similarity that maps the
+    /// source to the target best (least squares over the points). Points move along straight lines
+    /// relative to it.
     ROTATING = 1,
-    /// STRAIGHT if no triangle folds on that path, else ROTATING if fewer fold there.
+    /// STRAIGHT, unless triangles fold on that path and fewer fold on the ROTATING path.
     FEWEST_FOLDS = 2
   };
 
@@ -61,8 +61,8 @@ public:
   ///@}
 
   ///@{
-  /// See Paths. FEWEST_FOLDS by default. It depends on the meshes only, so that all times are on
-  /// one path.
+  /// See Paths. FEWEST_FOLDS by default, which depends on the meshes only, so that all times use
+  /// the same path.
   vtkSetClampMacro(Path, int, STRAIGHT, FEWEST_FOLDS);
   vtkGetMacro(Path, int);
   ///@}
@@ -71,8 +71,8 @@ public:
   vtkGetMacro(UsedPath, int);
 
   ///@{
-  /// Of a rotating path: the angle by which the mesh turns from source to target, in degrees within
-  /// [-180, 180], counterclockwise in the plane's coordinates in the order of their axes, and the
+  /// The angle by which the mesh rotates from source to target on a rotating path, in degrees
+  /// within [-180, 180], counterclockwise with respect to the plane's axes in their order, and the
   /// factor by which lengths scale. 0 and 1 on a straight path.
   vtkGetMacro(RotationAngle, double);
   vtkGetMacro(ScaleFactor, double);
@@ -81,12 +81,12 @@ public:
   /// Whether both meshes are planar, in planes parallel to the same two axes.
   vtkGetMacro(Planar, bool);
 
-  /// Whether source and target are mirror images of each other: then all triangles fold.
+  /// Whether source and target are mirror images of each other. All triangles then fold.
   vtkGetMacro(Mirrored, bool);
 
   ///@{
-  /// Number of triangles that fold at some time on the path, the cell id of the first to fold (-1
-  /// if none does), the time at which it folds, and the time at which the last has unfolded.
+  /// Number of triangles that fold at some time on the path, the cell id of the first one to fold
+  /// (-1 if there is none), the time at which it folds, and the time at which the last one unfolds.
   /// Without folds, the times are 1 and 0.
   vtkGetMacro(NumberOfFoldingTriangles, vtkIdType);
   vtkGetMacro(FirstFoldingTriangle, vtkIdType);

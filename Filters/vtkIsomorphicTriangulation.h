@@ -4,33 +4,34 @@
  * @class   vtkIsomorphicTriangulation
  * @brief   a pair of isomorphic triangulations from landmarks, outlines and constraint segments
  *
- * vtkIsomorphicTriangulation takes two drawings of one figure, the source (input port 0) and the
- * target (input port 1): vtkPolyData with the same cells and other positions of the points. All
- * points are landmarks. Polygons and closed loops of line cells are outlines, holes and islands:
- * what an odd number of them surrounds belongs to the domain. Other lines are constraint segments.
+ * The inputs are two drawings of one figure, the source (input port 0) and the target (input port
+ * 1): vtkPolyData with the same cells and different positions of the points. All points are
+ * landmarks. Polygons and closed loops of line cells are outlines, holes and islands: a point
+ * belongs to the domain if an odd number of them surrounds it. Other lines are constraint segments.
  * Each figure is planar, in any plane. The target may be a mirror image.
  *
- * Output ports 0 and 1 are triangulations of the two figures with the same triangles, valid for
- * every other filter of the module: points of double precision, the first of them those of the
- * input, unchanged; triangles counterclockwise in the source's plane. Points are added only where
- * the figures have no isomorphic triangulations otherwise, and on request for better triangles.
- * Output ports 2 and 3 are the constraint segments as lines on the points of ports 0 and 1.
+ * Output ports 0 and 1 are triangulations of the two figures with the same triangles, which are
+ * counterclockwise in the source's plane. They are valid inputs of all other filters of the module.
+ * Points have double precision. The first points are those of the input, unchanged. Points are
+ * added where the figures have no isomorphic triangulations otherwise, and on request for better
+ * triangles. Output ports 2 and 3 are the constraint segments as lines on the points of ports 0 and
+ * 1.
  *
- * Point arrays: `OriginalPointId` (vtkIdType), the id of the point in the inputs, -1 for a frame's
- * corners and added points; `LandmarkResidual` (double), the distance in the target's units of a
- * landmark from where a smooth map through its neighbors puts it without it, NaN for points that
- * were added. Cell arrays (double): `MinimumAngle`, the smallest angle of a triangle in both
- * domains in degrees; `Distortion`, the ratio of the singular values of the linear map between its
- * two triangles, from 1.
+ * The point arrays are `OriginalPointId` (vtkIdType), the id of the point in the inputs, -1 for a
+ * frame's corners and added points, and `LandmarkResidual` (double), the distance of a landmark, in
+ * the target's units, from its prediction by a smooth map through its neighbors, NaN for added
+ * points. The cell arrays (double) are `MinimumAngle`, the smallest angle of a triangle in both
+ * domains in degrees, and `Distortion`, the ratio of the singular values of the linear map between
+ * its two triangles, from 1.
  *
- * With several landmarks or holes, the way in which regions pass each other is a choice: short
- * edges decide. Constraint segments decide it otherwise. Neither the order of the points (up to
- * edges of the same length) nor, with both frames given, the exchange of source and target change
- * the result.
+ * With several landmarks or holes, edges may pass a landmark or hole on either side. Short edges
+ * are preferred; constraint segments override this choice. The result depends neither on the order
+ * of the points (except for edges of the same length) nor, if both frames are given, on exchanging
+ * source and target.
  *
  * A figure that has no isomorphic triangulations is refused: the outputs are empty, an error is
- * reported, and GetProblemKind() and the following say what is wrong and where. The result passes
- * the validation of vtkDifferentiableHomeomorphism. Input attributes are not passed on.
+ * reported, and GetProblemKind() and related methods describe the problem and its location. The
+ * result passes the validation of vtkDifferentiableHomeomorphism. Input attributes are not passed.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
  */
@@ -62,7 +63,7 @@ public:
     CONVEX_HULL = 3 ///< the convex hulls, if they have the same points in the same order
   };
 
-  /// What triangles are optimized for; the worst triangle counts.
+  /// The quality measure of the worst triangle, for which triangles are optimized.
   enum Qualities
   {
     MINIMUM_ANGLE = 0, ///< the smallest angle of both domains
@@ -84,10 +85,10 @@ public:
     COINCIDENT = 7,            ///< points have the same position
     CROSSING = 8,              ///< segments cross
     POINT_ON_SEGMENT = 9,      ///< a point lies on a segment in one domain only
-    CYCLIC_ORDER = 10,         ///< segments at a point follow each other differently
+    CYCLIC_ORDER = 10,         ///< segments at a point have different cyclic orders
     OTHER_FACE = 11,           ///< segments surround points in one domain only
     OUTLINE_AGAINST_HOLE = 12, ///< a loop is inside another one in one domain only
-    LOOP_SENSE = 13,           ///< a loop is mirrored and the first one is not, or vice versa
+    LOOP_SENSE = 13,           ///< only one of a loop and the first loop is mirrored
     OUTSIDE_DOMAIN = 14,       ///< points are outside the loops or the frame
     HULLS_DIFFER = 15,         ///< the convex hulls differ
     BAD_FRAME = 16,            ///< a frame is empty, or only one was given
@@ -122,10 +123,10 @@ public:
   ///@}
 
   ///@{
-  /// Frames: least x, largest x, least y, largest y in the coordinates of the figure's plane (x, y
-  /// of a figure of constant z), for example images' rectangles. Corners correspond as fits the
-  /// landmarks best. (0, -1, 0, -1), the default of both, stands for a frame 5 percent larger than
-  /// the source and its affine image, and larger ones if that saves added points.
+  /// Frames: least x, largest x, least y, largest y in the coordinates of the figure's plane (x and
+  /// y if z is constant), for example the rectangles of images. Corners are matched to fit the
+  /// landmarks best. The default of both, (0, -1, 0, -1), selects a frame 5 percent larger than the
+  /// source and its affine image, or a larger frame if that needs fewer added points.
   vtkSetVector4Macro(SourceFrame, double);
   vtkGetVector4Macro(SourceFrame, double);
   vtkSetVector4Macro(TargetFrame, double);
@@ -139,43 +140,43 @@ public:
   ///@}
 
   ///@{
-  /// How many points may be added. With 0 the filter says whether it found a way without. The first
-  /// pair found that keeps to the limit is taken, unless there is a TargetMinimumAngle: a generous
-  /// limit is fast. -1 (default): as many as necessary after several attempts, and up to 100 more
-  /// for TargetMinimumAngle.
+  /// The greatest number of points that may be added. With 0, the update fails if no pair without
+  /// added points is found. Without TargetMinimumAngle, the first pair within the limit is the
+  /// result, so a large limit is fast. -1 (default): the smallest number found in several attempts,
+  /// and up to 100 more for TargetMinimumAngle.
   vtkSetClampMacro(MaximumNumberOfAddedPoints, int, -1, VTK_INT_MAX);
   vtkGetMacro(MaximumNumberOfAddedPoints, int);
   ///@}
 
   ///@{
-  /// Points are added until no angle of either domain is smaller, in degrees, 0 to 60. 0 (default):
-  /// only necessary points are added. For CONCORDANCE and NON_OBTUSE, 90 stands for no discordant
-  /// or obtuse triangle; for DISTORTION, 60 for similar triangles.
+  /// Points are added until no angle of either domain is smaller than this, in degrees, 0 to 60. 0
+  /// (default): only necessary points are added. With CONCORDANCE and NON_OBTUSE, 90 means no
+  /// discordant or obtuse triangle. With DISTORTION, 60 means similar triangles.
   vtkSetClampMacro(TargetMinimumAngle, double, 0.0, 90.0);
   vtkGetMacro(TargetMinimumAngle, double);
   ///@}
 
   ///@{
-  /// Triangles whose share of their domain's area is larger, in either domain, are divided. 0
-  /// (default): none is.
+  /// Triangles with more than this share of their domain's area, in either domain, are divided. 0
+  /// (default): triangles are not divided.
   vtkSetClampMacro(MaximumTriangleSize, double, 0.0, 1.0);
   vtkGetMacro(MaximumTriangleSize, double);
   ///@}
 
   ///@{
-  /// Leave out constraint segments that do not agree with shorter ones instead of refusing. They
-  /// are listed, see GetNumberOfLeftOutSegments(). Off by default.
+  /// Whether constraint segments that conflict with shorter ones are left out, instead of refusing
+  /// the figure. GetNumberOfLeftOutSegments() and related methods list them. Off by default.
   vtkSetMacro(LeaveOutConflictingSegments, bool);
   vtkGetMacro(LeaveOutConflictingSegments, bool);
   vtkBooleanMacro(LeaveOutConflictingSegments, bool);
   ///@}
 
   ///@{
-  /// What is wrong, after an update without a result: how many problems, and of each the kind (see
-  /// ProblemKinds), the domain (0 source, 1 target, -1 where the two disagree), the points
-  /// concerned (at most 10; two ends of each of two crossing segments, a point and the ends of its
-  /// segment), the id of the cell that could not be drawn (-1 if none), how often the problem
-  /// occurs, and a message.
+  /// The problems of an update without a result: their number and, for each, the kind (see
+  /// ProblemKinds), the domain (0 source, 1 target, -1 if the two disagree), the points concerned
+  /// (at most 10; the ends of two crossing segments, or a point and the ends of its segment), the
+  /// id of the cell that could not be drawn (-1 if there is none), the number of occurrences, and a
+  /// message.
   int GetNumberOfProblems();
   int GetProblemKind(int problem);
   int GetProblemDomain(int problem);
@@ -186,17 +187,18 @@ public:
   ///@}
 
   ///@{
-  /// Segments that were left out: their number, ids of their cells, and why.
+  /// Segments that were left out: their number, the ids of their cells, and the reasons.
   int GetNumberOfLeftOutSegments();
   vtkIdType GetLeftOutCell(int segment);
   std::string GetLeftOutMessage(int segment);
   ///@}
 
   ///@{
-  /// Of the last update: points added (a frame's corners are not counted); the smallest angle of
-  /// source and target in degrees; the share of angles below 10, 15 and 20 degrees in the worse of
-  /// the two; the share of triangles that are obtuse, or discordant, in at least one domain; the
-  /// largest distortion, and the triangle where it is; whether the figures are mirror images.
+  /// Statistics of the last update: the number of added points (without a frame's corners); the
+  /// smallest angles of source and target in degrees; the share of angles below 10, 15 and 20
+  /// degrees in the worse of the two; the share of triangles that are obtuse, or discordant, in at
+  /// least one domain; the largest distortion and its triangle; whether the figures are mirror
+  /// images.
   vtkGetMacro(NumberOfAddedPoints, int);
   vtkGetVector2Macro(SmallestAngles, double);
   vtkGetVector3Macro(SharesOfSmallAngles, double);
@@ -207,7 +209,7 @@ public:
   vtkGetMacro(Mirrored, bool);
   ///@}
 
-  /// The ten landmarks with the largest LandmarkResidual, the worst first.
+  /// The ten landmarks with the largest LandmarkResidual, in descending order.
   void GetSuspiciousLandmarks(vtkIdList* points);
 
 protected:

@@ -5,27 +5,27 @@
  * @brief   measure whether a map is differentiable across the edges of a triangulation
  *
  * For each interior edge of the source mesh, the filter compares the Jacobians of a map on the two
- * sides: of the homeomorphism onto the target, planar or a surface (the two sides are then unfolded
- * about the edge), or of any vtkAbstractTransform (SetTransform; the mesh must then be planar).
- * Other features are measured on request; see FeatureTypes.
+ * sides. The map is the homeomorphism onto the target (on surfaces, the two triangles are unfolded
+ * about the edge) or any vtkAbstractTransform (SetTransform; the mesh must then be planar). Other
+ * features are measured on request; see FeatureTypes.
  *
  * Only values of the map are used. One-sided difference quotients over halving steps, relative to
  * the triangles, are extrapolated to step 0 (Richardson). Error bounds and verdicts are estimates,
- * not proofs; Documentation/differentiability.md has the limits.
+ * not proofs; see Documentation/differentiability.md for their limits.
  *
  * Output port 0 has a polyline through the samples of each edge or other line, and a vertex cell
  * for each point feature; vertex cells come first. Cell arrays (double unless stated otherwise):
  *
- * - `JacobianJump`: norm of the difference of the two Jacobians over the norm of the Jacobian, the
- *   largest over the samples. The arrays that follow are for the sample where it is largest;
- * - `JacobianJumpError`: bound on the error of the estimate, the largest over the samples;
+ * - `JacobianJump`: norm of the difference of the two Jacobians divided by the norm of the
+ *   Jacobian, maximum over the samples. The arrays below are for the sample of the maximum;
+ * - `JacobianJumpError`: bound on the error of the estimate, maximum over the samples;
  * - `JacobianJumpExact`: the jump in closed form if the map is the homeomorphism onto the target or
  *   a vtkHomeomorphismTransform whose source shares the mesh's vtkPoints; otherwise NaN;
  * - `NormalJump`, `TangentialJump`: the jump's parts across the image of the line and along it;
  * - `AngleJump` (degrees), `StretchJump`: the angle between the images of the direction across the
  *   line on the two sides, and the ratio of the longer to the shorter, less 1;
  * - `ConvergenceOrder`: the exponent with which the difference of the quotients on the two sides
- *   decreases with the step: 1 if differentiable, 0 at a crease, NaN if lost in rounding;
+ *   decreases with the step: 1 if differentiable, 0 at a crease, NaN if rounding dominates;
  * - `Verdict` (int): see Verdicts;
  * - `EdgeTriangles` (vtkIdType, 2 components): cell ids of the two triangles, equal within a
  *   triangle; the second is -1 at boundary edges and vertices;
@@ -34,15 +34,15 @@
  *   the Jacobian), `SecondDerivativeVerdict` (int): the same for the second derivative across the
  *   line; with SecondDerivatives.
  *
- * Point arrays `JacobianJump`, `JacobianJumpError` and `JacobianJumpExact` have the values at the
- * samples (NaN at the ends of lines). At centers and vertices, the one-sided derivatives in all
+ * The point arrays `JacobianJump`, `JacobianJumpError` and `JacobianJumpExact` have the values at
+ * the samples (NaN at the ends of lines). At centers and vertices, the one-sided derivatives in all
  * directions are compared with those of the linear map that fits them best (least squares); parts,
- * angle and stretch are NaN. Boundary edges and the vertices of surfaces have the verdict
- * NOTHING_TO_COMPARE and NaN.
+ * angle and stretch are NaN. Boundary edges and the vertices of surfaces have NaN and the verdict
+ * NOTHING_TO_COMPARE.
  *
- * Output port 1 is the mesh with a cell and a point array `JacobianJump`: the largest at the edges
- * of the triangle or point, NaN if there are none. All output is part of piece 0. A transform must
- * allow concurrent calls once updated, as VTK's do.
+ * Output port 1 is the mesh with a cell array and a point array `JacobianJump`: the largest jump at
+ * the edges of the triangle or point, NaN if there are none. All output is part of piece 0. An
+ * updated transform must allow concurrent calls, as VTK's transforms do.
  *
  * @sa vtkHomeomorphismAlgorithm, vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform
  */
@@ -64,7 +64,7 @@ public:
   vtkTypeMacro(vtkJacobianContinuity, vtkHomeomorphismAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// What is concluded about a feature.
+  /// The verdict on a feature.
   enum Verdicts
   {
     NOTHING_TO_COMPARE = -1,
@@ -73,17 +73,17 @@ public:
     UNDECIDED = 2
   };
 
-  /// The kinds of features. All but EDGE are measured on request only. Those within triangles are
-  /// where one of the coordinate systems is defined piecewise. They depend on the mesh alone, not
-  /// on the map. A triangle's center is its centroid, or CenterPoint in the Contour system.
+  /// The kinds of features. All but EDGE are measured on request only. Features within triangles
+  /// separate the pieces by which a coordinate system is defined. They depend on the mesh, not on
+  /// the map. A triangle's center is its centroid, or CenterPoint in the Contour system.
   enum FeatureTypes
   {
     EDGE = 0,            ///< interior edge
-    BOUNDARY_EDGE = 1,   ///< has one side only, and no jump
+    BOUNDARY_EDGE = 1,   ///< edge with one triangle, and no jump
     SPOKE = 2,           ///< from a triangle's center to a corner
     WING_SEGMENT = 3,    ///< from the middle of a center segment to an end of its edge
     CENTER_SEGMENT = 4,  ///< from a triangle's center to its foot on an edge, if inside the edge
-    STRIP_BORDER = 5,    ///< of the strip at an interior edge in which the Smooth chart is curved
+    STRIP_BORDER = 5,    ///< border of the strip at an interior edge (Smooth)
     TRIANGLE_CENTER = 6, ///< requested by Centroids
     VERTEX = 7           ///< a point of the mesh
   };
@@ -107,16 +107,16 @@ public:
 
   ///@{
   /// SamplesPerEdge: the number of evenly spaced samples of a line, and of directions within each
-  /// sector at a point. Resolution: the relative jump up to which a map is differentiable, a
-  /// thousand times that for second derivatives, which are compared with SecondDerivatives.
+  /// sector at a point. Resolution: the relative jump up to which a map counts as differentiable,
+  /// times 1000 for second derivatives. SecondDerivatives: compare second derivatives too.
   vtkHomeomorphismOptionMacro(SamplesPerEdge, int, 5, 1, 1000);
   vtkHomeomorphismOptionMacro(Resolution, double, 1e-7, 0.0, 1.0);
   vtkHomeomorphismSwitchMacro(SecondDerivatives, false);
   ///@}
 
   ///@{
-  /// The results of the last update at the edges, in piece 0, and the number of features of a type
-  /// with a verdict other than NOTHING_TO_COMPARE. See ReduceStatistics.
+  /// Statistics of the last update at the edges (in piece 0), and the number of features of a type
+  /// with a given verdict other than NOTHING_TO_COMPARE. See ReduceStatistics.
   vtkGetMacro(NumberOfBoundaryEdges, vtkIdType);
   vtkIdType GetNumberOfDifferentiableEdges() { return this->Counts[EDGE][DIFFERENTIABLE]; }
   vtkIdType GetNumberOfCreases() { return this->Counts[EDGE][CREASE]; }

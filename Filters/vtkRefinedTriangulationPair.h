@@ -17,15 +17,15 @@
  * inside an edge of another triangle. The finer pair is validated like any pair.
  *
  * Point data of each mesh is interpolated at added points with their barycentric coordinates in the
- * original triangle. PROJ interpolates heights in the same way, so heights of the finer pair are
- * the same functions of the point. Cell data is that of the original triangle. The cell array
- * `OriginalCellIds` (vtkIdType) has the cell id of the original triangle. Cells that are not
+ * original triangle. PROJ interpolates heights in the same way, so the heights of the finer pair
+ * are the same functions of the point. Cell data is copied from the original triangle. The cell
+ * array `OriginalCellIds` (vtkIdType) has the cell id of the original triangle. Cells that are not
  * triangles are dropped.
  *
- * The error is measured at 595 points of each triangle, including its edges; it is not bounded in
- * between. Triangles are measured in parallel (vtkSMPTools); results do not depend on the number of
- * threads. See vtkHomeomorphismAlgorithm for the meshes and the options of the homeomorphism.
- * Triangles left out are no part of the finer pair.
+ * The error is measured at 595 points of each triangle, including its edges; it is not bounded
+ * between these points. Triangles are measured in parallel (vtkSMPTools); results do not depend on
+ * the number of threads. See vtkHomeomorphismAlgorithm for the meshes and the options of the
+ * homeomorphism. Masked triangles are not part of the finer pair.
  *
  * If MaximumError cannot be reached, the outputs are empty and an error is reported; see Results.
  *
@@ -79,8 +79,8 @@ public:
   /// See Results.
   vtkGetMacro(Result, int);
 
-  /// The largest measured error, in units of the target. If the refinement failed, the largest
-  /// error when it stopped, infinite if triangles are flipped.
+  /// The largest measured error, in the target's units. If the refinement failed, the largest error
+  /// when it stopped, infinite if triangles are flipped.
   vtkGetMacro(LargestError, double);
 
   /// The number of points at which the final error was measured.

@@ -2,25 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkResampleThroughHomeomorphism
- * @brief   see data of one triangulated domain on a grid over the other
+ * @brief   resample data of one triangulated domain on a grid over the other
  *
- * vtkDifferentiableHomeomorphism moves the points of data. This filter keeps a grid in place and
- * finds for each of its points the preimage in the source's domain, by the exact inverse of the
- * map, and the data's values there. It warps images and resamples any data set on regular grids.
+ * vtkDifferentiableHomeomorphism moves the points of data. This filter keeps a grid in place, finds
+ * the preimage of each grid point in the source's domain by the exact inverse of the map, and
+ * interpolates the data there. It warps images and resamples data sets on regular grids.
  *
  * The data (input port 2, a vtkDataSet or a composite of them; the source mesh if there is none)
  * lies over the source's domain and is requested whole. The grid (port 3, any vtkDataSet) lies over
- * the target's domain. Without a grid, it is a vtkImageData of SamplingDimensions over the bounds
- * of the target (or SamplingBounds), which must be parallel to the xy plane.
+ * the target's domain. The default grid is a vtkImageData of SamplingDimensions over the bounds of
+ * the target (or SamplingBounds); the target must then be parallel to the xy plane.
  *
- * The output is the grid with the data's arrays as point data (cell data as the value of the cell
- * in which the preimage lies), and with the point array `vtkValidPointMask` (unsigned char): 1
- * where there are values, 0 outside the target's domain and where the data has none. There,
- * floating-point arrays are NaN, others 0, and NumberOfOutsidePoints counts the points. Of the
- * grid's own arrays, only vtkGhostType is passed.
+ * The output is the grid with the data's arrays as point data (cell data is that of the cell with
+ * the preimage) and the point array `vtkValidPointMask` (unsigned char): 1 where there are values,
+ * 0 outside the target's domain and where the data has no values. At points with 0, floating-point
+ * arrays are NaN and others 0; NumberOfOutsidePoints is their number. Of the grid's own arrays,
+ * only vtkGhostType is passed.
  *
- * Values of an image are interpolated linearly in each direction, others as VTK's cells do. An
- * image without active vectors, normals or tensors is resampled many times faster than other data.
+ * Images are interpolated linearly in each direction, other data with VTK's cells. An image without
+ * active vectors, normals or tensors is resampled many times faster than other data.
  *
  * @sa vtkHomeomorphismAlgorithm, vtkDifferentiableHomeomorphism
  */
@@ -46,16 +46,16 @@ public:
   vtkHomeomorphismMappingMacro();
 
   ///@{
-  /// The grid, input port 3, which is optional, and the grid with the values, output port 0.
+  /// The grid (input port 3, optional) and the grid with the values (output port 0).
   void SetGridConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(3, output); }
   void SetGridData(vtkDataSet* grid);
   vtkDataSet* GetOutput();
   ///@}
 
   ///@{
-  /// The image that is made if there is no grid: the numbers of points in x and y, at least 1 (256
-  /// x 256 by default), and the rectangle (xmin, xmax, ymin, ymax) from its first to its last
-  /// points. By default (xmin > xmax), it has the bounds of the mesh.
+  /// The default grid: the numbers of points in x and y, at least 1 (256 x 256 by default), and the
+  /// rectangle (xmin, xmax, ymin, ymax) from the first to the last points. If xmin > xmax
+  /// (default), the rectangle is the bounds of the mesh.
   vtkSetVector2Macro(SamplingDimensions, int);
   vtkGetVector2Macro(SamplingDimensions, int);
   vtkSetVector4Macro(SamplingBounds, double);

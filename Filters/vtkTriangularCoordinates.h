@@ -4,11 +4,11 @@
  * @class   vtkTriangularCoordinates
  * @brief   attach triangular coordinates (e, p, c) to points
  *
- * The filter finds the triangle and the triangular coordinates of each point of the data (input
+ * The filter computes the triangle and the triangular coordinates of each point of the data (input
  * port 1; the triangulation if there is none). *Contours* run from the center of a triangle to its
  * edges. e is the edge at which the contour through the point ends, p the position of that end on
- * the edge, and c the position of the point on the contour. Points of isomorphic triangulations
- * that have the same triangle and coordinates correspond in vtkDifferentiableHomeomorphism (if the
+ * the edge, and c the position of the point on the contour. vtkDifferentiableHomeomorphism maps a
+ * point to the point with the same triangle and coordinates, except in the CUBIC system (if the
  * triangle's points are listed in the same order).
  *
  * Output port 0 is the data with these point arrays added (an array of the same name is replaced):
@@ -21,26 +21,26 @@
  * - `vtkValidPointMask` (unsigned char): 1 inside, 0 outside.
  *
  * Output port 1 has polylines: the center and wing segments, contours at evenly spaced p and rings
- * at evenly spaced c of each triangle, with the cell arrays `LineType` (see LineTypes),
- * `TriangleId`, `EdgeLabel`, `EdgeParameter` (of a contour) and `ContourParameter` (of a ring);
- * otherwise 0 or NaN. In the Linear and Smooth systems, the segments are the images of those of the
- * equilateral triangle.
+ * at evenly spaced c of each triangle. The cell arrays are `LineType` (see LineTypes),
+ * `TriangleId`, `EdgeLabel`, `EdgeParameter` (of contours) and `ContourParameter` (of rings), 0 or
+ * NaN for other lines. In the Linear and Smooth systems, the segments are the images of those of
+ * the equilateral triangle.
  *
  * Output port 2 is the triangulation with these cell arrays:
  *
- * - `Concordant` (unsigned char): 1 if the Contour system exists in the triangle, that is, if the
- *   feet of the perpendiculars from the centroid lie strictly inside the edges; decided exactly;
+ * - `Concordant` (unsigned char): 1 if the Contour system is defined in the triangle: the feet of
+ *   the perpendiculars from the centroid lie strictly inside the edges; decided exactly;
  * - `ConcordanceMargin` (double): the least distance of a foot from an end of its edge, relative
  *   to the length of the edge; negative if discordant;
  * - `UsedCoordinateSystem` (int): LINEAR, CONTOUR or SMOOTH, -1 where the triangle is masked;
  * - `SmallestAngle` (double): degrees;
- * - `StripWidth` (double, 3 components): tau of the strip along each edge outside which the Smooth
- *   chart is affine, in (0, 1]; 0 on the boundary;
+ * - `StripWidth` (double, 3 components): width tau, in (0, 1], of the strip along each edge outside
+ *   which the Smooth chart is affine; 0 on the boundary;
  * - `DeterminantBound` (double): a lower bound, in closed form, of the Smooth chart's determinant
- *   over that of the affine chart. Small beside a far smaller neighbor.
+ *   divided by that of the affine chart. It is small beside a much smaller neighbor.
  *
  * If there is no data, output 0 has these cell arrays too. The triangulation is the source mesh;
- * there is no target. Distances from its plane, if it is planar, are ignored.
+ * there is no target. If it is planar, distances from its plane are ignored.
  *
  * @sa vtkHomeomorphismAlgorithm, vtkDifferentiableHomeomorphism
  */
@@ -70,11 +70,11 @@ public:
   };
 
   ///@{
-  /// GenerateLines says whether output 1 is made (on by default; about 27 kB for each triangle).
-  /// NumberOfContours and NumberOfRings are the numbers of intervals into which the contours divide
-  /// an edge, and the rings a contour (4 by default, 1 to 100; 1 makes only the contours to the
-  /// vertices, or no rings). LineResolution is the number of straight pieces of a contour, and of a
-  /// ring along an edge (16 by default, 1 to 1000).
+  /// GenerateLines: whether output 1 is generated (on by default; about 27 kB per triangle).
+  /// NumberOfContours, NumberOfRings: the number of intervals into which contours divide an edge,
+  /// or rings a contour (4 by default, 1 to 100; 1 gives only the contours to the vertices, or no
+  /// rings). LineResolution: the number of straight pieces of a contour, and of a ring along an
+  /// edge (16 by default, 1 to 1000).
   vtkHomeomorphismSwitchMacro(GenerateLines, true);
   vtkHomeomorphismOptionMacro(NumberOfContours, int, 4, 1, 100);
   vtkHomeomorphismOptionMacro(NumberOfRings, int, 4, 1, 100);
