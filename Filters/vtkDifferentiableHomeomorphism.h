@@ -5,15 +5,15 @@
  * @brief   map data from one triangulated domain to another with the same triangles
  *
  * The filter maps the points of the data (input port 2; by default the mesh that is mapped from)
- * from the domain of the source P to the domain of the target Q, or back (see Inverse).
- * Except in the CUBIC system, the image is the point of the corresponding triangle with the same
- * triangular coordinates, and the inverse is the map with P and Q exchanged. See
+ * from the domain of the source P to the domain of the target Q, or back (see Inverse). Except in
+ * the CUBIC system, the image is the point of the corresponding triangle with the same triangular
+ * coordinates, and the inverse is the map with P and Q exchanged. See
  * Documentation/differentiability.md and Documentation/cubic.md.
  *
  * Images and rectilinear grids become structured grids. Other data sets keep their type, and trees
  * of data sets their structure. All arrays are passed. Active vectors, normals and tensors of
  * points and cells are transformed by the Jacobian J of the map at the point, or at the mean of the
- * cell's points. They are NaN outside:
+ * cell's points (NaN outside), as follows:
  *
  * - vectors as tangent vectors, v becomes J v;
  * - normals by the inverse transpose, n becomes J^-T n, normalized;

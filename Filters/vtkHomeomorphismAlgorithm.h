@@ -6,8 +6,8 @@
  *
  * The meshes are the source P (input port 0) and the target Q (input port 1), two vtkPolyData with
  * the same cells, which must be triangles, and with corresponding points. The order of a triangle's
- * three points may differ. Both may lie in any planes or be surfaces in 3-space, closed or not.
- * For every piece of the output, the filters request the whole meshes. Output that depends on the
+ * three points may differ. Both may lie in any planes or be surfaces in 3-space, closed or not. For
+ * every piece of the output, the filters request the whole meshes. Output that depends on the
  * meshes alone is part of piece 0. The same applies to data that depends upstream on the same
  * algorithms as a mesh.
  *
