@@ -408,9 +408,11 @@ double BoundByNorms(const CubicElement& element)
   constexpr double rounding = 1e-6;
   constexpr double none = -std::numeric_limits<double>::infinity();
   const bool isRight = element.Right.Corner >= 0;
+  // Far above what underflow adds to products of two such numbers.
+  constexpr double leastSquare = 1e-250;
   const double squares = SquaredNorm(element.Affine);
   const double determinant = element.Affine.Determinant();
-  if (!(squares < greatestCondition * determinant))
+  if (!(squares < greatestCondition * determinant) || !(squares > leastSquare))
   {
     return none;
   }
@@ -418,7 +420,8 @@ double BoundByNorms(const CubicElement& element)
   {
     const Vector2 a = element.Points[1] - element.Points[0];
     const Vector2 b = element.Points[2] - element.Points[0];
-    if (!(Cross(a, b) > 1e-2 * (Dot(a, a) + Dot(b, b))))
+    const double sides = Dot(a, a) + Dot(b, b);
+    if (!(Cross(a, b) > 1e-2 * sides) || !(sides > leastSquare))
     {
       return none;
     }
@@ -434,7 +437,7 @@ double BoundByNorms(const CubicElement& element)
     longest = std::max({ longest, norm(d.Corner[i]), norm(d.Edge[i]), norm(d.Spoke[i]) });
   }
   // The Frobenius norm of L^-1 is that of L over the determinant.
-  const double ratio = std::sqrt(longest * squares) / determinant;
+  const double ratio = std::sqrt(longest) * (std::sqrt(squares) / determinant);
   return ratio < greatest ? determinant * (1.0 - ratio * (2.0 + ratio) - rounding) : none;
 }
 

@@ -14,12 +14,24 @@ namespace
 {
 
 constexpr int NewtonSteps = 300;
+// Half the second derivatives times the length of a triangle, over the least stretch: seldom more.
+constexpr double MostBending = 10.0;
 // Residuals of this many ulp of the target's coordinates are rounding.
 constexpr double ResidualUlps = 4.0;
 
 double MaxNorm(const Vector2& v)
 {
   return std::max(std::abs(v.x), std::abs(v.y));
+}
+
+// Whether a triangle is counterclockwise in both domains, seen from its corner 0 as the map sees
+// it: rounding may turn the parts of a refined needle over.
+bool IsPositive(const PlanarPair& pair, int triangle)
+{
+  const auto area = [](const std::array<Vector2, 3>& corners) {
+    return DifferenceOfProducts(corners[1].x, corners[2].y, corners[1].y, corners[2].x);
+  };
+  return area(pair.GetSourceCorners(triangle)) > 0.0 && area(pair.GetTargetCorners(triangle)) > 0.0;
 }
 
 // A cubic map on a triangle: ten control points, by weights of the corners.
@@ -258,10 +270,27 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
   parallelFor(this->Pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {
+      // Triangles of the refined pair, the pair's own if it is not refined.
+      const int children = 1 << (2 * this->Levels);
+      const int firstChild = children * t;
+      bool isPositive = true;
+      for (int child = firstChild; child < firstChild + children; ++child)
+      {
+        isPositive = isPositive && IsPositive(this->GetFine(), child);
+      }
+      if (!isPositive)
+      {
+        continue;
+      }
       if (!this->Bending)
       {
-        this->Certificates[t] = this->Template->GetCertificate(t);
-        elements[t] = TriangleCut::NumberOfElements;
+        double least = std::numeric_limits<double>::infinity();
+        for (int child = firstChild; child < firstChild + children; ++child)
+        {
+          least = std::min(least, this->Template->GetCertificate(child));
+        }
+        this->Certificates[t] = least;
+        elements[t] = static_cast<std::int64_t>(children) * TriangleCut::NumberOfElements;
         continue;
       }
       double least = std::numeric_limits<double>::infinity();
@@ -455,17 +484,24 @@ bool CubicMap::FindPreimage(
     t = at;
     x = from;
     // Within one element, the error of a step is about a constant times the square of its length,
-    // and so is the error of the next.
+    // and so is the error of the next. That of the last step may be small by chance, if second
+    // derivatives change their sign along it: the next step must be short beside the triangle, too.
     const double length = MaxNorm(move);
     const double next = step > 0 ? now * (length / lastMove) * (length / lastMove) : now;
+    const std::array<Vector2, 3> corners = pair.GetSourceCorners(at);
+    const bool isShort = MostBending * now * length <=
+      this->ResidualTolerance * std::max(MaxNorm(corners[1]), MaxNorm(corners[2]));
     size = now;
     if (now <= 0.5 * this->ResidualTolerance)
     {
       break;
     }
-    from = from + move;
+    const Vector2 aim = from + move;
+    from = aim;
     this->Walk(at, from);
-    if (at == t && prepared.IsWhole() && next <= 1e-3 * this->ResidualTolerance)
+    // Not where the walk ended at the boundary.
+    const bool isInside = at == t && from.x == aim.x && from.y == aim.y;
+    if (isInside && prepared.IsWhole() && isShort && next <= 1e-3 * this->ResidualTolerance)
     {
       t = at;
       x = from;

@@ -531,3 +531,26 @@ TEST(CubicElement, BoundsByNormsAreBelowAllCoefficients)
   }
   EXPECT_GT(bounded, 2000);
 }
+
+TEST(CubicElement, TinyFoldsAreNotCertified)
+{
+  // f(x, y) = (-2 x, y), times powers of two down to where squares of the derivative's entries, or
+  // products of these, underflow.
+  for (int exponent = 0; exponent >= -530; exponent -= 10)
+  {
+    const double s = std::ldexp(1.0, exponent);
+    CubicElement element;
+    element.Points = { Vector2{}, Vector2{ 1.0, 0.0 }, Vector2{ 0.0, 1.0 } };
+    element.Affine = { { s, 0.0 }, { 0.0, s } };
+    element.Values[1] = { -3.0 * s, 0.0 };
+    element.Gradients.fill({ { -3.0 * s, 0.0 }, {} });
+    EXPECT_FALSE(LeastDeterminant(element) > 0.0) << exponent;
+    // The same on tiny triangles.
+    CubicElement tiny;
+    tiny.Points = { Vector2{}, Vector2{ s, 0.0 }, Vector2{ 0.0, s } };
+    tiny.Affine = { { 1.0, 0.0 }, { 0.0, 1.0 } };
+    tiny.Values[1] = { -3.0 * s, 0.0 };
+    tiny.Gradients.fill({ { -3.0, 0.0 }, {} });
+    EXPECT_FALSE(LeastDeterminant(tiny) > 0.0) << exponent;
+  }
+}

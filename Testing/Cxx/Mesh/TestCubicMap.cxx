@@ -628,3 +628,92 @@ TEST(CubicMap, PreparedTrianglesChangeNothing)
     }
   }
 }
+
+TEST(CubicMap, RefinedTemplatesAreCertifiedByTheirOwnTriangles)
+{
+  // With a margin above 1 the solver always ends with the template, of the refined pair.
+  CubicMapOptions options = Options(CubicBending::Least);
+  options.FairnessRefinement = 1;
+  options.CertificateMargin = 2.0;
+  const CubicMap map(RandomPair(9, 2.0, 3), options);
+  const PlanarPair& pair = map.GetPair();
+  ASSERT_TRUE(map.GetStatistics().Bending.TookTemplate);
+  EXPECT_EQ(map.GetStatistics().Elements, 4 * 19 * pair.GetNumberOfTriangles());
+  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+  {
+    double least = std::numeric_limits<double>::infinity();
+    map.VisitElements(
+      t, [&least](const CubicElement& element, const Vector2&, const Vector2&, double) {
+        least = std::min(least, LeastDeterminant(element));
+      });
+    least /= pair.GetAffine(t).Determinant();
+    EXPECT_NEAR(map.GetCertificates()[static_cast<std::size_t>(t)], least, 1e-9 * least) << t;
+  }
+}
+
+TEST(CubicMap, PartsTurnedOverByRoundingAreNotCertified)
+{
+  // Needles a few ulp high: the midpoints of their edges are rounded to either side.
+  std::mt19937_64 random(14);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int turned = 0;
+  for (int n = 0; n < 80; ++n)
+  {
+    PlanarPair pair;
+    const Vector2 a{ 1.0 + uniform(random), 1.0 + uniform(random) };
+    const Vector2 b{ 2.0 + uniform(random), 1.0 + uniform(random) };
+    Vector2 c = a + uniform(random) * (b - a);
+    c.y = std::nextafter(std::nextafter(c.y, 3.0), 3.0);
+    pair.Source = { a, b, c };
+    pair.Target = pair.Source;
+    pair.Triangles = { { 0, 1, 2 } };
+    pair.FindNeighbors();
+    if (!(Cross(b - a, c - a) > 0.0))
+    {
+      continue;
+    }
+    CubicMapOptions options = Options(CubicBending::Least);
+    options.FairnessRefinement = 1;
+    const CubicMap map(pair, options);
+    bool isTurned = false;
+    const PlanarPair fine = pair.Refine();
+    for (int t = 0; t < fine.GetNumberOfTriangles(); ++t)
+    {
+      const std::array<Vector2, 3> corners = fine.GetSourceCorners(t);
+      isTurned = isTurned || !(Cross(corners[1], corners[2]) > 0.0);
+    }
+    turned += isTurned ? 1 : 0;
+    EXPECT_FALSE(isTurned && map.GetCertificates()[0] > 0.0) << n;
+  }
+  EXPECT_GT(turned, 3);
+}
+
+TEST(CubicMap, PreimagesAreExactWhereSecondDerivativesChangeSign)
+{
+  // Between inflections the first of Newton's steps may by chance come much closer than the next.
+  // One component bends, so that this happens along whole lines.
+  std::mt19937_64 random(7);
+  PlanarPair pair = JitteredGrid(random, 3, 0.0);
+  for (Vector2& p : pair.Target)
+  {
+    p.x += 0.13 * std::sin(6.283185307179586 * p.x);
+  }
+  const CubicMap map(pair, Options(CubicBending::Least));
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  CubicTriangle prepared = map.Prepare();
+  double greatest = 0.0;
+  for (int n = 0; n < 1000000; ++n)
+  {
+    const int start = n % pair.GetNumberOfTriangles();
+    double v = uniform(random);
+    double w = uniform(random);
+    v = v + w > 1.0 ? 1.0 - v : v;
+    w = v + w > 1.0 ? 1.0 - w : w;
+    const Vector2 image = PointAt(pair, pair.Target, { start, { 1.0 - v - w, v, w } });
+    int triangle = start;
+    Vector2 point;
+    ASSERT_TRUE(map.FindPreimage(image, triangle, point, prepared));
+    greatest = std::max(greatest, Norm(map.MapPoint(triangle, point, prepared) - image));
+  }
+  EXPECT_LE(greatest, 4e-15);
+}
