@@ -4,12 +4,16 @@
 https://proj.org/en/stable/specifications/triangulation.html"""
 
 import json
+import re
 from dataclasses import dataclass, field
 from typing import Optional
 
 import numpy
 
 from .files import quote
+
+DEEPEST = 100
+"""The depth to which arrays and objects may be nested."""
 
 STRATEGIES = ("none", "nearest_side", "nearest_centroid")
 CORNERS = ["idx_vertex1", "idx_vertex2", "idx_vertex3"]
@@ -103,13 +107,17 @@ def _take_columns(document, member, names):
 
 def read(path):
     """Reads a file of format 1.x. Raises Invalid, naming the line or the member."""
+    with open(path, encoding="utf-8-sig", errors="replace") as file:
+        text = file.read()
+    # Brackets outside of strings. What Python's parser accepts depends on its version.
+    signs = numpy.frombuffer(re.sub(r'"(?:[^"\\]|\\.)*"', "", text).encode(), numpy.uint8)
+    steps = numpy.isin(signs, list(b"[{")).astype(int) - numpy.isin(signs, list(b"]}"))
+    if numpy.cumsum(steps).max(initial=0) > DEEPEST:
+        raise Invalid("arrays are nested too deep: this is not a triangulation file.")
     try:
-        with open(path, encoding="utf-8-sig", errors="replace") as file:
-            document = json.load(file)
+        document = json.loads(text)
     except json.JSONDecodeError as error:
         raise Invalid(f"line {error.lineno}, column {error.colno}: {error.msg}.") from None
-    except RecursionError:
-        raise Invalid("arrays are nested too deep: this is not a triangulation file.") from None
     except ValueError as error:
         raise Invalid(f"{quote(error)}.") from None
     document = document if isinstance(document, dict) else {}
