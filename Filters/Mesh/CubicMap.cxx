@@ -215,6 +215,8 @@ int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
 CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor)
   : Pair(std::move(pair))
 {
+  const int points = this->Pair.GetNumberOfPoints();
+  const std::vector<std::int32_t> separated = this->Pair.SeparateParts();
   std::vector<std::uint8_t> isFree;
   if (options.Bending == CubicBending::Least && options.FairnessRefinement > 0)
   {
@@ -314,9 +316,14 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
     {
       (this->Template->IsBoundary(point) ? this->Statistics.ExceptionalBoundaryPoints
                                          : this->Statistics.ExceptionalInteriorPoints)
-        .push_back(point);
+        .push_back(point < points ? point : separated[point - points]);
     }
   }
+  // Where parts touch, each has its own derivative.
+  std::vector<std::int32_t>& exceptional = this->Statistics.ExceptionalBoundaryPoints;
+  exceptional.insert(exceptional.end(), separated.begin(), separated.end());
+  std::sort(exceptional.begin(), exceptional.end());
+  exceptional.erase(std::unique(exceptional.begin(), exceptional.end()), exceptional.end());
 }
 
 //------------------------------------------------------------------------------

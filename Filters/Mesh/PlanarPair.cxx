@@ -133,6 +133,58 @@ PointFans::PointFans(const PlanarPair& pair)
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::int32_t> PlanarPair::SeparateParts()
+{
+  std::vector<std::int32_t> taken;
+  const PointFans fans(*this);
+  if (std::count(fans.Touching.begin(), fans.Touching.end(), 1) == 0)
+  {
+    return taken;
+  }
+  std::vector<std::uint8_t> isUsed(this->Source.size(), 0);
+  std::vector<std::array<std::uint8_t, 3>> isDone(this->Triangles.size(), { 0, 0, 0 });
+  for (int t = 0; t < this->GetNumberOfTriangles(); ++t)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const std::int32_t point = this->Triangles[t][c];
+      if (isDone[t][c] != 0 || fans.Touching[point] == 0)
+      {
+        continue;
+      }
+      // Clockwise to the beginning of the fan, then counterclockwise to its end.
+      int first = t;
+      int before = this->Neighbors[t][PreviousCorner(c)];
+      while (before >= 0 && before != t)
+      {
+        first = before;
+        before = this->Neighbors[first][PreviousCorner(this->GetCorner(first, point))];
+      }
+      std::int32_t number = point;
+      if (isUsed[point] != 0)
+      {
+        number = this->GetNumberOfPoints();
+        taken.push_back(point);
+        const Vector2 source = this->Source[point];
+        const Vector2 target = this->Target[point];
+        this->Source.push_back(source);
+        this->Target.push_back(target);
+      }
+      isUsed[point] = 1;
+      int at = first;
+      do
+      {
+        const int corner = this->GetCorner(at, point);
+        isDone[at][corner] = 1;
+        this->Triangles[at][corner] = number;
+        at = this->Neighbors[at][NextCorner(corner)];
+      } while (at >= 0 && at != first);
+    }
+  }
+  return taken;
+}
+
+//------------------------------------------------------------------------------
 PointFan PointFans::Get(const PlanarPair& pair, int point) const
 {
   PointFan fan;

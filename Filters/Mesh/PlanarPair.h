@@ -74,6 +74,10 @@ struct PlanarPair
   /// Each triangle cut into four at the midpoints of its edges: triangle 4 t + c has corner c of
   /// triangle t, 4 t + 3 is the middle one.
   PlanarPair Refine() const;
+
+  /// Gives each of the parts that touch in a point a point of its own, so that the triangles at
+  /// every point are one fan. Returns from which points those that are appended were taken.
+  std::vector<std::int32_t> SeparateParts();
 };
 
 /// The triangles around a point, counterclockwise, beginning at the boundary if the point is on it.

@@ -717,3 +717,34 @@ TEST(CubicMap, PreimagesAreExactWhereSecondDerivativesChangeSign)
   }
   EXPECT_LE(greatest, 4e-15);
 }
+
+TEST(CubicMap, PartsMayTouchInAPoint)
+{
+  // An hourglass whose halves share a point only.
+  PlanarPair pair;
+  pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.5, 1.0 }, { 0.0, 2.0 }, { 0.6, 2.1 },
+    { 1.0, 2.0 } };
+  pair.Target = { { 0.1, 0.0 }, { 1.0, 0.2 }, { 0.5, 1.0 }, { 0.0, 1.8 }, { 0.5, 2.0 },
+    { 1.3, 2.2 } };
+  pair.Triangles = { { 0, 1, 2 }, { 2, 5, 4 }, { 2, 4, 3 } };
+  pair.FindNeighbors();
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (double deviation : { 1e300, 1e-3 })
+    {
+      CubicMapOptions options = Options(bending);
+      options.MaximumDeviation = deviation;
+      const CubicMap map(pair, options);
+      EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+      EXPECT_EQ(map.GetStatistics().ExceptionalBoundaryPoints, std::vector<int>{ 2 });
+      ExpectRoundTrip(map, 600, deviation);
+      for (int t = 0; t < 3; ++t)
+      {
+        Vector2 image;
+        Matrix2 derivative;
+        map.MapPoint(t, pair.Source[2], image, derivative);
+        EXPECT_LT(Norm(image - pair.Target[2]), 1e-15);
+      }
+    }
+  }
+}
