@@ -171,8 +171,10 @@ int TriangleCut::Find(const Vector2& point) const
     for (int k = 0; k < 3; ++k)
     {
       const double start = this->Radii[NextCorner(k)];
-      const double width = this->Lengths[k] - start - this->Radii[PreviousCorner(k)];
-      if (height[k] <= this->Heights[k] && along[k] >= start && along[k] <= start + width)
+      const double end = this->Radii[PreviousCorner(k)];
+      const double width = this->Lengths[k] - start - end;
+      // The corners' comparisons, so that rounding leaves no gap between them and the strip.
+      if (height[k] <= this->Heights[k] && along[k] >= start && this->Lengths[k] - along[k] >= end)
       {
         const bool upper = height[k] * width > (along[k] - start) * this->Heights[k];
         return FirstStrip + 2 * k + (upper ? 1 : 0);

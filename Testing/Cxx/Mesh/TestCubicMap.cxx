@@ -748,3 +748,30 @@ TEST(CubicMap, PartsMayTouchInAPoint)
     }
   }
 }
+
+TEST(CubicMap, StripsAndCornersLeaveNoGap)
+{
+  const PlanarPair pair = RandomPair(15, 0.5, 12);
+  const CubicTemplate cubicTemplate(pair, {});
+  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+  {
+    const TriangleCut cut = cubicTemplate.GetCut(t);
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vector2 along = cut.Along[k];
+      const Vector2 normal{ -along.y, along.x };
+      for (int ulps = -8; ulps <= 8; ++ulps)
+      {
+        // Halfway from an edge point to its inner point, where the map differs from the affine one.
+        const double shift = ulps * 0x1p-54;
+        const Vector2 high = 0.5 * cut.Heights[k] * normal;
+        const Vector2 start =
+          cut.Corners[NextCorner(k)] + ((cut.Radii[NextCorner(k)] + shift) * along + high);
+        const Vector2 end =
+          cut.Corners[PreviousCorner(k)] - ((cut.Radii[PreviousCorner(k)] + shift) * along - high);
+        EXPECT_LT(cut.Find(start), TriangleCut::FirstMiddle) << t << " " << k;
+        EXPECT_LT(cut.Find(end), TriangleCut::FirstMiddle) << t << " " << k;
+      }
+    }
+  }
+}
