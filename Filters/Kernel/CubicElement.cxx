@@ -559,10 +559,7 @@ void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, con
   const int k = piece.Opposite;
   const int i = NextCorner(k);
   const int j = PreviousCorner(k);
-  const double u = piece.Start;
-  const double v = piece.End;
-  const double w = piece.Centroid;
-  const double weights[6] = { u * u, 2.0 * u * v, v * v, 2.0 * u * w, 2.0 * v * w, w * w };
+  const std::array<double, 6> weights = piece.GetQuadratics();
   const Vector2 fromCentroid[6] = { b.Inner[i], b.Middle[k], b.Inner[j], b.Spoke[i], b.Spoke[j],
     b.Center };
   const Vector2 fromStart[6] = { b.Corner[i], b.AfterStart[k], b.BeforeEnd[k], b.Inner[i],
@@ -578,7 +575,7 @@ void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, con
     end = end + weights[n] * fromEnd[n];
     centroid = centroid + weights[n] * fromCentroid[n];
   }
-  value = u * start + v * end + w * centroid;
+  value = piece.Start * start + piece.End * end + piece.Centroid * centroid;
   const bool isRight = element.Right.Corner >= 0;
   const DerivativeOrdinates<double> d =
     isRight ? MakeRightDerivative<double>(element) : MakeDerivative<double>(element);

@@ -115,6 +115,16 @@ struct CubicPiece
   double Start;
   double End;
   double Centroid;
+
+  /// The quadratic Bernstein polynomials of the start u, the end v and the centroid w: uu, 2uv, vv,
+  /// 2uw, 2vw, ww.
+  std::array<double, 6> GetQuadratics() const
+  {
+    const double u = this->Start;
+    const double v = this->End;
+    const double w = this->Centroid;
+    return { u * u, 2.0 * u * v, v * v, 2.0 * u * w, 2.0 * v * w, w * w };
+  }
 };
 
 inline CubicPiece FindPiece(const Barycentric& l)
@@ -187,15 +197,7 @@ private:
     const int k = piece.Opposite;
     const int i = NextCorner(k);
     const int j = PreviousCorner(k);
-    const double u = piece.Start;
-    const double v = piece.End;
-    const double w = piece.Centroid;
-    const double uu = u * u;
-    const double uv = 2.0 * u * v;
-    const double vv = v * v;
-    const double uw = 2.0 * u * w;
-    const double vw = 2.0 * v * w;
-    const double ww = w * w;
+    const auto [uu, uv, vv, uw, vw, ww] = piece.GetQuadratics();
     start = uu * b[i] + uv * b[AfterStart + k] + vv * b[BeforeEnd + k] + uw * b[Inner + i] +
       vw * b[Middle + k] + ww * b[Spoke + i];
     end = uu * b[AfterStart + k] + uv * b[BeforeEnd + k] + vv * b[j] + uw * b[Middle + k] +
