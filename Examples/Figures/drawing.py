@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from vtkhomeomorphism import Homeomorphism, vtkJacobianContinuity, vtkTriangularCoordinates
-from vtkhomeomorphism.arrays import configure, update
-from vtkhomeomorphism.meshes import make_mesh, points_of
+from vtkhomeomorphism.arrays import configure, make_mesh, points_of, update
 
 INK = "#212329"
 SYSTEMS = ("linear", "contour", "smooth")

@@ -14,7 +14,7 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from vtkhomeomorphism import vtkDifferentiableHomeomorphism, vtkIsomorphicTriangulation
 from vtkhomeomorphism.images import Grid
-from vtkhomeomorphism.meshes import as_cells, as_points, make_mesh, points_of
+from vtkhomeomorphism.arrays import as_cells, as_points, make_mesh, points_of
 
 
 def generated():
@@ -37,7 +37,7 @@ class Session:
     def __init__(self, source, target, image):
         width, height, _ = image.GetDimensions()
         frame = (-0.1 * width, 1.1 * width, -0.1 * height, 1.1 * height)
-        self.figures = [make_mesh(points, numpy.empty((0, 3), int)) for points in (source, target)]
+        self.figures = [make_mesh(points) for points in (source, target)]
         self.pair = [vtk.vtkPolyData(), vtk.vtkPolyData()]
         self.maker, self.delaunay = vtkIsomorphicTriangulation(), vtk.vtkDelaunay2D()
         for sender in (self.maker, self.maker.GetExecutive()):
@@ -52,7 +52,7 @@ class Session:
         t = numpy.linspace(0, 1, 81)
         across = [numpy.column_stack(p) for k in range(17) for p in (
             (numpy.full(81, width * k / 16), height * t), (width * t, numpy.full(81, height * k / 16)))]
-        lines = make_mesh(numpy.vstack(across), numpy.empty((0, 3), int))
+        lines = make_mesh(numpy.vstack(across))
         lines.SetLines(as_cells(numpy.arange(len(across) * 81).reshape(-1, 81)))
         self.window = set_up(vtk.vtkRenderWindow(), Size=(1000, 420), MultiSamples=(0,))
         self.interactor = set_up(vtk.vtkRenderWindowInteractor(), RenderWindow=(self.window,),
@@ -112,7 +112,7 @@ class Session:
         self.maker.SetMaximumNumberOfAddedPoints(limit)
         points = points_of(self.figures[side]).copy()
         points[self.active[side], :2] = self.widgets[side].GetRepresentation().GetWorldPosition()[:2]
-        self.figures[side].SetPoints(as_points(points))
+        self.figures[side].SetPoints(as_points(points)[0])
         self.update()
         self.window.Render()
 
@@ -132,7 +132,7 @@ class Session:
             residuals = vtk_to_numpy(self.pair[0].GetPointData().GetArray("LandmarkResidual"))[: len(points[0])]
             self.suspicious = residuals > 4 * numpy.quantile(residuals, 0.8)
             colors = numpy.where(self.suspicious[:, None], [230, 0, 0], [0, 90, 30]).astype(numpy.uint8)
-            dots = make_mesh(points[side], numpy.empty((0, 3), int))
+            dots = make_mesh(points[side])
             dots.SetVerts(as_cells(numpy.arange(len(points[0]))[:, None]))
             dots.GetPointData().SetScalars(numpy_to_vtk(colors, deep=True))
             self.dots[side].GetMapper().SetInputData(dots)

@@ -28,8 +28,11 @@ Value FromDouble(double value)
 {
   if constexpr (std::is_integral<Value>::value)
   {
-    // A mean of values is within the range of their type.
-    return static_cast<Value>(value + (value < 0.0 ? -0.5 : 0.5));
+    // A mean of values is within the range of their type, but the largest integers of 64 bits are
+    // rounded up to a double beyond it.
+    constexpr Value largest = std::numeric_limits<Value>::max();
+    const double rounded = value + (value < 0.0 ? -0.5 : 0.5);
+    return rounded < static_cast<double>(largest) ? static_cast<Value>(rounded) : largest;
   }
   else
   {

@@ -1,14 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Homeomorphisms between the domains of isomorphic triangulations.
-
-The package provides
-
-- the class `Homeomorphism`, with numpy arrays in and out;
-- the VTK classes `vtkDifferentiableHomeomorphism`, `vtkHomeomorphismTransform`,
-  `vtkTriangularCoordinates`, `vtkJacobianContinuity` and `vtkResampleThroughHomeomorphism`, for VTK
-  pipelines;
-- the command `dhm` (`python3 -m vtkhomeomorphism`), for files.
+"""Homeomorphisms between the domains of isomorphic triangulations: the class `Homeomorphism` for numpy arrays, VTK
+classes for pipelines, and the command `dhm` (`python3 -m vtkhomeomorphism`) for files.
 
 >>> import numpy, vtkhomeomorphism
 >>> source = numpy.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
@@ -18,38 +11,15 @@ The package provides
 True
 """
 
-import importlib
-from typing import TYPE_CHECKING
-
+from .arrays import Homeomorphism
+from .isomorphic import isomorphic_triangulation
 from .vtkFiltersHomeomorphism import (
-    vtkDifferentiableHomeomorphism,
-    vtkHomeomorphismTransform,
-    vtkIsomorphicTriangulation,
-    vtkJacobianContinuity,
-    vtkResampleThroughHomeomorphism,
-    vtkTriangularCoordinates,
+    vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform, vtkIsomorphicTriangulation, vtkJacobianContinuity,
+    vtkResampleThroughHomeomorphism, vtkTriangularCoordinates,
 )
-
-if TYPE_CHECKING:
-    from .arrays import Homeomorphism
-    from .isomorphic import isomorphic_triangulation
 
 __version__ = "1.0.0"
 __all__ = [
-    "Homeomorphism",
-    "isomorphic_triangulation",
-    "vtkDifferentiableHomeomorphism",
-    "vtkHomeomorphismTransform",
-    "vtkIsomorphicTriangulation",
-    "vtkJacobianContinuity",
-    "vtkResampleThroughHomeomorphism",
-    "vtkTriangularCoordinates",
+    "Homeomorphism", "isomorphic_triangulation", "vtkDifferentiableHomeomorphism", "vtkHomeomorphismTransform",
+    "vtkIsomorphicTriangulation", "vtkJacobianContinuity", "vtkResampleThroughHomeomorphism", "vtkTriangularCoordinates",
 ]
-
-
-def __getattr__(name):
-    # The VTK classes do not need numpy.
-    modules = {"Homeomorphism": ".arrays", "isomorphic_triangulation": ".isomorphic"}
-    if name in modules:
-        return getattr(importlib.import_module(modules[name], __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

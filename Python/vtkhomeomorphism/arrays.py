@@ -16,23 +16,24 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
 
 from .vtkFiltersHomeomorphism import (
-    vtkDifferentiableHomeomorphism,
-    vtkJacobianContinuity,
-    vtkResampleThroughHomeomorphism,
-    vtkTriangularCoordinates,
+    vtkDifferentiableHomeomorphism, vtkJacobianContinuity, vtkResampleThroughHomeomorphism, vtkTriangularCoordinates,
 )
 
-
-def _values(*names: str) -> dict:
-    return {name: getattr(vtkDifferentiableHomeomorphism, name.upper()) for name in names}
+MASK = "vtkValidPointMask"
 
 
-SYSTEMS = _values("linear", "contour", "smooth", "cubic")
-BENDINGS = _values("local", "least")
-CENTERS = _values("centroid", "incenter")
+def values_of(kind, *names: str) -> dict:
+    """The values of a VTK class's constants by their names in small letters."""
+    return {name: getattr(kind, name.upper()) for name in names}
 
 
-def _choose(names: dict, value: str, what: str) -> int:
+SYSTEMS = values_of(vtkDifferentiableHomeomorphism, "linear", "contour", "smooth", "cubic")
+BENDINGS = values_of(vtkDifferentiableHomeomorphism, "local", "least")
+CENTERS = values_of(vtkDifferentiableHomeomorphism, "centroid", "incenter")
+
+
+def choose(names: dict, value: str, what: str) -> int:
+    """The value of a name, in any case."""
     try:
         return names[value.lower()]
     except (KeyError, AttributeError):
@@ -51,23 +52,20 @@ def configure(
     fairness_refinement: int = 0,
 ):
     """Sets the options of the map, those of Homeomorphism, in a filter of the module."""
-    algorithm.SetCoordinateSystem(_choose(SYSTEMS, system, "system"))
-    algorithm.SetCenterPoint(_choose(CENTERS, center, "center"))
-    algorithm.SetDiscordantTriangles(
-        algorithm.USE_LINEAR if discordant_by_linear else algorithm.REFUSE
-    )
+    if maximum_deviation is not None and not maximum_deviation > 0:
+        raise ValueError(f"maximum_deviation must be positive, not {maximum_deviation!r}")
+    algorithm.SetCoordinateSystem(choose(SYSTEMS, system, "system"))
+    algorithm.SetCenterPoint(choose(CENTERS, center, "center"))
+    algorithm.SetDiscordantTriangles(algorithm.USE_LINEAR if discordant_by_linear else algorithm.REFUSE)
     algorithm.SetTolerance(tolerance)
-    algorithm.SetCubicBending(_choose(BENDINGS, cubic_bending, "cubic_bending"))
+    algorithm.SetCubicBending(choose(BENDINGS, cubic_bending, "cubic_bending"))
     if maximum_deviation is not None:
-        if not maximum_deviation > 0:
-            raise ValueError(f"maximum_deviation must be positive, not {maximum_deviation!r}")
         algorithm.SetMaximumDeviation(maximum_deviation)
     algorithm.SetFairnessRefinement(fairness_refinement)
 
 
-def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
-    """Returns vtkPoints and the number of coordinates per point. Shares the memory of contiguous (n, 3)
-    arrays of float32 and float64."""
+def as_points(points, what: str = "points") -> Tuple[vtkPoints, int]:
+    """vtkPoints and the number of coordinates per point. Contiguous arrays of shape (n, 3) share their memory."""
     array = numpy.asarray(points)
     if array.dtype not in (numpy.float32, numpy.float64):
         if array.dtype.kind not in "biuf":
@@ -79,8 +77,7 @@ def _as_points(points, what: str) -> Tuple[vtkPoints, int]:
     if dimension == 2:
         array = numpy.column_stack((array, numpy.zeros(len(array), array.dtype)))
     result = vtkPoints()
-    result.SetDataType(10 if array.dtype == numpy.float32 else 11)
-    # numpy_to_vtk keeps a reference to the shared array.
+    # It takes the array's type, and numpy_to_vtk keeps a reference to shared memory.
     result.SetData(numpy_to_vtk(numpy.ascontiguousarray(array)))
     return result, dimension
 
@@ -97,38 +94,34 @@ def as_cells(polygons) -> vtkCellArray:
     return cells
 
 
+def make_mesh(points, polygons=()) -> vtkPolyData:
+    """A mesh of points of shape (n, 2) or (n, 3), and polygons."""
+    mesh = vtkPolyData()
+    mesh.SetPoints(as_points(points)[0])
+    mesh.SetPolys(polygons if isinstance(polygons, vtkCellArray) else as_cells(polygons))
+    return mesh
+
+
+def points_of(data) -> numpy.ndarray:
+    """The points of a point set, of shape (n, 3), float64."""
+    points = data.GetPoints()
+    return numpy.empty((0, 3)) if points is None else numpy.asarray(vtk_to_numpy(points.GetData()), numpy.float64)
+
+
+def arrays_of(attributes) -> dict:
+    """Numeric arrays of point or cell data by name, without vtkGhostType."""
+    arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
+    return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName() != "vtkGhostType"}
+
+
 def _as_triangles(triangles, points: int) -> vtkCellArray:
     array = numpy.asarray(triangles)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
-        raise ValueError(
-            "triangles must be an array of integers with the shape (m, 3), "
-            f"not {array.dtype} with {array.shape}"
-        )
+        raise ValueError(f"triangles must be integers with the shape (m, 3), not {array.dtype} with {array.shape}")
     if array.size and (array.min() < 0 or array.max() >= points):
-        raise ValueError(
-            f"triangles must have point numbers from 0 to {points - 1}; "
-            f"they go from {array.min()} to {array.max()}"
-        )
+        raise ValueError(f"triangles must have point numbers from 0 to {points - 1}; "
+                         f"they go from {array.min()} to {array.max()}")
     return as_cells(array)
-
-
-def _rebuild(source, target, triangles, system, options):
-    return Homeomorphism(source, target, triangles, system, **options)
-
-
-def _cast(values: numpy.ndarray, dtype) -> numpy.ndarray:
-    """Float64 values as another type: rounded to integers and clipped to their limits; half and more is True."""
-    if dtype.kind == "b":
-        return values >= 0.5
-    if dtype.kind not in "iu":
-        return values.astype(dtype)
-    limits = numpy.iinfo(dtype)
-    rounded = numpy.rint(numpy.nan_to_num(values))
-    # The largest 64-bit integers are not exact in float64, so compare them without conversion.
-    low, high = rounded <= limits.min, rounded >= limits.max
-    result = numpy.where(low | high, 0, rounded).astype(dtype)
-    result[low], result[high] = limits.min, limits.max
-    return result
 
 
 def update(algorithm):
@@ -157,47 +150,42 @@ class Homeomorphism:
     Parameters
     ----------
     source, target : array of shape (n, 2) or (n, 3)
-        Points of the two triangulations, in the plane or on surfaces in 3-space. In the plane, z is the
-        distance from it and is preserved.
+        Points of the two triangulations, in the plane or on surfaces in 3-space. In the plane, z is the distance from it
+        and is preserved.
     triangles : array of int of shape (m, 3)
         Point ids of the triangles, the same in both.
     system : {"smooth", "linear", "contour", "cubic"}
-        The coordinate system. See vtkDifferentiableHomeomorphism.
+        The coordinate system, see vtkDifferentiableHomeomorphism. Cubic maps meshes in a plane only.
     center : {"centroid", "incenter"}
         Start of the contours of the Contour system.
     discordant_by_linear : bool
         Map discordant triangles by the Linear system instead of raising an error (Contour only).
     tolerance : float
-        Greatest distance of a mapped point from the domain, relative to the diagonal of the domain.
-        0 allows for rounding only.
-    cubic_bending : str
-        Of the Cubic system: "least", which bends least, or "local", in closed form.
+        Greatest distance of a mapped point from the domain, relative to the diagonal of the domain. 0 allows for rounding
+        only.
+    cubic_bending : {"least", "local"}
+        Of the Cubic system: the map that bends least, or one in closed form.
     maximum_deviation : float, optional
-        Of the Smooth and the Cubic system: the greatest distance of images from those of the Linear
-        system, in the target's units.
+        Of the Smooth and the Cubic system: the greatest distance of images from those of the Linear system, in the
+        target's units.
     fairness_refinement : int
         Of the Cubic system with least bending: how often triangles are cut into four first.
 
-    The Cubic system maps meshes in a plane only.
-
-    Points outside the domain become NaN. Invalid meshes raise ValueError with a message that lists the
-    triangles. An object must not be used by several threads at a time; each call is itself parallel.
+    Points outside the domain become NaN. Invalid meshes raise ValueError with a message that lists the triangles. An
+    object must not be used by several threads at a time; each call is itself parallel.
     """
 
     def __init__(self, source, target, triangles, system: str = "smooth", **options):
         self._meshes, self._dimensions = [], []
         for points, what in ((source, "source"), (target, "target")):
             # A copy, so that validated points cannot change.
-            vtk_points, dimension = _as_points(numpy.array(points), what)
-            mesh = vtkPolyData()
-            mesh.SetPoints(vtk_points)
+            vtk_points, dimension = as_points(numpy.array(points), what)
             self._dimensions.append(dimension)
-            self._meshes.append(mesh)
+            self._meshes.append(vtkPolyData())
+            self._meshes[-1].SetPoints(vtk_points)
         sizes = [mesh.GetNumberOfPoints() for mesh in self._meshes]
         if sizes[0] != sizes[1]:
-            raise ValueError(
-                f"source has {sizes[0]} points, target {sizes[1]}: they must correspond one to one"
-            )
+            raise ValueError(f"source has {sizes[0]} points, target {sizes[1]}: they must correspond one to one")
         cells = _as_triangles(triangles, sizes[0])
         for mesh in self._meshes:
             mesh.SetPolys(cells)
@@ -211,43 +199,42 @@ class Homeomorphism:
 
     @classmethod
     def from_landmarks(cls, source, target, system: str = "smooth", **options):
-        """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made
-        for them. Options of `isomorphic_triangulation` and of this class are understood."""
+        """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made for them. Options of
+        `isomorphic_triangulation` and of this class are understood."""
         from .isomorphic import isomorphic_triangulation
 
-        names = inspect.signature(configure).parameters
-        own = {name: options.pop(name) for name in list(options) if name in names}
+        own = {name: options.pop(name) for name in list(options) if name in inspect.signature(configure).parameters}
         pair = isomorphic_triangulation(source, target, **options)
         return cls(pair.source, pair.target, pair.triangles, system, **own)
 
     def _set_up(self, algorithm):
         algorithm.SetSourceData(self._meshes[0])
-        algorithm.SetTargetData(self._meshes[1])
+        if not isinstance(algorithm, vtkTriangularCoordinates):
+            algorithm.SetTargetData(self._meshes[1])
         configure(algorithm, self._system, **self._options)
         return algorithm
 
-    def __reduce__(self):
-        arrays = [
-            vtk_to_numpy(mesh.GetPoints().GetData())[:, :dimension]
-            for mesh, dimension in zip(self._meshes, self._dimensions)
-        ]
+    def __getstate__(self):
+        points = [points_of(mesh)[:, :size] for mesh, size in zip(self._meshes, self._dimensions)]
         triangles = vtk_to_numpy(self._meshes[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        return _rebuild, (*arrays, triangles, self._system, self._options)
+        return (*points, triangles, self._system), self._options
+
+    def __setstate__(self, state):
+        self.__init__(*state[0], **state[1])
 
     def _run(self, points, inverse: bool):
-        vtk_points, dimension = _as_points(points, "points")
+        """The filter's output, the mask, and the dimensions of points and images."""
+        vtk_points, dimension = as_points(points)
         data = vtkPolyData()
         data.SetPoints(vtk_points)
         self._filter.SetDataObject(data)
         self._filter.SetInverse(inverse)
-        return update(self._filter), dimension
+        return update(self._filter), dimension, self._dimensions[0 if inverse else 1] if dimension == 2 else dimension
 
     def _map(self, points, inverse: bool) -> numpy.ndarray:
-        output, dimension = self._run(points, inverse)
-        dimension = self._image_dimension(dimension, inverse)
-        result = numpy.array(vtk_to_numpy(output.GetPoints().GetData())[:, :dimension])
-        mask = vtk_to_numpy(output.GetPointData().GetArray("vtkValidPointMask"))
-        result[mask == 0] = numpy.nan
+        output, _, dimension = self._run(points, inverse)
+        result = points_of(output)[:, :dimension].copy()
+        result[vtk_to_numpy(output.GetPointData().GetArray(MASK)) == 0] = numpy.nan
         return result
 
     def __call__(self, points) -> numpy.ndarray:
@@ -259,96 +246,60 @@ class Homeomorphism:
         return self._map(points, True)
 
     def jacobian(self, points, inverse: bool = False) -> numpy.ndarray:
-        """The derivative of the map at points of the source's domain, or of the inverse at points of the
-        target's: float64 of shape (n, k, d) for points of d coordinates whose images have k. Element
-        [i, j, l] is the partial derivative of coordinate j of the image of point i with respect to
-        coordinate l. NaN outside."""
+        """The derivative of the map at points of the source's domain, or of the inverse at points of the target's: float64
+        of shape (n, k, d) for points of d coordinates whose images have k. Element [i, j, l] is the partial derivative of
+        coordinate j of the image of point i with respect to coordinate l. NaN outside."""
         self._filter.ComputeJacobianOn()
         try:
-            output, dimension = self._run(points, inverse)
+            output, columns, rows = self._run(points, inverse)
         finally:
             self._filter.ComputeJacobianOff()
         jacobian = vtk_to_numpy(output.GetPointData().GetArray("Jacobian"))
-        rows = self._image_dimension(dimension, inverse)
-        return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :dimension])
-
-    def _image_dimension(self, dimension: int, inverse: bool) -> int:
-        return self._dimensions[0 if inverse else 1] if dimension == 2 else dimension
+        return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :columns])
 
     def coordinates(self, points):
-        """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0
-        outside), p and c (NaN outside); four arrays of shape (n,)."""
-        algorithm = vtkTriangularCoordinates()
-        algorithm.SetSourceData(self._meshes[0])
-        configure(algorithm, self._system, **self._options)
+        """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0 outside), p and c
+        (NaN outside); four arrays of shape (n,)."""
+        algorithm = self._set_up(vtkTriangularCoordinates())
         algorithm.GenerateLinesOff()
-        data = vtkPolyData()
-        data.SetPoints(_as_points(points, "points")[0])
-        algorithm.SetDataObject(data)
-        arrays = update(algorithm).GetPointData()
-        return tuple(
-            numpy.array(vtk_to_numpy(arrays.GetArray(name)))
-            for name in ("TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter")
-        )
+        algorithm.SetDataObject(make_mesh(points))
+        arrays = arrays_of(update(algorithm).GetPointData())
+        return tuple(arrays[name].copy() for name in ("TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter"))
 
     def continuity(self, samples: int = 5):
-        """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict
-        of arrays with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`,
-        `EdgeTriangles`, ...; see vtkJacobianContinuity)."""
+        """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict of arrays
+        with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`, `EdgeTriangles`, ...; see
+        vtkJacobianContinuity)."""
         algorithm = self._set_up(vtkJacobianContinuity())
         algorithm.SetSamplesPerEdge(samples)
-        arrays = update(algorithm).GetCellData()
-        return {
-            arrays.GetArrayName(i): numpy.array(vtk_to_numpy(arrays.GetArray(i)))
-            for i in range(arrays.GetNumberOfArrays())
-        }
+        return {name: array.copy() for name, array in arrays_of(update(algorithm).GetCellData()).items()}
 
-    def warp_image(
-        self,
-        image,
-        shape: Optional[Tuple[int, int]] = None,
-        *,
-        spacing: float = 1.0,
-        background: float = 0.0,
-        inverse: bool = False,
-    ) -> numpy.ndarray:
-        """Warps an image of the source's domain to the target's: samples it at the exact preimages of the
-        pixels, with linear interpolation.
+    def warp_image(self, image, shape: Optional[Tuple[int, int]] = None, *, spacing: float = 1.0, background: float = 0.0,
+                   inverse: bool = False) -> numpy.ndarray:
+        """Warps an image of the source's domain to the target's: samples it at the exact preimages of the pixels, with
+        linear interpolation.
 
         Parameters
         ----------
         image : array of shape (rows, columns) or (rows, columns, channels)
             Pixel [row, column] is the point (column, row) times `spacing` of the source's plane.
         shape : (rows, columns)
-            Shape of the result; that of the image by default. Its pixels are points of the target's plane in
-            the same way.
+            Shape of the result; that of the image by default. Its pixels are points of the target's plane in the same way.
         background : float
             Value of pixels outside.
         inverse : bool
             The image covers the target's domain instead, and the result the source's.
 
-        Returns an array of the type of the image. Integers are rounded, values of a mask of at least 0.5
-        become True, and the parts of complex numbers are interpolated separately.
+        Returns an array of the type of the image. Integers are rounded, and values of a mask of at least 0.5 become True.
         """
         array = numpy.asarray(image)
         if array.ndim not in (2, 3):
-            raise ValueError(
-                f"image must have the shape (rows, columns) or (rows, columns, channels), "
-                f"not {array.shape}"
-            )
-        if array.dtype.kind not in "biufc":
-            raise TypeError(f"image must be an array of numbers, not of {array.dtype}")
-        if array.dtype.kind == "c":
-            options = {"shape": shape, "spacing": spacing, "inverse": inverse}
-            background = complex(background)
-            return (
-                self.warp_image(array.real, background=background.real, **options)
-                + 1j * self.warp_image(array.imag, background=background.imag, **options)
-            ).astype(array.dtype)
-        rows, columns = array.shape[:2]
-        channels = array.shape[2] if array.ndim == 3 else 1
-        out_rows, out_columns = (operator.index(n) for n in (shape if shape else (rows, columns)))
-        if min(rows, columns, channels, out_rows, out_columns) < 1:
+            raise ValueError(f"image must have the shape (rows, columns) or (rows, columns, channels), not {array.shape}")
+        if array.dtype.kind not in "biuf":
+            raise TypeError(f"image must be an array of real numbers, not of {array.dtype}; warp the parts of complex ones")
+        rows, columns, channels = array.reshape(*array.shape[:2], -1).shape if array.size else array.shape + (0,)
+        out_rows, out_columns = map(operator.index, shape or array.shape[:2])
+        if min(array.size, out_rows, out_columns) < 1:
             raise ValueError(f"there are no pixels in {array.shape}, or in the shape {shape}")
         if not (spacing > 0 and math.isfinite(spacing)):
             raise ValueError(f"spacing must be a number greater than 0, not {spacing}")
@@ -356,14 +307,14 @@ class Homeomorphism:
             raise MemoryError(f"an image of {out_rows} x {out_columns} pixels is too large")
         # VTK aborts if there is not enough memory for values, mask and points.
         numpy.empty((out_rows, out_columns, channels + 4))
+        # VTK has integers, float32 and float64.
+        known = array.dtype.kind in "iu" or array.dtype in (numpy.float32, numpy.float64)
+        pixels = numpy.ascontiguousarray(array if known else array.astype(numpy.float64)).reshape(-1, channels)
+        values = numpy_to_vtk(pixels)
+        values.SetName("Values")
         vtk_image = vtkImageData()
         vtk_image.SetDimensions(columns, rows, 1)
         vtk_image.SetSpacing(spacing, spacing, 1.0)
-        # Interpolate as float64, so that small integers are rounded only once.
-        values = numpy_to_vtk(
-            numpy.ascontiguousarray(array, numpy.float64).reshape(-1, channels), deep=1
-        )
-        values.SetName("Values")
         vtk_image.GetPointData().SetScalars(values)
         algorithm = self._set_up(vtkResampleThroughHomeomorphism())
         algorithm.SetDataObject(vtk_image)
@@ -371,13 +322,12 @@ class Homeomorphism:
         algorithm.BlankOutsideOff()
         algorithm.TransformActiveAttributesOff()
         algorithm.SetSamplingDimensions(out_columns, out_rows)
-        algorithm.SetSamplingBounds(
-            0.0, spacing * (out_columns - 1), 0.0, spacing * (out_rows - 1)
-        )
-        output = update(algorithm).GetPointData()
-        warped = numpy.array(vtk_to_numpy(output.GetArray("Values"))).reshape(
-            (out_rows, out_columns) + array.shape[2:]
-        )
-        mask = vtk_to_numpy(output.GetArray("vtkValidPointMask")).reshape(out_rows, out_columns)
-        warped[mask == 0] = background
-        return _cast(warped, array.dtype)
+        algorithm.SetSamplingBounds(0.0, spacing * (out_columns - 1), 0.0, spacing * (out_rows - 1))
+        output = arrays_of(update(algorithm).GetPointData())
+        warped = output["Values"].copy()
+        if array.dtype.kind in "iu":
+            limits = numpy.iinfo(array.dtype)
+            background = min(max(round(background), limits.min), limits.max)
+        warped[output[MASK] == 0] = background
+        warped = warped.reshape((out_rows, out_columns) + array.shape[2:])
+        return warped >= 0.5 if array.dtype.kind == "b" else warped.astype(array.dtype)

@@ -2,51 +2,46 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Data that commands process point by point: tables, vector data, meshes, VTK files, images."""
 
-import functools
+from dataclasses import dataclass
 
 import click
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import images, meshes, options, tables, vectors, vtkfiles
-from .arrays import as_cells
+from .arrays import MASK, as_cells, as_points, make_mesh, points_of
 from .files import PICTURES, TABLES, USAGE, VECTORS, Failure, Input, Output, count, dotted, inform
-from .mapping import MASK, add_array, arrays_of, as_data
+from .mapping import add_array
 
 READ = tuple(dict.fromkeys(TABLES + VECTORS + meshes.READ + vtkfiles.FORMATS + PICTURES))
 WRITE = TABLES + VECTORS + vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
 
-
-def data_options(command):
-    """The output and the options of data; the command takes `data`, a Data."""
-
-    @functools.wraps(command)
-    def wrapped(output, force, output_format, columns, require_inside, crs=None, **rest):
-        output = Output(output, output_format, force, WRITE, "data")
-        return command(data=Data(output, columns, require_inside, crs), **rest)
-
-    return options.add(
-        options.output("The result: of the data's kind (images become .vts), or - for standard output.", "csv"),
-        click.option("--columns", default="", metavar="LIST",
-                     help="Names or numbers (from 1) of a table's coordinate columns, separated by commas (default: "
-                          "usual names, such as x,y,z, E,N or lon,lat; of a table without names, the first two)."),
-        click.option("--require-inside", is_flag=True,
-                     help="Write nothing and fail (status 1) if a point is outside the domain."),
-    )(wrapped)
+data_options = options.add(
+    options.output("The result: of the data's kind (images become .vts), or - for standard output.", "csv", WRITE, "data"),
+    click.option("--columns", default="", metavar="LIST",
+                 help="Names or numbers (from 1) of a table's coordinate columns, separated by commas (default: usual names, "
+                      "such as x,y,z, E,N or lon,lat; of a table without names, the first two)."),
+    click.option("--require-inside", is_flag=True,
+                 help="Write nothing and fail (status 1) if a point is outside the domain."),
+)
 
 
+@dataclass
 class Data:
     """Data that is read, processed and written."""
 
-    def __init__(self, output, columns, require_inside, crs):
-        self.output, self.columns, self.require_inside, self.crs = output, columns, require_inside, crs
+    output: Output
+    columns: str
+    require_inside: bool
+    crs: str = None
+    shift: object = None
+    """That of a triangulation file, whose map uses heights as the third coordinate."""
 
-    def process(self, name, format, work, moves, shift=None, densify=0.0, known_crs=(None, None)):
+    def process(self, name, format, work, moves, densify=0.0, known_crs=(None, None)):
         """Reads the data, processes it and writes it.
 
         work : object with map_points(points) -> images, arrays and map_data(data) -> data, and the count `outside`
         moves : whether points move
-        shift : that of a triangulation file, whose map uses heights as the third coordinate
         """
         input = Input(name, format or "csv")
         kind, target = input.format, self.output.format
@@ -63,11 +58,10 @@ class Data:
             if kind in VECTORS:
                 self._process_vectors(input, work, densify, known_crs)
             elif kind in TABLES:
-                self._process_table(input, work, moves, shift)
+                self._process_table(input, work, moves)
             else:
                 raster = images.read(input) if kind in PICTURES else None
-                data = raster.grid.to_vtk(raster.all()) if raster else meshes.read_data(input)
-                self._write(self._map_data(work, data, shift), work.outside)
+                self._write_mapped(work, raster.grid.to_vtk(raster.all()) if raster else meshes.read_data(input))
 
     def _report(self, outside, noun="point", extra="", mark=f"marked 0 in {MASK}"):
         if outside:
@@ -76,23 +70,22 @@ class Data:
                 raise Failure(message + ".")
             inform(f"{message}: {mark}.")
 
-    def _process_table(self, input, work, moves, shift):
-        table = tables.Table(input, self.columns, with_height=bool(shift and shift.heights))
-        points = table.coordinates
-        wrong = ~numpy.isfinite(points).all(axis=1)
+    def _process_table(self, input, work, moves):
+        table = tables.Table(input, self.columns, with_height=bool(self.shift and self.shift.heights))
+        wrong = ~numpy.isfinite(table.coordinates).all(axis=1)
         extra = f" (of {wrong.sum()}, the coordinates are not finite numbers; the first is point {wrong.argmax()}, counted " \
                 "from 0)" if wrong.any() else ""
         if self.output.format not in TABLES:
-            data = as_data(points)
-            data.SetVerts(as_cells(numpy.arange(len(points))[:, None]))
+            data = make_mesh(table.coordinates)
+            data.SetVerts(as_cells(numpy.arange(len(wrong))[:, None]))
             table.add_columns_to(data)
-            self._write(self._map_data(work, data, shift), work.outside, extra)
+            self._write_mapped(work, data, extra)
             return
-        moved, arrays = work.map_points(points)
+        moved, arrays = work.map_points(table.coordinates)
         mark = f"marked 0 in {MASK}"
         if "Fallback" in arrays:
-            mark += f"; {arrays['Fallback'].sum()} of them are mapped by the file's fallback strategy \"{shift.fallback}\", " \
-                    "marked 1 in Fallback"
+            mark += f"; {arrays['Fallback'].sum()} of them are mapped by the file's fallback strategy " \
+                    f"\"{self.shift.fallback}\", marked 1 in Fallback"
         self._report(work.outside, extra=extra, mark=mark)
         if moves:
             table.move(moved)
@@ -101,25 +94,23 @@ class Data:
         with self.output as output:
             table.write(output)
 
-    def _map_data(self, work, data, shift):
-        """Maps VTK data; for a triangulation file, with heights as the third coordinate."""
-        if shift is None or not isinstance(data, vtkPolyData):
-            return work.map_data(data)
-        points = meshes.points_of(data)
-        moved, arrays = work.map_points(points)
-        flat = vtkPolyData()
-        flat.ShallowCopy(data)
-        flat.SetPoints(meshes.as_points(points[:, :2]))
-        result = work.map_data(flat)
-        # Points outside keep their coordinates.
-        result.SetPoints(meshes.as_points(numpy.where(numpy.isnan(moved), points, moved)))
-        if "Fallback" in arrays:
-            add_array(result, "Fallback", arrays["Fallback"])
-        return result
-
-    def _write(self, result, outside, extra=""):
-        self._report(outside, extra=extra)
-        if self.output.format in meshes.FLAT_WRITE and (arrays_of(result).get(MASK, numpy.ones(1)) == 0).any():
+    def _write_mapped(self, work, data, extra=""):
+        """Maps and writes VTK data; for a triangulation file, with heights as the third coordinate."""
+        if self.shift is None or not isinstance(data, vtkPolyData):
+            result = work.map_data(data)
+        else:
+            points = points_of(data)
+            moved, arrays = work.map_points(points)
+            flat = vtkPolyData()
+            flat.ShallowCopy(data)
+            flat.SetPoints(as_points(points[:, :2])[0])
+            result = work.map_data(flat)
+            # Points outside keep their coordinates.
+            result.SetPoints(as_points(numpy.where(numpy.isnan(moved), points, moved))[0])
+            if "Fallback" in arrays:
+                add_array(result, "Fallback", arrays["Fallback"])
+        self._report(work.outside, extra=extra)
+        if work.outside and self.output.format in meshes.FLAT_WRITE:
             raise Failure(f"Points are outside the domain, which a .{self.output.format} file cannot mark: write a .vtp.")
         with self.output as output:
             meshes.write(result, output)

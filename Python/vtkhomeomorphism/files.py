@@ -6,7 +6,7 @@ import contextlib
 import importlib
 import os
 import shutil
-import signal
+import subprocess
 import sys
 import tempfile
 import uuid
@@ -78,36 +78,21 @@ def import_extra(module, purpose):
     try:
         return importlib.import_module(module)
     except ImportError:
-        text = f"{purpose} needs {module}: install Debian's package python3-{module}, or run pip install {module}."
-        raise Failure(text, FILE) from None
-
-
-_folders = set()
-
-
-def _clean_up_and_stop(number, frame):
-    for folder in _folders:
-        shutil.rmtree(folder, ignore_errors=True)
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
+        name = module.partition(".")[0]
+        raise Failure(f"{purpose} needs {name}: install Debian's package python3-{name}, or run pip install {name}.",
+                      FILE) from None
 
 
 @contextlib.contextmanager
 def scratch_folder(parent=None):
-    """A temporary folder that is removed even if the process is interrupted."""
-    signals = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    before = {number: signal.signal(number, _clean_up_and_stop) for number in signals}
+    """A temporary folder. Another process removes it at the end of this context, or when this process ends in any way: no
+    signal can come too early or too late for it."""
     folder = os.path.join(parent or tempfile.gettempdir(), f".dhm-unfinished-{uuid.uuid4().hex}")
-    # Known before it exists, so that interrupts never leave it.
-    _folders.add(folder)
-    try:
+    remove = "import shutil, sys; sys.stdin.read(); shutil.rmtree(sys.argv[1], True)"
+    with subprocess.Popen([sys.executable, "-ISc", remove, folder], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, start_new_session=True):
         os.mkdir(folder, 0o700)
         yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        _folders.discard(folder)
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 class Input:
@@ -129,10 +114,9 @@ class Input:
                 with open(self.path, "wb") as file:
                     shutil.copyfileobj(sys.stdin.buffer, file)
             open(self.path, "rb").close()
-        except IsADirectoryError:
-            raise Failure(f"Cannot read {self.name}: it is a folder.", FILE) from None
         except OSError as error:
-            raise Failure(f"Cannot read {self.name}: {error.strerror}.", FILE) from None
+            reason = "it is a folder" if isinstance(error, IsADirectoryError) else error.strerror
+            raise Failure(f"Cannot read {self.name}: {reason}.", FILE) from None
         return self
 
     def __exit__(self, *exception):
@@ -149,61 +133,57 @@ class Input:
 
 
 class Output:
-    """A file to write, as a context: `path` is a temporary file that takes the output's name when the context
-    ends without an exception, together with the files beside it. `-` is standard output."""
+    """A file to write, as a context: `path` is a temporary file that takes the output's name when the context ends without
+    an exception, together with the files beside it. `-` is standard output."""
 
     def __init__(self, name, standard_format="", force=False, formats=(), what="data"):
+        self.standard, self.force = name == "-", force
+        self.name = "standard output" if self.standard else name
+        self.special = self.standard or os.path.exists(name) and not os.path.isfile(name)
+        self.format = standard_format if self.standard else format_of(name) or self.special and standard_format
         if not name:
             raise Failure("The name of the output is empty.", USAGE)
-        self.name = "standard output" if name == "-" else name
-        self.special = name == "-" or os.path.exists(name) and not os.path.isfile(name)
-        self.format = standard_format if name == "-" else format_of(name) or self.special and standard_format
-        self.force = force
         if self.format not in formats:
             found = f"has the extension .{self.format}" if self.format else "has no extension"
             raise Failure(f"Cannot write {what} to {self.name}: the name {found}; the formats are {dotted(formats)}.", USAGE)
-        self.target = name if self.special else os.path.realpath(name)
         if os.path.isdir(name):
             raise Failure(f"Cannot write {name}: it is a folder.", FILE)
+        self.target = name if self.special else os.path.realpath(name)
         self.folder = None if self.special else os.path.dirname(self.target)
         if not self.special:
             self._require_new(self.target)
-            try:
+            with self._named_failures():
                 # Found out before the work.
                 tempfile.TemporaryFile(dir=self.folder).close()
-            except OSError as error:
-                raise self._failure(error) from None
 
     def _require_new(self, path):
         if os.path.exists(path) and not self.force:
             raise Failure(f"{path if path != self.target else self.name} exists. Use --force to replace it.", FILE)
 
+    @contextlib.contextmanager
+    def _named_failures(self):
+        try:
+            yield
+        except OSError as error:
+            if self.standard:
+                # Python flushes what is left when it closes standard output, and would end with another status.
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE) from None
+
     def __enter__(self):
         self._stack = contextlib.ExitStack()
-        try:
-            folder = self._stack.enter_context(scratch_folder(self.folder))
-        except OSError as error:
-            raise self._failure(error) from None
+        self._stack.enter_context(self._named_failures())
+        folder = self._stack.enter_context(scratch_folder(self.folder))
         self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
+        self._stack.push(self._commit)
         return self
 
-    def __exit__(self, kind, exception, traceback):
-        with self._stack:
-            try:
-                if kind is None:
-                    self._commit()
-                elif isinstance(exception, OSError):
-                    raise exception
-            except OSError as error:
-                raise self._failure(error) from None
+    def __exit__(self, *exception):
+        return self._stack.__exit__(*exception)
 
-    def _failure(self, error):
-        if self.name == "standard output":
-            # Python flushes what is left when it closes standard output, and would end with another status.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE)
-
-    def _commit(self):
+    def _commit(self, kind, exception, traceback):
+        if kind is not None:
+            return
         folder, main = os.path.split(self.path)
         os.stat(self.path)
         for name in os.listdir(folder):
@@ -214,9 +194,8 @@ class Output:
                 file.flush()
                 file.truncate(size)
         if self.special:
-            standard = self.name == "standard output"
             with open(self.path, "rb") as file, contextlib.ExitStack() as stack:
-                goal = sys.stdout.buffer if standard else stack.enter_context(open(self.target, "wb"))
+                goal = sys.stdout.buffer if self.standard else stack.enter_context(open(self.target, "wb"))
                 shutil.copyfileobj(file, goal)
                 goal.flush()
             return
@@ -229,6 +208,3 @@ class Output:
     def write_bytes(self, data):
         with open(self.path, "wb") as file:
             file.write(data)
-
-    def write_text(self, text):
-        self.write_bytes(text.encode("utf-8", "surrogateescape"))

@@ -7,15 +7,16 @@ import io
 import logging
 import math
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import meshes, vtkfiles
+from .arrays import MASK, points_of
 from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress
-from .mapping import MASK, PointMap, run
+from .mapping import PointMap, run
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 
 TILE = 2048
@@ -28,44 +29,59 @@ WRITE = PICTURES + ("vti",)
 
 @dataclass
 class Grid:
-    """The position of pixels: (x, y) is the center of the left one of the upper row. Rows and columns are parallel to
-    the axes, unless `turn` says how they lie: then pixel (column, row) is the point (column, -row) of the plane, and
-    `turn` an affine map (rasterio.Affine) from there to the ground."""
+    """The position of pixels: that of (column, row) has its center at first + steps @ (column, row). By default, the center
+    of the lower left pixel is (0, 0), and y points upwards."""
 
     width: int
     height: int
-    x: float = 0.0
-    y: float = None
-    dx: float = 1.0
-    dy: float = 1.0
+    first: numpy.ndarray = None
+    steps: numpy.ndarray = field(default_factory=lambda: numpy.diag([1.0, -1.0]))
     crs: object = None
     placed: bool = False
-    """Whether the file is georeferenced; otherwise the center of the lower left pixel is (0, 0)."""
-    turn: object = None
+    """Whether the file is georeferenced."""
 
     def __post_init__(self):
-        if self.y is None:
-            self.y = (self.height - 1) * self.dy
+        if self.first is None:
+            self.first = numpy.array([0.0, self.height - 1.0])
+
+    def at(self, pixels):
+        """The points of pixels (column, row)."""
+        return self.first + pixels @ self.steps.T
 
     @property
     def bounds(self):
         """Lowest and highest x and y of the pixels' centers."""
-        return self.x, self.x + (self.width - 1) * self.dx, self.y - (self.height - 1) * self.dy, self.y
+        corners = self.at(numpy.array([[x, y] for x in (0, self.width - 1) for y in (0, self.height - 1)]))
+        return numpy.column_stack((corners.min(axis=0), corners.max(axis=0))).ravel()
+
+    @property
+    def size(self):
+        return self.width, self.height
 
     def hanging(self):
         """The same pixels with the upper left corner at (0, 0), as QGIS shows images that are not georeferenced."""
-        return replace(self, x=0.5, y=-0.5, dx=1.0, dy=1.0)
+        return Grid(self.width, self.height, numpy.array([0.5, -0.5]))
 
     def part(self, column, row, width, height):
         width, height = min(width, self.width - column), min(height, self.height - row)
-        return replace(self, width=width, height=height, x=self.x + column * self.dx, y=self.y - row * self.dy)
+        return replace(self, width=width, height=height, first=self.at(numpy.array([column, row])))
+
+    def sides(self):
+        """The points of the pixels of the four sides, of shape (n, 2) each."""
+        x, y = numpy.arange(self.width), numpy.arange(self.height)
+        pixels = ((x, 0), (x, self.height - 1), (0, y), (self.width - 1, y))
+        return [self.at(numpy.column_stack(numpy.broadcast_arrays(*side))) for side in pixels]
 
     def to_vtk(self, values=None):
-        """An image, with values of shape (height, width, components)."""
+        """An image, with values of shape (height, width, components), whose first row is the lowest."""
         image = vtkImageData()
         image.SetDimensions(self.width, self.height, 1)
-        image.SetSpacing(self.dx, self.dy, 1.0)
-        image.SetOrigin(self.x, self.bounds[2], 0.0)
+        steps = self.steps * [1, -1]
+        spacing = numpy.hypot(*steps)
+        image.SetSpacing(*spacing, 1.0)
+        image.SetOrigin(*self.at(numpy.array([0, self.height - 1])), 0.0)
+        (a, b), (c, d) = steps / spacing
+        image.SetDirectionMatrix(a, b, 0, c, d, 0, 0, 0, 1)
         if values is not None:
             array = numpy_to_vtk(numpy.ascontiguousarray(values[::-1]).reshape(-1, values.shape[2]))
             array.SetName("Pixels")
@@ -106,14 +122,10 @@ class GdalRaster(Raster):
             for value, color in self.file.colormap(1).items():
                 self.palette[value % 256] = color[:3]
         self.has_alpha = self.file.colorinterp[-1].name == "alpha" or (not self.file.crs and self.bands in (2, 4))
-        self.grid = Grid(self.file.width, self.file.height)
-        t = self.file.transform
+        self.grid, t = Grid(self.file.width, self.file.height), self.file.transform
         if self.file.crs or not t.is_identity:
-            self.grid.crs, self.grid.placed = self.file.crs, True
-            if t.b or t.d or t.a <= 0 or t.e >= 0:
-                self.grid.y, self.grid.turn = 0.0, t * t.translation(0.5, 0.5) * t.scale(1, -1)
-            else:
-                (self.grid.x, self.grid.y), self.grid.dx, self.grid.dy = t * (0.5, 0.5), t.a, -t.e
+            steps = numpy.array([[t.a, t.b], [t.d, t.e]])
+            self.grid = Grid(*self.grid.size, numpy.array([t.c, t.f]) + steps @ [0.5, 0.5], steps, self.file.crs, True)
 
     def window(self, columns, rows):
         pixels = self.file.read(window=(rows, columns))
@@ -123,15 +135,7 @@ class GdalRaster(Raster):
 def read(input):
     """The image in a file. Raises Failure."""
     if input.format in ("vti", "vtk"):
-        image = vtkfiles.read(input)
-        if not isinstance(image, vtkImageData) or image.GetPointData().GetScalars() is None:
-            input.fail(f"it holds a {image.GetClassName()}, not an image with pixels.")
-        (width, height, layers), (dx, dy, _) = image.GetDimensions(), image.GetSpacing()
-        if layers != 1:
-            raise Failure(f"{input.name} has {layers} layers, an image has one.")
-        pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1]
-        left, _, bottom, _, _, _ = image.GetBounds()
-        return Raster(pixels, Grid(width, height, left, bottom + (height - 1) * dy, dx, dy))
+        return _read_vtk(input)
     if input.format not in PICTURES:
         raise Failure(f"Cannot read {input.name} as an image: the formats are {dotted(WRITE)}.", USAGE)
     try:
@@ -139,13 +143,29 @@ def read(input):
             return _read_picture(input)
         raster = GdalRaster(input)
         # Read the end, to detect truncated files.
-        width, height = raster.grid.width, raster.grid.height
+        width, height = raster.grid.size
         raster.window((width - 1, width), (height - 1, height))
         return raster
     except (Failure, MemoryError):
         raise
     except Exception as error:
         input.fail_by(error)
+
+
+def _read_vtk(input):
+    image = vtkfiles.read(input)
+    if not isinstance(image, vtkImageData) or image.GetPointData().GetScalars() is None:
+        input.fail(f"it holds a {image.GetClassName()}, not an image with pixels.")
+    width, height, layers = image.GetDimensions()
+    if layers != 1:
+        raise Failure(f"{input.name} has {layers} layers, an image has one.")
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1]
+    corners = [numpy.array(image.GetPoint(i)[:2]) for i in ((height - 1) * width, (height - 1) * width + width - 1, 0)]
+    steps = numpy.diag(image.GetSpacing()[:2]) * [1, -1]
+    for axis, count in enumerate((width, height)):
+        if count > 1:
+            steps[:, axis] = (corners[1 + axis] - corners[0]) / (count - 1)
+    return Raster(pixels, Grid(width, height, corners[0], steps))
 
 
 def _read_picture(input):
@@ -158,8 +178,8 @@ def _read_picture(input):
         if "16B" in str(image.tile) and image.mode not in ("I", "I;16"):
             # Pillow would reduce 16 bits to 8.
             return Raster(GdalRaster(input).all())
-        kinds = {"P": "RGBA" if "transparency" in image.info else "RGB", "1": "L", "PA": "RGBA"}
         if image.mode not in ("L", "LA", "RGB", "RGBA", "I", "I;16", "F"):
+            kinds = {"P": "RGBA" if "transparency" in image.info else "RGB", "1": "L", "PA": "RGBA"}
             image = image.convert(kinds.get(image.mode, "RGB"))
         pixels = numpy.asarray(image)
     return Raster(pixels.astype(numpy.uint16) if pixels.dtype == numpy.int32 else pixels)
@@ -193,90 +213,75 @@ def read_background(text, format):
 
 def require_overlap(grid, name, mesh, mesh_name):
     """Raises Failure if no pixel of an image is within the mesh's box; warns if hardly any is."""
-    x0, x1, y0, y1 = grid.bounds
-    if grid.turn:
-        corners = numpy.array([grid.turn * corner for corner in ((x0, y0), (x0, y1), (x1, y0), (x1, y1))])
-        (x0, y0), (x1, y1) = corners.min(axis=0), corners.max(axis=0)
-    low, high = (getattr(meshes.points_of(mesh)[:, :2], end)(axis=0) for end in ("min", "max"))
-    sizes = numpy.minimum((x1, y1), high) - numpy.maximum((x0, y0), low)
-    boxes = ", ".join(f"{who} (x from {a[0]:.10g} to {b[0]:.10g}, y from {a[1]:.10g} to {b[1]:.10g})"
-                      for who, a, b in ((name, (x0, y0), (x1, y1)), (mesh_name, low, high)))
+    points = points_of(mesh)[:, :2]
+    a, b = grid.bounds.reshape(2, 2).T, numpy.array([points.min(axis=0), points.max(axis=0)])
+    sizes = numpy.minimum(a[1], b[1]) - numpy.maximum(a[0], b[0])
+    boxes = ", ".join(f"{who} (x from {low[0]:.10g} to {high[0]:.10g}, y from {low[1]:.10g} to {high[1]:.10g})"
+                      for who, (low, high) in ((name, a), (mesh_name, b)))
     if sizes.min() < 0:
         raise Failure(f"{boxes} do not overlap: meshes must be in the image's coordinates (pixels, y upwards).")
-    if sizes.prod() < 0.01 * (x1 - x0) * (y1 - y0):
+    if sizes.prod() < 0.01 * numpy.ptp(a, axis=0).prod():
         inform(f"{boxes} overlap in less than a hundredth of the image: meshes must be in its coordinates.")
 
 
 class Warp:
-    """Warps images from one domain of a pair to the other, sampling at exact preimages, tile by tile. `turns`: those
-    of the grids of the image and of the result."""
+    """Warps images from one domain of a pair to the other, sampling at exact preimages, tile by tile."""
 
-    def __init__(self, pair, settings, inverse=False, turns=(None, None)):
+    def __init__(self, pair, settings, inverse=False):
         pair.require_flat()
-        points = [meshes.points_of(mesh)[:, :2] for mesh in pair.meshes]
-        for side, turn in enumerate(turns[::-1] if inverse else turns):
-            if turn:
-                points[side] = numpy.column_stack(~turn * points[side].T)
-        triangles = meshes.triangles_of(pair.source)
-        pair = replace(pair, meshes=[meshes.make_mesh(p, triangles) for p in points], shift=None)
-        self.data_points, self.grid_points = points[::-1] if inverse else points
-        self.to_data, self.from_data = PointMap(pair, settings, not inverse), PointMap(pair, settings, inverse)
-        self.filter = vtkResampleThroughHomeomorphism()
-        settings.apply(self.filter)
-        self.filter.SetSourceData(pair.source)
-        self.filter.SetTargetData(pair.target)
+        self.pair, self.inverse = replace(pair, shift=None), inverse
+        self.map = PointMap(self.pair, settings, inverse)
+        self.filter = settings.set_up(vtkResampleThroughHomeomorphism(), pair)
         self.filter.SetInverse(inverse)
         self.filter.BlankOutsideOff()
-        edges = numpy.sort(numpy.vstack((triangles[:, :2], triangles[:, 1:], triangles[:, ::2])), axis=1)
+        # The boundary of the domain, in small pieces, in the image and in the result. Masked triangles have their own.
+        triangles = meshes.triangles_of(pair.source)
+        edges = numpy.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, counts = numpy.unique(edges, axis=0, return_counts=True)
-        # Masked triangles have boundaries of their own.
-        self.border = edges if settings.mask_invalid else edges[counts == 1]
+        ends = points_of(pair.meshes[inverse])[edges if settings.mask_invalid else edges[counts == 1], :2]
+        t = numpy.linspace(0, 1, 2 + 8192 // len(ends))[:, None, None]
+        rim = (1 - t) * ends[:, 0] + t * ends[:, 1]
+        self.rims = [rim, self._map(rim.reshape(-1, 2), True).reshape(rim.shape)]
 
-    def image_of(self, grid, mapping, points):
-        """Least and greatest coordinates of the image of a grid's rectangle, and the largest steps between the images
-        of neighbors; None if nothing of it is in the domain. The image is as large as that of its border: the
-        rectangle's, and the part of the mesh's, which has these points, that is inside."""
-        x0, x1, y0, y1 = grid.bounds
-        x, y = numpy.linspace(x0, x1, grid.width), numpy.linspace(y0, y1, grid.height)
-        sides = [numpy.column_stack(numpy.broadcast_arrays(*side)) for side in ((x, y0), (x, y1), (x0, y), (x1, y))]
-        a, b = points[self.border[:, 0]], points[self.border[:, 1]]
-        low, high = numpy.zeros(len(a)), numpy.ones(len(a))
-        for axis, limits in enumerate(((x0, x1), (y0, y1))):
-            with numpy.errstate(divide="ignore", invalid="ignore"):
-                t = [(limit - a[:, axis]) / (b - a)[:, axis] for limit in limits]
-            # Edges on a limit are within it.
-            t = [numpy.where(numpy.isnan(values), end, values) for values, end in zip(t, (-numpy.inf, numpy.inf))]
-            low, high = numpy.maximum(low, numpy.minimum(*t)), numpy.minimum(high, numpy.maximum(*t))
-        meets = low <= high
-        ends = [a[meets] + t[meets, None] * (b - a)[meets] for t in (low, high)]
-        found = mapping.map_points(numpy.vstack(sides + ends))[0]
-        if numpy.isnan(found).all():
+    def _map(self, points, forward):
+        self.map.filter.SetInverse(self.inverse == forward)
+        return self.map.map_points(points)[0]
+
+    def image_of(self, grid, forward):
+        """Points around the image (or the preimage) of a grid's rectangle, and the largest distance of neighbors; None if it
+        is not within the domain. The image is as large as that of its boundary: the rectangle's, and the part of the
+        domain's that is inside."""
+        sides = grid.sides()
+        found = numpy.split(self._map(numpy.vstack(sides), forward), numpy.cumsum([len(side) for side in sides])[:3])
+        here, there = self.rims if forward else self.rims[::-1]
+        pixels = (here - grid.first) @ numpy.linalg.inv(grid.steps).T
+        inside = ((pixels >= -0.5) & (pixels <= numpy.array(grid.size) - 0.5)).all(axis=2)
+        points = numpy.vstack(found + [there[inside]])
+        if numpy.isnan(points).all():
             return None
-        sides = numpy.split(found, numpy.cumsum([len(side) for side in sides]))[:4]
-        steps = numpy.vstack([numpy.abs(numpy.diff(side, axis=0)) for side in sides] + [[[0, 0]]])
-        return numpy.nanmin(found, axis=0), numpy.nanmax(found, axis=0), numpy.nanmax(steps, axis=0)
+        steps = [numpy.diff(line, axis=0).reshape(-1, 2) for line in found + [there]] + [numpy.zeros((1, 2))]
+        return points[numpy.isfinite(points[:, 0])], numpy.nanmax(numpy.abs(numpy.vstack(steps)), axis=0)
 
     def fit_grid(self, raster, size=None, resolution=0.0, crs=None):
         """A grid over the image of a placed raster, with pixels of its size unless that changes by more than 1 %."""
         grid = raster.grid
-        x0, x1, y0, y1 = grid.bounds
-        width, height = min(grid.width, 4000), min(grid.height, 4000)
-        coarse = replace(grid, width=width, height=height, dx=(x1 - x0) / max(1, width - 1), dy=(y1 - y0) / max(1, height - 1))
-        found = self.image_of(coarse, self.from_data, self.data_points)
+        reduced = numpy.minimum(grid.size, 4000)
+        factors = (numpy.array(grid.size) - 1) / numpy.maximum(reduced - 1, 1)
+        found = self.image_of(replace(grid, width=reduced[0], height=reduced[1], steps=grid.steps * factors), True)
         if found is None:
             raise Failure("No pixel of the image is within the mesh.")
-        low, high, _ = found
+        low, high = found[0].min(axis=0), found[0].max(axis=0)
         if size:
-            dx, dy = (high - low) / numpy.maximum(numpy.array(size) - 1, 1)
+            spacing = (high - low) / numpy.maximum(numpy.array(size) - 1, 1)
         else:
-            own = numpy.hypot(grid.width * grid.dx, grid.height * grid.dy) / numpy.hypot(grid.width, grid.height)
-            extent = [numpy.hypot(*numpy.ptp(p, axis=0)) for p in (self.data_points, self.grid_points)]
-            factor = extent[1] / extent[0]
-            dx, dy = (grid.dx, grid.dy) if abs(factor - 1) < 0.01 else (own * factor, own * factor)
-            dx, dy = (resolution, resolution) if resolution else (dx, dy)
+            extents = [numpy.hypot(*numpy.ptp(rim.reshape(-1, 2), axis=0)) for rim in self.rims]
+            factor, spacing = extents[1] / extents[0], numpy.hypot(*grid.steps)
+            if abs(factor - 1) >= 0.01 or not numpy.array_equal(numpy.abs(grid.steps), numpy.diag(spacing)):
+                spacing = numpy.full(2, factor * numpy.hypot(*(grid.size * spacing)) / numpy.hypot(*grid.size))
+            spacing = numpy.full(2, resolution) if resolution else spacing
             # A rounding error must not add a pixel.
-            size = [int(math.ceil(span / d - 1e-6)) + 1 for span, d in zip(high - low, (dx, dy))]
-        return Grid(*size, low[0], high[1], dx, dy, crs, True)
+            size = [int(math.ceil(n - 1e-6)) + 1 for n in (high - low) / spacing]
+        return Grid(*size, numpy.array([low[0], high[1]]), numpy.diag(spacing * [1, -1]), crs, True)
 
     def tiles(self, raster, grid, text="Warping"):
         """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
@@ -287,18 +292,17 @@ class Warp:
     def warp_tile(self, raster, tile):
         shape = (tile.height, tile.width)
         nothing = numpy.zeros((*shape, raster.bands), raster.dtype), numpy.zeros(shape, bool)
-        found = self.image_of(tile, self.to_data, self.grid_points)
+        found = self.image_of(tile, False)
         if found is None:
             return nothing
-        (x0, y0), (x1, y1) = found[0] - found[2], found[1] + found[2]
-        g = raster.grid
-        ends = ((x0 - g.x) / g.dx - 2, (x1 - g.x) / g.dx + 3, (g.y - y1) / g.dy - 2, (g.y - y0) / g.dy + 3)
-        limits = (g.width, g.width, g.height, g.height)
-        c0, c1, r0, r1 = (int(min(max(math.floor(end), 0), limit)) for end, limit in zip(ends, limits))
+        to_pixels = numpy.linalg.inv(raster.grid.steps).T
+        pixels, margin = (found[0] - raster.grid.first) @ to_pixels, found[1] @ numpy.abs(to_pixels) + 2
+        ends = numpy.array([pixels.min(axis=0) - margin, pixels.max(axis=0) + margin + 1])
+        (c0, r0), (c1, r1) = numpy.clip(numpy.floor(ends), 0, raster.grid.size).astype(int).tolist()
         if c0 >= c1 or r0 >= r1:
             return nothing
         window = raster.window((c0, c1), (r0, r1))
-        data = g.part(c0, r0, c1 - c0, r1 - r0).to_vtk(window)
+        data = raster.grid.part(c0, r0, c1 - c0, r1 - r0).to_vtk(window)
         if raster.nodata is not None:
             unknown = numpy.isnan(window) if numpy.isnan(raster.nodata) else window == raster.nodata
             known = numpy_to_vtk((~unknown.any(axis=2)[::-1]).ravel().astype(float), deep=True)
@@ -306,7 +310,7 @@ class Warp:
             data.GetPointData().AddArray(known)
         self.filter.SetDataObject(data)
         self.filter.SetGridData(tile.to_vtk())
-        result = run(self.filter, self.to_data.pair.name).GetPointData()
+        result = run(self.filter, self.pair.name).GetPointData()
         pixels, mask = (vtk_to_numpy(result.GetArray(name)).reshape(*shape, -1)[::-1] for name in ("Pixels", MASK))
         mask = mask[:, :, 0] != 0
         if raster.nodata is not None:
@@ -329,17 +333,13 @@ def brightest(dtype):
 
 def finish(pixels, mask, has_alpha, background, nodata=None):
     """Sets pixels outside to the background: a color, no data, or transparency (adding an alpha band if needed)."""
-    full = brightest(pixels.dtype)
-    colors = pixels.shape[2] - has_alpha
-    fill = numpy.zeros(pixels.shape[2])
-    if nodata is not None:
-        fill[:] = nodata
-    elif background is not None:
+    full, colors = brightest(pixels.dtype), pixels.shape[2] - has_alpha
+    fill = numpy.full(pixels.shape[2], 0.0 if nodata is None else nodata)
+    if nodata is None and background is not None:
         fill[:colors] = numpy.multiply(background if colors == 3 else numpy.mean(background), full)
         fill[colors:] = full
     fill = (numpy.rint(fill) if pixels.dtype.kind in "iu" else fill).astype(pixels.dtype)
-    if not mask.all():
-        pixels = numpy.where(mask[:, :, None], pixels, fill)
+    pixels = pixels if mask.all() else numpy.where(mask[:, :, None], pixels, fill)
     if background is None and nodata is None and not has_alpha and colors <= 3:
         pixels = numpy.dstack((pixels, numpy.where(mask, full, 0).astype(pixels.dtype)))
     return pixels
@@ -352,9 +352,7 @@ def write(pixels, output, grid):
     if format == "vti":
         vtkfiles.write(grid.to_vtk(pixels), output)
     elif deep or format in ("tif", "tiff"):
-        writer = TiffWriter(output, grid, bands, kind, bands in (2, 4))
-        writer.write(0, 0, pixels)
-        writer.close()
+        _write_raster(output, grid, bands, kind, bands in (2, 4), None, [(0, 0, pixels)])
     elif bands > (3 if format in OPAQUE else 4) or not (kind == numpy.uint8 or deep) or bands == 2 and format in OPAQUE:
         raise Failure(f"A .{format} image cannot hold {bands} bands of {kind}: write a .tif or .vti.")
     else:
@@ -367,46 +365,41 @@ def write(pixels, output, grid):
         output.write_bytes(buffer.getbuffer())
 
 
-class TiffWriter:
-    """A TIFF, a GeoTIFF on a georeferenced grid, that is written tile by tile."""
-
-    def __init__(self, output, grid, bands, dtype, has_alpha, nodata=None):
-        rasterio = import_extra("rasterio", f"Writing {output.name}")
-        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-        self.rasterio, self.output = rasterio, output
-        to_ground = grid.turn or rasterio.Affine(grid.dx, 0, grid.x, 0, grid.dy, grid.y)
-        place = {"crs": grid.crs, "transform": to_ground * rasterio.Affine(1, 0, -0.5, 0, -1, 0.5)}
-        self.file = rasterio.open(
-            output.path, "w", driver="PNG" if output.format == "png" else "GTiff", width=grid.width, height=grid.height, count=bands, dtype=dtype,
-            nodata=nodata, tiled=True, blockxsize=512, blockysize=512, compress="deflate", zlevel=1,
-            BIGTIFF="IF_SAFER", num_threads="ALL_CPUS", **(place if grid.placed else {}),
-        )
-        if bands - has_alpha in (1, 3):
-            colors = ["gray"] if bands < 3 else ["red", "green", "blue"]
-            self.file.colorinterp = [rasterio.enums.ColorInterp[name] for name in colors + ["alpha"] * has_alpha]
-
-    def write(self, column, row, pixels):
-        window = self.rasterio.windows.Window(column, row, *pixels.shape[1::-1])
-        self.file.write(numpy.moveaxis(pixels, 2, 0), window=window)
-
-    def close(self):
-        try:
-            self.file.close()
-        except self.rasterio.errors.RasterioError as error:
-            raise Failure(f"Cannot write {self.output.name}: {error}", FILE) from None
+def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
+    """Writes tiles (column, row, pixels) to a TIFF, a GeoTIFF on a georeferenced grid."""
+    rasterio = import_extra("rasterio", f"Writing {output.name}")
+    warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+    x, y = grid.at(numpy.array([-0.5, -0.5]))
+    place = {"crs": grid.crs, "transform": rasterio.Affine(*grid.steps[0], x, *grid.steps[1], y)} if grid.placed else {}
+    file = rasterio.open(
+        output.path, "w", driver="PNG" if output.format == "png" else "GTiff", width=grid.width, height=grid.height,
+        count=bands, dtype=dtype, nodata=nodata, tiled=True, blockxsize=512, blockysize=512, compress="deflate", zlevel=1,
+        BIGTIFF="IF_SAFER", num_threads="ALL_CPUS", **place,
+    )
+    if bands - has_alpha in (1, 3):
+        colors = ["gray"] if bands < 3 else ["red", "green", "blue"]
+        file.colorinterp = [rasterio.enums.ColorInterp[name] for name in colors + ["alpha"] * has_alpha]
+    for column, row, pixels in tiles:
+        window = rasterio.windows.Window(column, row, *pixels.shape[1::-1])
+        file.write(numpy.moveaxis(pixels, 2, 0), window=window)
+    try:
+        file.close()
+    except rasterio.errors.RasterioError as error:
+        raise Failure(f"Cannot write {output.name}: {error}", FILE) from None
 
 
-def write_tiff(output, grid, raster, tiles, background):
-    """Writes the tiles of a warped raster. Outside are the background, the raster's value for no data, transparency,
-    or else a value for no data."""
+def write_warped(warp, raster, grid, output, background):
+    """Warps a raster and writes it. Outside are the background, the raster's value for no data, transparency, or else a
+    value for no data."""
+    if output.format not in ("tif", "tiff"):
+        write(finish(*warp.warp(raster, grid), raster.has_alpha, background), output, grid)
+        return
     nodata, adds_alpha = raster.nodata, False
     if background is None and nodata is None and not raster.has_alpha:
         adds_alpha = raster.dtype in (numpy.uint8, numpy.uint16) and raster.bands in (1, 3)
         nodata = None if adds_alpha else numpy.nan if raster.dtype.kind == "f" else 0
         if nodata == 0:
             inform(f"{output.name}: pixels outside are 0, and 0 is marked as no data.")
-    has_alpha = raster.has_alpha or adds_alpha
-    writer = TiffWriter(output, grid, raster.bands + adds_alpha, raster.dtype, has_alpha, nodata)
-    for column, row, pixels, mask in tiles:
-        writer.write(column, row, finish(pixels, mask, raster.has_alpha, background, nodata))
-    writer.close()
+    tiles = ((column, row, finish(pixels, mask, raster.has_alpha, background, nodata))
+             for column, row, pixels, mask in warp.tiles(raster, grid))
+    _write_raster(output, grid, raster.bands + adds_alpha, raster.dtype, raster.has_alpha or adds_alpha, nodata, tiles)

@@ -11,17 +11,11 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from .arrays import _as_points, _choose, as_cells, update
+from .arrays import as_cells, as_points, choose, points_of, update, values_of
 from .vtkFiltersHomeomorphism import vtkIsomorphicTriangulation
 
-QUALITIES = {
-    name: getattr(vtkIsomorphicTriangulation, name.upper())
-    for name in ("minimum_angle", "concordance", "distortion", "non_obtuse")
-}
-DOMAINS = {
-    name: getattr(vtkIsomorphicTriangulation, name.upper())
-    for name in ("automatic", "outline", "frame", "convex_hull")
-}
+QUALITIES = values_of(vtkIsomorphicTriangulation, "minimum_angle", "concordance", "distortion", "non_obtuse")
+DOMAINS = values_of(vtkIsomorphicTriangulation, "automatic", "outline", "frame", "convex_hull")
 
 
 class IsomorphicTriangulation(NamedTuple):
@@ -176,7 +170,7 @@ def isomorphic_triangulation(
     for port, (points, what) in enumerate(((source, "source"), (target, "target"))):
         figure = vtkPolyData()
         # A copy, so that the points cannot change.
-        vtk_points, own = _as_points(numpy.array(points), what)
+        vtk_points, own = as_points(numpy.array(points), what)
         dimension = max(dimension, own)
         figure.SetPoints(vtk_points)
         figure.SetLines(_cells(segments, len(points), "segments"))
@@ -185,8 +179,8 @@ def isomorphic_triangulation(
     if frame is not None:
         algorithm.SetSourceFrame(*frame[0])
         algorithm.SetTargetFrame(*frame[1])
-    algorithm.SetDomain(_choose(DOMAINS, domain, "domain"))
-    algorithm.SetQuality(_choose(QUALITIES, quality, "quality"))
+    algorithm.SetDomain(choose(DOMAINS, domain, "domain"))
+    algorithm.SetQuality(choose(QUALITIES, quality, "quality"))
     algorithm.SetTargetMinimumAngle(target_minimum_angle)
     algorithm.SetMaximumNumberOfAddedPoints(-1 if maximum_added_points is None else maximum_added_points)
     algorithm.SetMaximumTriangleSize(maximum_triangle_size)
@@ -196,7 +190,7 @@ def isomorphic_triangulation(
     triangles = vtk_to_numpy(outputs[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
     residuals = vtk_to_numpy(outputs[0].GetPointData().GetArray("LandmarkResidual"))
     return IsomorphicTriangulation(
-        *(numpy.array(vtk_to_numpy(mesh.GetPoints().GetData())[:, :dimension]) for mesh in outputs),
+        *(points_of(mesh)[:, :dimension].copy() for mesh in outputs),
         numpy.array(triangles, numpy.int64),
         numpy.array(residuals[: len(source)]),
         algorithm.GetNumberOfAddedPoints(),

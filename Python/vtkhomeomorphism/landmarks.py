@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of landmark pairs: corresponding points of a source and a target domain.
+"""Landmark pairs, corresponding points of a source and a target domain: their files, and the pairs of meshes made of them.
 
 Formats, recognized by their content:
 
@@ -22,6 +22,9 @@ from dataclasses import dataclass, field, replace
 from typing import List, Optional, Sequence, Tuple
 
 import numpy
+
+from .files import FILE, USAGE, Failure, count, import_extra, inform, quote_message
+from .isomorphic import isomorphic_triangulation
 
 _COLUMNS = ("source_x", "source_y", "target_x", "target_y")
 
@@ -94,8 +97,7 @@ def _read_table(lines: List[str], path: str, header: Optional[List[str]], column
             continue
         if len(record) != len(header):
             raise LandmarkFileError(f"{path}, line {line}: {len(record)} fields, where {len(header)} are expected")
-        fields = dict(zip(header, record))
-        values = []
+        fields, values = dict(zip(header, record)), []
         for name in columns:
             try:
                 values.append(float(fields[name]))
@@ -153,8 +155,7 @@ def _read_bigwarp(lines: List[str], path: str) -> Landmarks:
 
 
 def _read_csv(lines: List[str], path: str) -> Landmarks:
-    first = [f.strip().lower() for f in next(csv.reader(lines))]
-    header = first
+    header = first = [f.strip().lower() for f in next(csv.reader(lines))]
     if all(column in first for column in _COLUMNS):
         # As the first line, in small letters.
         lines = [""] + lines[1:]
@@ -192,9 +193,7 @@ def read_landmarks(path) -> Landmarks:
 def read_lines(path, names: Sequence[str]) -> List[List[int]]:
     """Reads constraint lines: one polyline a line, as identifiers of landmarks separated by blanks or commas. Returns
     indices into names."""
-    path = os.fspath(path)
-    index = {name: i for i, name in enumerate(names)}
-    lines = []
+    index, lines = {name: i for i, name in enumerate(names)}, []
     with open(path, encoding="utf-8-sig") as file:
         for number, text in enumerate(file, 1):
             ids = text.replace(",", " ").split()
@@ -203,7 +202,7 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
             unknown = [i for i in ids if i not in index]
             if unknown or len(ids) < 2:
                 what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs at least two landmarks"
-                raise LandmarkFileError(f"{path}, line {number}: {what}")
+                raise LandmarkFileError(f"{os.fspath(path)}, line {number}: {what}")
             lines.append([index[i] for i in ids])
     return lines
 
@@ -221,3 +220,60 @@ def is_landmark_file(path) -> bool:
         return start.split(b"\n", 1)[0].count(b",") >= 3
     words = (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
     return b"FeatureCollection" in start and any(word in start for word in words)
+
+
+def read(file, options) -> Landmarks:
+    """The landmarks of an input of dhm, without those to be left out, in the coordinate reference system asked for."""
+    try:
+        marks = read_landmarks(file.path).without([name for name in options.without.split(",") if name])
+    except LandmarkFileError as error:
+        raise Failure(f"{quote_message(error, file)}.", FILE) from None
+    if marks.left_out:
+        names = ", ".join(f"{name} ({reason})" for name, reason in marks.left_out[:10])
+        inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}"
+               f"{', ...' if len(marks.left_out) > 10 else ''}.")
+    if options.crs and marks.crs and options.crs != marks.crs:
+        rasterio = import_extra("rasterio.warp", f"Taking landmarks from {marks.crs} to {options.crs}")
+        try:
+            target = numpy.column_stack(rasterio.transform(marks.crs, options.crs, *marks.target.T))
+        except Exception as error:
+            raise Failure(f"Cannot take the landmarks from {marks.crs} to {options.crs}: {error}", USAGE) from None
+        marks = replace(marks, target=target)
+    return replace(marks, crs=options.crs or marks.crs)
+
+
+def _frame(grid, points, margin):
+    """The rectangle of the pixels' centers, so that borders go to borders, and of landmarks beyond them, enlarged."""
+    points = numpy.vstack((points, numpy.reshape(grid.hanging().bounds, (2, 2)).T))
+    low, high = points.min(axis=0), points.max(axis=0)
+    return numpy.column_stack((low - margin * (high - low), high + margin * (high - low))).ravel()
+
+
+def triangulate(marks, name, grids, **more):
+    """The IsomorphicTriangulation of landmarks in images with given pixel grids (None: not in an image). Says what was
+    made."""
+    points = [marks.source, marks.target]
+    for side, grid in enumerate(grids):
+        if grid or (side == 0 and marks.image_coordinates):
+            points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
+    # Landmarks may be on a border on one side only: then both borders are moved outwards.
+    for margin in (0.0, 0.01):
+        if grids[0] and not more.get("outlines"):
+            more["frame"] = [grid and _frame(grid, p, margin) for grid, p in zip(grids, points)]
+        try:
+            made = isomorphic_triangulation(*points, **more)
+            break
+        except ValueError as error:
+            if margin or not all(grids):
+                raise Failure(f"{name}: {error}") from None
+    angles, worst = made.report["smallest_angles"], made.suspicious()
+    inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
+           f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "
+           f"{angles[1]:.3g} degrees.")
+    if len(worst):
+        listed = ", ".join(f"{marks.names[i]} ({made.residuals[i]:.4g})" for i in worst)
+        inform(f"{name}: suspicious landmarks, and how far they are in the target from where their neighbors put them: "
+               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without.")
+    for cell, reason in made.left_out:
+        inform(f"{name}: line {cell} is left out: {reason}")
+    return made

@@ -6,16 +6,12 @@
 from dataclasses import dataclass, field, replace
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from . import meshes
-from .arrays import configure, update
+from .arrays import MASK, arrays_of, configure, make_mesh, points_of, update
 from .files import Failure, inform
 from .vtkfiles import take_messages
 from .vtkFiltersHomeomorphism import vtkDifferentiableHomeomorphism
-
-MASK = "vtkValidPointMask"
 
 
 @dataclass
@@ -41,39 +37,33 @@ class Settings:
         inform(f"The coordinate system is {system}{why} (--system).")
         return replace(self, system=system)
 
-    def apply(self, algorithm):
+    def configure(self, algorithm):
+        """The filter, with the options of the map."""
         configure(algorithm, self.system or "smooth", **self.options)
         algorithm.SetMaskInvalidTriangles(self.mask_invalid)
+        return algorithm
+
+    def set_up(self, algorithm, pair):
+        """The filter, with the options of the map and the pair."""
+        self.configure(algorithm)
+        algorithm.SetSourceData(pair.source)
+        algorithm.SetTargetData(pair.target)
+        return algorithm
 
 
-def run(algorithm, name=""):
+def run(algorithm, name):
     """Updates a filter. Raises Failure with its errors, and passes its warnings on."""
     take_messages()
-    prefix = name + ": " if name else ""
     try:
         result = update(algorithm)
     except ValueError as error:
-        raise Failure(f"{prefix}{error}") from None
+        raise Failure(f"{name}: {error}") from None
     warnings = take_messages()
     if algorithm.GetErrorCode() != 0:
-        raise Failure(prefix + warnings)
+        raise Failure(f"{name}: {warnings}")
     if warnings:
-        inform(prefix + warnings)
+        inform(f"{name}: {warnings}")
     return result
-
-
-def as_data(points):
-    """Points as vtkPolyData."""
-    data = vtkPolyData()
-    data.SetPoints(meshes.as_points(points))
-    return data
-
-
-def arrays_of(data):
-    """Numeric point arrays by name, without vtkGhostType."""
-    attributes = data.GetPointData()
-    arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
-    return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName() != "vtkGhostType"}
 
 
 def add_array(data, name, values):
@@ -87,12 +77,8 @@ class PointMap:
     """The map of a pair, for points and data."""
 
     def __init__(self, pair, settings, inverse=False):
-        self.pair, self.settings, self.inverse = pair, settings, inverse
-        self.outside = 0
-        self.filter = vtkDifferentiableHomeomorphism()
-        settings.apply(self.filter)
-        self.filter.SetSourceData(pair.source)
-        self.filter.SetTargetData(pair.target)
+        self.pair, self.settings, self.inverse, self.outside = pair, settings, inverse, 0
+        self.filter = settings.set_up(vtkDifferentiableHomeomorphism(), pair)
         self.filter.SetInverse(inverse)
         self.filter.SetOutputPointsPrecision(self.filter.DOUBLE_PRECISION)
 
@@ -114,41 +100,21 @@ class PointMap:
         """Images of points of shape (n, 2) or (n, 3), NaN outside, and arrays with one element per point by name:
         vtkValidPointMask, those requested of the filter, and `Fallback` for a file with a fallback strategy. For a
         triangulation file, the third coordinate is a height."""
-        shift = self.pair.shift
-        with_ids = self.filter.GetComputeTriangleId()
+        shift, with_ids = self.pair.shift, self.filter.GetComputeTriangleId()
         self.filter.SetComputeTriangleId(with_ids or shift is not None)
-        result = self.map_data(as_data(points[:, :2] if shift else points))
+        result = self.map_data(make_mesh(points[:, :2] if shift else points))
         self.filter.SetComputeTriangleId(with_ids)
-        arrays = arrays_of(result)
-        images = meshes.points_of(result)[:, : points.shape[1]].copy()
+        arrays = arrays_of(result.GetPointData())
+        images = points_of(result)[:, : points.shape[1]].copy()
         images[arrays[MASK] == 0] = numpy.nan
         if shift:
             cells = arrays["TriangleId"] if with_ids else arrays.pop("TriangleId")
-            self._shift(points, images, cells.astype(numpy.int64), arrays)
+            outside = shift.complete(points, images, cells.astype(numpy.int64), self.inverse)
+            if outside is not None:
+                arrays["Fallback"] = outside
             if self.settings.system != "linear" and len(points):
                 self._report_deviation(points, images)
         return images, arrays
-
-    def _shift(self, points, images, cells, arrays):
-        """Maps heights and points outside like PROJ."""
-        shift, flat = self.pair.shift, points[:, :2]
-        if shift.fallback != "none":
-            outside = numpy.flatnonzero((arrays[MASK] == 0) & numpy.isfinite(flat).all(axis=1))
-            cells[outside] = shift.nearest(flat[outside], self.inverse)
-            outside = outside[cells[outside] >= 0]
-            values = shift.source if self.inverse else shift.target
-            images[outside, :2] = shift.interpolate(values, flat[outside], cells[outside], self.inverse)
-            arrays["Fallback"] = numpy.isin(numpy.arange(len(points)), outside).astype(numpy.uint8)
-        inside = cells >= 0
-        if not shift.horizontal:
-            images[inside, :2] = flat[inside]
-        if points.shape[1] == 3:
-            images[:, 2] = numpy.where(inside, points[:, 2], numpy.nan)
-            if shift.offsets is not None:
-                # By the position in the source, in both directions.
-                origins = (images if self.inverse else points)[inside, :2]
-                change = shift.interpolate(shift.offsets, origins, cells[inside])
-                images[inside, 2] += -change if self.inverse else change
 
     def _report_deviation(self, points, images):
         """Informs of the largest distance from Linear, the official meaning of a triangulation file, in meters if

@@ -8,8 +8,9 @@ from types import SimpleNamespace
 
 import click
 
+from . import pair
 from .arrays import BENDINGS, SYSTEMS
-from .files import PICTURES, USAGE, VECTORS, Failure, Input, format_of, set_quiet
+from .files import PICTURES, USAGE, VECTORS, Failure, Input, Output, format_of, set_quiet
 from .images import read, read_size
 from .landmarks import is_landmark_file
 from .mapping import Settings
@@ -25,12 +26,34 @@ class Number(click.FloatRange):
         return number
 
 
+class Size(click.ParamType):
+    """A size in pixels, or None."""
+
+    name = "size"
+
+    def convert(self, value, param, context):
+        return read_size(value) if isinstance(value, str) else value
+
+
 POSITIVE = Number(min=0, min_open=True)
 
 
 def add(*options):
     """A decorator that adds options in the order of the help text."""
     return lambda command: functools.reduce(lambda result, option: option(result), reversed(options), command)
+
+
+def replacing(convert, names, new):
+    """A decorator: the command takes, instead of the options with some names, what `convert` makes of them."""
+
+    def decorate(command):
+        @functools.wraps(command)
+        def wrapped(**given):
+            return command(**{new: convert(*(given.pop(name) for name in names))}, **given)
+
+        return wrapped
+
+    return decorate
 
 
 quiet = click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Print errors only.",
@@ -42,12 +65,14 @@ format_option = click.option("--input-format", default="", metavar="EXTENSION",
                              help="Format of standard input (-); default: json for a pair, csv for data, png for an image.")
 
 
-def output(help, default):
-    """The options --output, --force and --output-format."""
+def output(help, default, formats, what):
+    """The options --output, --force and --output-format; the command takes `output`, an Output."""
     return add(
         click.option("-o", "--output", required=True, metavar="FILE", help=help), force,
         click.option("--output-format", default=default, metavar="EXTENSION", show_default=True,
                      help="Format of standard output (-)."),
+        replacing(lambda name, force, format: Output(name, format, force, formats, what),
+                  ("output", "force", "output_format"), "output"),
     )
 
 
@@ -56,40 +81,37 @@ def pair_files(names):
     files of the pair, the other file if there is one, and the options."""
     others = int(names.startswith("SOURCE [TARGET] "))
 
-    def decorate(command):
-        @functools.wraps(command)
-        def wrapped(files, target_array, target_uv, input_format, working_size, scan, without, **rest):
-            if others and len(files) == 2 and format_of(files[0]) in PICTURES + VECTORS and is_landmark_file(files[1]):
-                files = files[::-1]
-            if not 1 + others <= len(files) <= 2 + others:
-                raise click.UsageError(f"The files are {names}; found {len(files)}")
-            if files.count("-") > 1:
-                raise Failure("Only one of the files can come from standard input.", USAGE)
-            inputs = SimpleNamespace(
-                pair=files[: len(files) - others], other="".join(files[len(files) - others :]), names=names,
-                target_array=target_array, target_uv=target_uv, format=input_format, working_size=read_size(working_size),
-                scan=scan, without=without, crs=None,
-            )
-            inputs.grids = lambda marks: scan_grids(inputs)
-            return command(inputs=inputs, **rest)
+    def read_inputs(files, target_array, target_uv, format, working_size, scan, without):
+        if others and len(files) == 2 and format_of(files[0]) in PICTURES + VECTORS and is_landmark_file(files[1]):
+            files = files[::-1]
+        if not 1 + others <= len(files) <= 2 + others:
+            raise click.UsageError(f"The files are {names}; found {len(files)}")
+        if files.count("-") > 1:
+            raise Failure("Only one of the files can come from standard input.", USAGE)
+        inputs = SimpleNamespace(
+            pair=files[: len(files) - others], other="".join(files[len(files) - others :]), names=names, crs=None,
+            target_array=target_array, target_uv=target_uv, format=format, working_size=working_size, scan=scan,
+            without=without)
+        inputs.grids = lambda marks: scan_grids(inputs)
+        return inputs
 
-        return add(
-            click.argument("files", nargs=-1, metavar=names),
-            click.option("--target-array", default="Target", metavar="NAME", show_default=True,
-                         help="Point array with the target's positions if one file has both meshes."),
-            click.option("--target-uv", is_flag=True,
-                         help="Use the texture coordinates of an OBJ file (vt, without seams) as the target."),
-            click.option("--working-size", default="", metavar="WIDTHxHEIGHT",
-                         help="For xmorph meshes that do not fill their images: the size of xmorph's working image "
-                              "(resulting_size in its session file)."),
-            click.option("--scan", default=(), multiple=True, metavar="FILE",
-                         help="For landmarks in an image's pixels: the image; its rectangle is the source's domain. A second "
-                              "--scan is the target's image."),
-            click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
-            format_option,
-        )(wrapped)
-
-    return decorate
+    return add(
+        click.argument("files", nargs=-1, metavar=names),
+        click.option("--target-array", default="Target", metavar="NAME", show_default=True,
+                     help="Point array with the target's positions if one file has both meshes."),
+        click.option("--target-uv", is_flag=True,
+                     help="Use the texture coordinates of an OBJ file (vt, without seams) as the target."),
+        click.option("--working-size", type=Size(), default="", metavar="WIDTHxHEIGHT",
+                     help="For xmorph meshes that do not fill their images: the size of xmorph's working image "
+                          "(resulting_size in its session file)."),
+        click.option("--scan", default=(), multiple=True, metavar="FILE",
+                     help="For landmarks in an image's pixels: the image; its rectangle is the source's domain. A second "
+                          "--scan is the target's image."),
+        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
+        format_option,
+        replacing(read_inputs, ("files", "target_array", "target_uv", "input_format", "working_size", "scan", "without"),
+                  "inputs"),
+    )
 
 
 def scan_grids(inputs):
@@ -103,49 +125,41 @@ def scan_grids(inputs):
 
 def read_pair(inputs):
     """The pair of the inputs of a command. Reports missing or misplaced files."""
-    from . import pair
-
     try:
         return pair.read(inputs.pair, inputs)
     except Failure as failure:
-        if failure.status == USAGE and inputs.other:
-            last = inputs.names.split()[-1]
-            hint = f"(The files are {inputs.names}: {inputs.other} was taken for {last}.)"
-            raise Failure(f"{failure} {hint}", USAGE) from None
-        raise
+        if failure.status != USAGE or not inputs.other:
+            raise
+        hint = f"(The files are {inputs.names}: {inputs.other} was taken for {inputs.names.split()[-1]}.)"
+        raise Failure(f"{failure} {hint}", USAGE) from None
 
 
 def map_settings(default):
     """Options of the map; the command takes `settings`."""
 
-    def decorate(command):
-        @functools.wraps(command)
-        def wrapped(system, incenter, linear_where_discordant, bending, max_deviation, fairness, tolerance, mask_invalid,
-                    **rest):
-            options = {"center": "incenter" if incenter else "centroid", "discordant_by_linear": linear_where_discordant,
-                       "cubic_bending": bending, "maximum_deviation": max_deviation, "fairness_refinement": fairness,
-                       "tolerance": tolerance}
-            return command(settings=Settings(system or "", mask_invalid, options), **rest)
+    def make(system, bending, max_deviation, fairness, incenter, discordant, tolerance, mask_invalid):
+        return Settings(system or "", mask_invalid, {
+            "center": "incenter" if incenter else "centroid", "discordant_by_linear": discordant, "tolerance": tolerance,
+            "cubic_bending": bending, "maximum_deviation": max_deviation, "fairness_refinement": fairness})
 
-        return add(
-            click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
-                         help="Coordinate system: linear (piecewise), contour (the published construction), smooth (twice "
-                              "continuously differentiable except at vertices) or cubic (continuously differentiable at "
-                              f"vertices too; planar meshes). Default: {default}."),
-            click.option("--bending", type=click.Choice(list(BENDINGS)), default="least", show_default=True,
-                         help="Cubic: least bending, or a local map that depends on nearby vertices only."),
-            click.option("--max-deviation", type=POSITIVE, metavar="DISTANCE",
-                         help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
-            click.option("--fairness", type=click.IntRange(0, 4), default=0, metavar="LEVELS", show_default=True,
-                         help="Cubic: number of times that triangles are divided into four, for less bending."),
-            click.option("--incenter", is_flag=True, help="Contour: start the contours at the incenter."),
-            click.option("--linear-where-discordant", is_flag=True,
-                         help="Contour: map discordant triangles by Linear instead of refusing the pair."),
-            click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
-                         help="Map points outside the domain, up to this distance, like the nearest point of the domain; "
-                              "relative to the diagonal of the domain (default: rounding only)."),
-            mask_option,
-        )(wrapped)
-
-    return decorate
-
+    return add(
+        click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
+                     help="Coordinate system: linear (piecewise), contour (the published construction), smooth (twice "
+                          "continuously differentiable except at vertices) or cubic (continuously differentiable at vertices "
+                          f"too; planar meshes). Default: {default}."),
+        click.option("--bending", type=click.Choice(list(BENDINGS)), default="least", show_default=True,
+                     help="Cubic: least bending, or a local map that depends on nearby vertices only."),
+        click.option("--max-deviation", type=POSITIVE, metavar="DISTANCE",
+                     help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
+        click.option("--fairness", type=click.IntRange(0, 4), default=0, metavar="LEVELS", show_default=True,
+                     help="Cubic: number of times that triangles are divided into four, for less bending."),
+        click.option("--incenter", is_flag=True, help="Contour: start the contours at the incenter."),
+        click.option("--linear-where-discordant", is_flag=True,
+                     help="Contour: map discordant triangles by Linear instead of refusing the pair."),
+        click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
+                     help="Map points outside the domain, up to this distance, like the nearest point of the domain; "
+                          "relative to the diagonal of the domain (default: rounding only)."),
+        mask_option,
+        replacing(make, ("system", "bending", "max_deviation", "fairness", "incenter", "linear_where_discordant",
+                         "tolerance", "mask_invalid"), "settings"),
+    )

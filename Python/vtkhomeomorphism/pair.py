@@ -9,9 +9,10 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from . import meshes, tinshift, xmorph
-from .files import FILE, USAGE, Failure, Input, count, format_of, import_extra, inform, quote_message
-from .landmarks import Landmarks, LandmarkFileError, is_landmark_file, read_landmarks
+from . import landmarks, meshes, tinshift, xmorph
+from .arrays import as_points, make_mesh, points_of
+from .files import FILE, USAGE, Failure, Input, format_of
+from .landmarks import Landmarks
 from .mapping import add_array
 
 FORMATS = ("json", "vtp", "vtk")
@@ -48,9 +49,7 @@ class Pair:
         return " and ".join(dict.fromkeys(self.names))
 
     def name_of(self, side):
-        if self.names[0] != self.names[1]:
-            return self.names[side]
-        return f"the {('source', 'target')[side]} of {self.names[0]}"
+        return self.names[side] if self.names[0] != self.names[1] else f"the {('source', 'target')[side]} of {self.names[0]}"
 
     def is_planar(self):
         """Whether the meshes are in planes, to the rounding of their coordinates."""
@@ -61,7 +60,7 @@ class Pair:
 
     def require_flat(self):
         for mesh, name in zip(self.meshes, self.names):
-            if numpy.ptp(meshes.points_of(mesh)[:, 2]) != 0:
+            if numpy.ptp(points_of(mesh)[:, 2]) != 0:
                 raise Failure(f"{name} is not in a plane parallel to x and y.")
 
 
@@ -86,11 +85,11 @@ def read(files, options):
 def _read_one(name, options):
     with Input(name, options.format or "json") as file:
         names = [file.name, file.name]
-        if file.format in ("csv", "points", "json") and is_landmark_file(file.path):
-            return from_landmarks(read_landmark_file(file, options), file.name, options)[0]
+        if landmarks.is_landmark_file(file.path):
+            return from_landmarks(landmarks.read(file, options), file.name, options)[0]
         if file.format == "json":
             shift = _read_by(tinshift.read, file)
-            both = [meshes.make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
+            both = [make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
             return Pair(both, names, shift=shift, metadata=shift.metadata)
         if options.target_uv:
             if file.format != "obj":
@@ -104,73 +103,15 @@ def _read_one(name, options):
                       f"positions: give the target's file, too, or name the array (--target-array){more}.", USAGE)
     target = vtkPolyData()
     target.CopyStructure(source)
-    target.SetPoints(meshes.as_points(vtk_to_numpy(positions)))
+    target.SetPoints(as_points(vtk_to_numpy(positions).astype(float))[0])
     return Pair([source, target], names)
-
-
-def read_landmark_file(file, options):
-    """The landmarks of a file, without those to be left out, in the coordinate reference system asked for."""
-    try:
-        marks = read_landmarks(file.path).without([name for name in options.without.split(",") if name])
-    except LandmarkFileError as error:
-        raise Failure(f"{quote_message(error, file)}.", FILE) from None
-    if marks.left_out:
-        names = ", ".join(f"{name} ({reason})" for name, reason in marks.left_out[:10])
-        inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}"
-               f"{', ...' if len(marks.left_out) > 10 else ''}.")
-    if options.crs and marks.crs and options.crs != marks.crs:
-        marks = replace(marks, target=_reproject(marks.target, marks.crs, options.crs))
-    return replace(marks, crs=options.crs or marks.crs)
-
-
-def _reproject(points, before, after):
-    rasterio = import_extra("rasterio", f"Taking landmarks from {before} to {after}")
-    from rasterio.warp import transform
-
-    try:
-        return numpy.column_stack(transform(before, after, *points.T))
-    except rasterio.errors.RasterioError as error:
-        raise Failure(f"Cannot take the landmarks from {before} to {after}: {error}", USAGE) from None
-
-
-def _frame(grid, points, margin):
-    """The rectangle of the pixels' centers, so that borders go to borders, and of landmarks beyond them, enlarged."""
-    points = numpy.vstack((points, numpy.reshape(grid.hanging().bounds, (2, 2)).T))
-    low, high = points.min(axis=0), points.max(axis=0)
-    return numpy.column_stack((low - margin * (high - low), high + margin * (high - low))).ravel()
 
 
 def from_landmarks(marks, name, options, **more):
     """The pair made of landmarks, and the IsomorphicTriangulation. Landmarks of images are in pixels, y down, and become
     those of images.Grid.hanging(). Says what was made."""
-    from .isomorphic import isomorphic_triangulation
-
-    points, grids = [marks.source, marks.target], options.grids(marks)
-    for side, grid in enumerate(grids):
-        if grid or (side == 0 and marks.image_coordinates):
-            points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
-    # Landmarks may be on a border on one side only: then both borders are moved outwards.
-    for margin in (0.0, 0.01):
-        if grids[0] and not more.get("outlines"):
-            more["frame"] = [grid and _frame(grid, p, margin) for grid, p in zip(grids, points)]
-        try:
-            made = isomorphic_triangulation(*points, **more)
-            break
-        except ValueError as error:
-            if margin or not all(grids):
-                raise Failure(f"{name}: {error}") from None
-    angles = made.report["smallest_angles"]
-    inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
-           f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "
-           f"{angles[1]:.3g} degrees.")
-    worst = made.suspicious()
-    if len(worst):
-        listed = ", ".join(f"{marks.names[i]} ({made.residuals[i]:.4g})" for i in worst)
-        inform(f"{name}: suspicious landmarks, and how far they are in the target from where their neighbors put them: "
-               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without.")
-    for cell, reason in made.left_out:
-        inform(f"{name}: line {cell} is left out: {reason}")
-    return Pair([meshes.make_mesh(p, made.triangles) for p in made[:2]], [name, name], landmarks=marks), made
+    made = landmarks.triangulate(marks, name, options.grids(marks), **more)
+    return Pair([make_mesh(points, made.triangles) for points in made[:2]], [name, name], landmarks=marks), made
 
 
 def read_mesh(name, format=""):
@@ -178,10 +119,10 @@ def read_mesh(name, format=""):
     with Input(name, format or "json") as file:
         if file.format == "json":
             shift = _read_by(tinshift.read, file)
-            return meshes.make_mesh(shift.source, shift.triangles)
+            return make_mesh(shift.source, shift.triangles)
         if file.format == "mesh":
             grid = _upright(_read_by(xmorph.read, file))
-            return meshes.make_mesh(grid.reshape(-1, 2), xmorph.triangulate(grid, grid))
+            return make_mesh(grid.reshape(-1, 2), xmorph.triangulate(grid, grid))
         return meshes.read(file)
 
 
@@ -203,47 +144,42 @@ def _read_xmorph(files, options):
     for name in files:
         with Input(name, options.format) as file:
             grid = _read_by(xmorph.read, file)
-        end = None
+        end = xmorph.extent(grid) if xmorph.fills_picture(grid) else None
         if options.working_size:
             # Tenths of pixels.
             end = 10.0 * (numpy.array(options.working_size) - 1)
-        elif xmorph.fills_picture(grid):
-            end = xmorph.extent(grid)
         grids.append(_upright(grid, None if end is None else end[1]))
         extents.append(end)
     try:
         triangles = xmorph.triangulate(*grids)
     except ValueError as error:
         raise Failure(f"{' and '.join(files)}: {error}", FILE) from None
-    return Pair([meshes.make_mesh(grid.reshape(-1, 2), triangles) for grid in grids], list(files), extents=extents)
+    return Pair([make_mesh(grid.reshape(-1, 2), triangles) for grid in grids], list(files), extents=extents)
 
 
 def _join_points(pair):
     """Merges points that coincide in both meshes, for meshes whose triangles do not share points."""
-    points = [meshes.points_of(mesh) for mesh in pair.meshes]
+    points = [points_of(mesh) for mesh in pair.meshes]
     triangles = [meshes.triangles_of(mesh) for mesh in pair.meshes]
     if points[0].shape == points[1].shape and numpy.array_equal(*triangles):
         _, kept, joined = numpy.unique(numpy.hstack(points), axis=0, return_index=True, return_inverse=True)
-        pair.meshes = [meshes.make_mesh(p[kept], joined.ravel()[triangles[0]]) for p in points]
+        pair.meshes = [make_mesh(p[kept], joined.ravel()[triangles[0]]) for p in points]
 
 
-def fit_to_pictures(pair, sizes):
-    """Scales xmorph meshes to their images of given width and height in pixels."""
-    if pair.extents is None:
-        return
-    for side, (size, end) in enumerate(zip(sizes, pair.extents)):
+def fit_to_pictures(pair, grids):
+    """Scales xmorph meshes to their images."""
+    for side, (grid, end) in enumerate(zip(grids, pair.extents or ())):
         if end is None or not (numpy.asarray(end) > 0).all():
             raise Failure(f"{pair.names[side]} does not fill its picture, and does not say how large that is: give the size "
                           "of xmorph's working picture (--working-size; in a session's file, resulting_size).", USAGE)
         # Xmorph's units end at the last pixel.
-        factors = (numpy.array(size) - 1) / end
-        points = meshes.points_of(pair.meshes[side])
-        pair.meshes[side] = meshes.make_mesh(points[:, :2] * factors, pair.meshes[side].GetPolys())
+        points = points_of(pair.meshes[side])[:, :2] * ((numpy.array(grid.size) - 1) / end)
+        pair.meshes[side] = make_mesh(points, pair.meshes[side].GetPolys())
 
 
 def write(pair, output, target_array="Target"):
     """Writes both meshes to one file of one of FORMATS."""
-    points = [meshes.points_of(mesh) for mesh in pair.meshes]
+    points = [points_of(mesh) for mesh in pair.meshes]
     if output.format != "json":
         both = vtkPolyData()
         both.ShallowCopy(pair.source)
@@ -254,4 +190,4 @@ def write(pair, output, target_array="Target"):
         if array[:, 2].any():
             raise Failure(f"A triangulation file (.json) holds x and y only, but z is not 0 everywhere in {name}.")
     shift = pair.shift or tinshift.Shift(*(array[:, :2] for array in points), meshes.triangles_of(pair.source))
-    output.write_text(tinshift.text_of(replace(shift, metadata=pair.metadata)))
+    output.write_bytes(tinshift.text_of(replace(shift, metadata=pair.metadata)).encode("utf-8", "surrogateescape"))

@@ -7,6 +7,7 @@ import io
 import numpy
 
 from . import meshes
+from .arrays import points_of
 from .files import import_extra
 
 FORMATS = ("png", "svg", "pdf")
@@ -38,23 +39,20 @@ def new_figure(width, titles, limits, rows=1):
 
 
 def flatten(points):
-    """The two coordinates with the largest extent, and which points are finite."""
-    finite = numpy.isfinite(points).all(axis=1)
-    extent = numpy.ptp(points[finite], axis=0)
-    kept = sorted(numpy.argsort(-extent, kind="stable")[:2]) if extent[2] > 0 else [0, 1]
-    return points[:, kept], finite
+    """The two coordinates with the largest extent."""
+    extent = numpy.nanmax(points, axis=0) - numpy.nanmin(points, axis=0)
+    return points[:, sorted(numpy.argsort(-extent, kind="stable")[:2]) if extent[2] > 0 else [0, 1]]
 
 
 def bounds_of(points, margin=0.03):
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = numpy.nanmin(points, axis=0), numpy.nanmax(points, axis=0)
     pad = margin * (high - low).max() or 1.0
     return low[0] - pad, high[0] + pad, low[1] - pad, high[1] + pad
 
 
 def polygons_of(mesh, points):
     """The polygons' corners, as arrays of shape (k, 2), by cell."""
-    ids, offsets = meshes.polygons_of(mesh)
-    return numpy.split(points[ids], offsets[1:-1])
+    return [points[ids] for ids in meshes.lists_of(mesh.GetPolys())]
 
 
 def draw_polygons(axes, polygons, marker=0.0, **style):
@@ -70,10 +68,9 @@ def draw_polygons(axes, polygons, marker=0.0, **style):
 
 def draw_pair(pair, invalid, discordant, duplicates):
     """The pair, with invalid triangles, discordant triangles of each mesh and duplicate points of each mesh marked."""
-    flat = [flatten(meshes.points_of(mesh)) for mesh in pair.meshes]
-    limits = [bounds_of(points[finite]) for points, finite in flat]
-    figure, axes = new_figure(620, ("Source", "Target"), limits)
-    for side, (points, _) in enumerate(flat):
+    flat = [flatten(points_of(mesh)) for mesh in pair.meshes]
+    figure, axes = new_figure(620, ("Source", "Target"), list(map(bounds_of, flat)))
+    for side, points in enumerate(flat):
         panel, polygons = axes[0][side], polygons_of(pair.meshes[side], points)
         draw_polygons(panel, [polygons[i] for i in discordant[side]], facecolors=DISCORDANT, edgecolors=DISCORDANT)
         draw_polygons(panel, polygons, facecolors="none", edgecolors=EDGE, linewidths=0.7)
@@ -86,8 +83,8 @@ def draw_pair(pair, invalid, discordant, duplicates):
 
 
 def save(figure, output):
-    with output as place:
-        metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(place.format)
+    with output:
         buffer = io.BytesIO()
-        figure.savefig(buffer, format=place.format, dpi=DPI, metadata=metadata)
-        place.write_bytes(buffer.getbuffer())
+        metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(output.format)
+        figure.savefig(buffer, format=output.format, dpi=DPI, metadata=metadata)
+        output.write_bytes(buffer.getbuffer())

@@ -9,7 +9,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import meshes
-from .arrays import SYSTEMS
+from .arrays import SYSTEMS, make_mesh, points_of
 from .files import Failure, count as number
 from .vtkFiltersHomeomorphism import vtkTriangulationPairReport
 from .vtkfiles import take_messages
@@ -107,4 +107,4 @@ def require_map(pair, mask_invalid=False):
     kept = numpy.setdiff1d(numpy.arange(pair.source.GetNumberOfPolys()), report.cells_where(0, "Invalid"))
     triangles = meshes.triangles_of(pair.source)[kept]
     shift = pair.shift and replace(pair.shift, triangles=triangles)
-    return replace(pair, meshes=[meshes.make_mesh(meshes.points_of(mesh), triangles) for mesh in pair.meshes], shift=shift)
+    return replace(pair, meshes=[make_mesh(points_of(mesh), triangles) for mesh in pair.meshes], shift=shift)

@@ -21,6 +21,7 @@ USUAL_NAMES = [
 ]
 """What coordinates are called; the first that a table has are taken."""
 HEIGHT_NAMES = ("z", "h", "height", "altitude", "alt", "elevation", "elev", "hoehe", "höhe")
+ENCODING = {"encoding": "utf-8-sig", "errors": "surrogateescape"}
 
 
 def _number(text):
@@ -43,9 +44,8 @@ class Table:
 
     def __init__(self, input, columns="", with_height=False):
         self.input, self.comments, self.names = input, [], None
-        self.pandas = import_extra("pandas", f"Reading {input.name}")
-        self.encoding = {"encoding": "utf-8-sig", "errors": "surrogateescape"}
-        with open(input.path, **self.encoding) as file:
+        pandas = import_extra("pandas", f"Reading {input.name}")
+        with open(input.path, **ENCODING) as file:
             for self.skipped, first in enumerate(file):
                 if first.startswith("#"):
                     self.comments.append(first)
@@ -53,20 +53,25 @@ class Table:
                     break
             else:
                 input.fail("it has no points.")
-        counts = {c: first.count(c) for c in ",;\t"}
-        self.separator = max(counts, key=counts.get) if any(counts.values()) else " "
+        self.separator = max(",;\t", key=first.count) if re.search("[,;\t]", first) else " "
         try:
-            self.frame = self.pandas.read_csv(
+            self.frame = pandas.read_csv(
                 input.path, sep=self.separator if self.separator != " " else r"\s+", header=None, dtype=str,
                 na_filter=False, skiprows=self.skipped, encoding="utf-8-sig", encoding_errors="surrogateescape",
             )
-        except self.pandas.errors.ParserError as error:
+        except pandas.errors.ParserError as error:
             unfinished = re.search(r"starting at row (\d+)", str(error))
-            where = f"line {self._line(int(unfinished[1]))}: " if unfinished else ""
-            input.fail(where + quote(error) + ".")
+            input.fail((f"line {self._line(int(unfinished[1]))}: " if unfinished else "") + quote(error) + ".")
         self.first = self.frame.iloc[0].tolist()
         self.columns = self._choose_named(columns) if columns else self._choose(with_height)
-        self._take_header(bool(columns))
+        texts = [self.first[column] for column in self.columns]
+        if self.names is None and all(_number(text) is None for text in texts) and not self._has_decimal_commas(0):
+            if not columns:
+                input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x and y: "
+                           "name them (--columns).")
+            self.names = self.first
+        if self.names is not None:
+            self.frame = self.frame.iloc[1:].reset_index(drop=True)
         if not len(self.frame):
             input.fail("it has no points.")
         self.coordinates = numpy.column_stack([self._numbers(column) for column in self.columns])
@@ -105,19 +110,6 @@ class Table:
             raise Failure("Two or three coordinate columns are needed (--columns).", USAGE)
         return chosen
 
-    def _take_header(self, chosen):
-        texts = [self.first[column] for column in self.columns]
-        if self.names is None and None in map(_number, texts[:2]):
-            if self._has_decimal_commas(0):
-                self._fail_at(0, self.columns[0])
-            if all(_number(text) is None for text in texts):
-                if not chosen:
-                    self.input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such "
-                                    "as x and y: name them (--columns).")
-                self.names = self.first
-        if self.names is not None:
-            self.frame = self.frame.iloc[1:].reset_index(drop=True)
-
     def _list(self):
         return quote(", ".join(f'"{name}"' for name in self.first), 300)
 
@@ -144,15 +136,11 @@ class Table:
 
     def _line(self, row):
         """The line of the file where a row of the frame begins, header included."""
-        with open(self.input.path, newline="", **self.encoding) as file:
+        with open(self.input.path, newline="", **ENCODING) as file:
             lines = file.read().splitlines(keepends=True)[self.skipped :]
-        reader, begin = csv.reader(lines, delimiter=self.separator), 0
-        for fields in reader:
-            row -= any(field.strip() for field in fields)
-            if row < 0:
-                break
-            begin = reader.line_num
-        return self.skipped + begin + 1
+        reader = csv.reader(lines, delimiter=self.separator)
+        begins = [0] + [reader.line_num for fields in reader if any(field.strip() for field in fields)]
+        return self.skipped + begins[min(row, len(begins) - 1)] + 1
 
     def _fail_at(self, row, column):
         line = self._line(row + (self.names is not None))
@@ -169,18 +157,16 @@ class Table:
             changed = points[:, k] != self.coordinates[:, k]
             texts[changed] = list(map(repr, points[changed, k].tolist()))
             self.frame[column] = texts
-        self.coordinates = points
 
     def add(self, name, values):
         """Adds columns from an array of shape (n,) or (n, k), replacing those with the same names."""
-        if values.ndim == 2:
-            for k in range(values.shape[1]):
-                self.add(f"{name}_{k}", values[:, k])
-            return
-        known = self.names is not None and name in self.names
-        if self.names is not None and not known:
-            self.names = [*self.names, name]
-        self.frame[self.names.index(name) if known else self.frame.shape[1]] = list(map(repr, values.tolist()))
+        for k, column in enumerate(numpy.atleast_2d(values.T)):
+            own = name if values.ndim == 1 else f"{name}_{k}"
+            place = self.frame.shape[1]
+            if self.names is not None:
+                place = self.names.index(own) if own in self.names else place
+                self.names = self.names[:place] + [own] + self.names[place + 1 :]
+            self.frame[place] = list(map(repr, column.tolist()))
 
     def add_columns_to(self, data):
         """Adds the columns that are not coordinates to the point arrays of a data set, as numbers if all values are."""
@@ -206,8 +192,7 @@ class Table:
         with open(output.path, "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
             file.writelines(self.comments)
             # What would be taken for a comment or a byte order mark is quoted, and fields between blanks.
-            header = self.names or self.frame.iloc[0].tolist()
-            quoted = header[0][:1] in ("#", "\ufeff")
+            quoted = (self.names or self.frame.iloc[0])[0][:1] in ("#", "\ufeff")
             if self.separator == " ":
                 quoted |= self.frame.apply(lambda texts: texts.str.contains("^$|\t")).any(axis=None)
             style = {"quoting": csv.QUOTE_ALL if quoted else csv.QUOTE_MINIMAL}

@@ -58,8 +58,8 @@ class Shift:
         return numpy.einsum("ij,ij...->i...", weights, values[self.triangles[cells]])
 
     def nearest(self, points, inverse=False):
-        """For each point outside, the triangle that the fallback strategy of the file selects; -1 if there is
-        none. Degenerate triangles are skipped, as in PROJ."""
+        """For each point outside, the triangle that the fallback strategy of the file selects; -1 if there is none.
+        Degenerate triangles are skipped, as in PROJ."""
         corners = (self.target if inverse else self.source)[self.triangles]
         ends, centroids = numpy.roll(corners, -1, axis=1), corners.mean(axis=1)
         squared = ((ends - corners) ** 2).sum(axis=2)
@@ -76,6 +76,28 @@ class Shift:
                 distances = ((point - foot) ** 2).sum(axis=2).min(axis=1)
             result[i] = numpy.where(usable, distances, numpy.inf).argmin()
         return result
+
+    def complete(self, points, images, cells, inverse=False):
+        """Adds to the images of points, in triangles (-1: outside), what PROJ does besides: heights are shifted, and points
+        outside mapped by the fallback strategy. Returns a mask of these if there is a strategy."""
+        flat, fallback = points[:, :2], None
+        if self.fallback != "none":
+            outside = numpy.flatnonzero((cells < 0) & numpy.isfinite(flat).all(axis=1))
+            cells[outside] = self.nearest(flat[outside], inverse)
+            outside = outside[cells[outside] >= 0]
+            values = self.source if inverse else self.target
+            images[outside, :2] = self.interpolate(values, flat[outside], cells[outside], inverse)
+            fallback = numpy.isin(numpy.arange(len(points)), outside).astype(numpy.uint8)
+        inside = cells >= 0
+        if not self.horizontal:
+            images[inside, :2] = flat[inside]
+        if points.shape[1] == 3:
+            images[:, 2] = numpy.where(inside, points[:, 2], numpy.nan)
+            if self.offsets is not None:
+                # By the position in the source, in both directions.
+                change = self.interpolate(self.offsets, (images if inverse else points)[inside, :2], cells[inside])
+                images[inside, 2] += -change if inverse else change
+        return fallback
 
     def crs(self, inverse=False, output=True):
         """The coordinate reference system of the domain that is mapped to (or from), or None."""

@@ -4,6 +4,7 @@
 attributes and layers are kept."""
 
 import contextlib
+import importlib
 import io
 
 import numpy
@@ -18,13 +19,11 @@ MARK = "outside"
 def _read(path):
     import geopandas
 
-    if hasattr(geopandas, "list_layers"):
+    try:
         names = geopandas.list_layers(path)["name"]
-    else:
+    except AttributeError:
         # Before geopandas 1.0.
-        import fiona
-
-        names = fiona.listlayers(path)
+        names = importlib.import_module("fiona").listlayers(path)
     return {name: geopandas.read_file(path, layer=name) for name in names}
 
 
@@ -48,23 +47,20 @@ def write(layers, output):
                 options = {"layer": name} if output.format == "gpkg" else {}
                 layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
         # Read again, because GDAL does not tell when a disk is full at the end.
-        written = [len(layer) for layer in _read(output.path).values()]
+        complete = list(map(len, _read(output.path).values())) == list(map(len, layers.values()))
     except OSError:
         raise
     except Exception as error:
         raise Failure(f"Cannot write {output.name}: {quote_message(error, output)}", FILE) from None
-    if written != [len(layer) for layer in layers.values()]:
+    if not complete:
         raise Failure(f"Cannot write {output.name}: features are missing in what was written.", FILE)
 
 
 def divide(points, step):
     """A polygonal line of shape (n, 2) or (n, 3), with points added so that no segment is longer than a step."""
-    lengths = numpy.hypot(*numpy.diff(points[:, :2], axis=0).T)
-    parts = numpy.maximum(1, numpy.ceil(lengths / step)).astype(int)
-    begins = numpy.repeat(numpy.arange(len(parts)), parts)
-    t = (numpy.arange(len(begins)) - numpy.repeat(numpy.cumsum(parts) - parts, parts)) / parts[begins]
-    between = points[begins] + t[:, None] * (points[begins + 1] - points[begins])
-    return numpy.vstack((between, points[-1:]))
+    parts = numpy.maximum(1, numpy.ceil(numpy.hypot(*numpy.diff(points[:, :2], axis=0).T) / step)).astype(int)
+    ends = numpy.concatenate(([0], numpy.cumsum(parts)))
+    return numpy.column_stack([numpy.interp(numpy.arange(ends[-1] + 1), ends, column) for column in points.T])
 
 
 def map_layers(layers, map_points, densify=0.0):
@@ -72,12 +68,12 @@ def map_layers(layers, map_points, densify=0.0):
     images, NaN outside. Returns the layers, and the number of features that are not entirely inside the domain."""
     from shapely.ops import transform
 
-    collected, begin, outside = [], 0, 0
+    collected, begin = [], 0
 
     def collect(*coordinates):
         points = numpy.column_stack(coordinates)
         points = divide(points, densify) if densify and len(points) > 1 else points
-        collected.append(numpy.column_stack((points, numpy.zeros((len(points), 3 - points.shape[1])))))
+        collected.append(numpy.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
         return tuple(points.T)
 
     def replace(*coordinates):
@@ -85,21 +81,22 @@ def map_layers(layers, map_points, densify=0.0):
         begin, end = begin + len(coordinates[0]), begin
         return tuple(images[end:begin, : len(coordinates)].T)
 
+    def map_shape(shape):
+        """The mapped shape, and whether a part of it is outside; it is empty then."""
+        first, mapped = begin, shape if shape is None or shape.is_empty else transform(replace, shape)
+        is_lost = bool(lost[first:begin].any())
+        return (type(shape)() if is_lost else mapped), is_lost
+
     divided = {name: [s if s is None or s.is_empty else transform(collect, s) for s in layer.geometry]
                for name, layer in layers.items()}
     images = map_points(numpy.vstack(collected) if collected else numpy.empty((0, 3)))
     lost = numpy.isnan(images[:, :2]).any(axis=1)
     images[lost] = 0.0
-    result = {}
+    result, outside = {}, 0
     for name, layer in layers.items():
-        shapes, marks = [], []
-        for shape in divided[name]:
-            first = begin
-            mapped = shape if shape is None or shape.is_empty else transform(replace, shape)
-            marks.append(int(lost[first:begin].any()))
-            shapes.append(type(shape)() if marks[-1] else mapped)
-        outside += sum(marks)
-        result[name] = layer.set_geometry(shapes, crs=layer.crs)
+        shapes, marks = zip(*map(map_shape, divided[name])) if divided[name] else ((), ())
+        result[name] = layer.set_geometry(list(shapes), crs=layer.crs)
         if any(marks):
-            result[name][MARK] = marks
+            result[name][MARK] = numpy.array(marks, int)
+            outside += sum(marks)
     return result, outside

@@ -4,12 +4,14 @@
 success: damaged files crash some of VTK's readers or block them for minutes, so a child process tries first."""
 
 import os
+import re
 import subprocess
 import sys
 
 import numpy
 import vtkmodules.vtkIOLegacy as legacy
 import vtkmodules.vtkIOXML as xml
+from vtkmodules.numpy_interface.dataset_adapter import CompositeDataSet
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet, vtkPolyData, vtkUnstructuredGrid
@@ -17,33 +19,23 @@ from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 from .files import FILE, USAGE, Failure, quote
 
-XML = ("vtp", "vtu", "vts", "vtr", "vti", "vtm", "vtmb", "vtpd", "vtpc")
-FORMATS = XML + ("vtk", "stl")
+FORMATS = ("vtp", "vtu", "vts", "vtr", "vti", "vtm", "vtmb", "vtpd", "vtpc", "vtk", "stl")
 SECONDS, SECONDS_A_MEGABYTE = 10, 2
 """How long reading may take."""
 
-_messages = []
-
-
 def capture_messages():
     """Keeps VTK's errors and warnings from standard error."""
-
-    def collect(caller, event, text=""):
-        # VTK's prefix contains the position in the C++ source.
-        _messages.append(text.split("): ", 1)[-1].strip())
-
-    collect.CallDataType = "string0"
-    window = vtkStringOutputWindow()
-    for event in ("ErrorEvent", "WarningEvent"):
-        window.AddObserver(event, collect)
-    vtkOutputWindow.SetInstance(window)
+    vtkOutputWindow.SetInstance(vtkStringOutputWindow())
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
 
 
 def take_messages():
-    messages = [message for message in _messages if "returned failure for request" not in message]
-    _messages.clear()
-    return "\n".join(dict.fromkeys(messages))
+    """What was captured since the last call, without VTK's prefixes, the positions in its source."""
+    window = vtkOutputWindow.GetInstance()
+    text = window.GetOutput() if isinstance(window, vtkStringOutputWindow) else ""
+    capture_messages()
+    messages = re.findall(r" line \d+\n(?:\S+ \(\w+\): )?(.*?)\n\n", text, re.DOTALL)
+    return "\n".join(dict.fromkeys(m.strip() for m in messages if "returned failure for request" not in m))
 
 
 def _read(path, format):
@@ -67,36 +59,30 @@ def _read(path, format):
 
 def leaves_of(data):
     """The data sets of a tree, or the data set itself."""
-    if not isinstance(data, vtkCompositeDataSet):
-        return [data] if isinstance(data, vtkDataSet) else []
-    leaves, iterator = [], data.NewIterator()
-    iterator.InitTraversal()
-    while not iterator.IsDoneWithTraversal():
-        leaves.append(iterator.GetCurrentDataObject())
-        iterator.GoToNextItem()
-    return leaves
+    if isinstance(data, vtkCompositeDataSet):
+        return [leaf.VTKObject for leaf in CompositeDataSet(data)]
+    return [data] if isinstance(data, vtkDataSet) else []
 
 
 def _find_bad_cell(data):
     """A defect of the point ids of cells. VTK's readers do not check them, and invalid ids would be read out of bounds."""
     for leaf in leaves_of(data):
-        first = 0
+        first, last = 0, leaf.GetNumberOfPoints() - 1
         names = ("Verts", "Lines", "Polys", "Strips") if isinstance(leaf, vtkPolyData) else ("Cells",)
         for name in names if isinstance(leaf, (vtkPolyData, vtkUnstructuredGrid)) else ():
             cells = getattr(leaf, "Get" + name)()
             if cells is None or cells.GetNumberOfCells() == 0:
                 continue
-            ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
-            sizes = numpy.diff(offsets)
-            if offsets[0] != 0 or (sizes < 0).any() or offsets[-1] != len(ids):
+            if not cells.IsValid():
                 return "the offsets that say where each cell's points begin are wrong."
-            bad = (ids < 0) | (ids >= leaf.GetNumberOfPoints())
+            ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+            sizes, bad = numpy.diff(offsets), (ids < 0) | (ids > last)
             if bad.any():
                 cell = first + int(numpy.searchsorted(offsets, bad.argmax(), "right")) - 1
-                return f"cell {cell} has the point {ids[bad.argmax()]}, but points go from 0 to {leaf.GetNumberOfPoints() - 1}."
+                return f"cell {cell} has the point {ids[bad.argmax()]}, but points go from 0 to {last}."
             if name in ("Polys", "Strips") and sizes.min() < 3:
                 return f"cell {first + sizes.argmin()} is a polygon of {sizes.min()} points."
-            first += cells.GetNumberOfCells()
+            first += len(sizes)
     return ""
 
 
@@ -122,8 +108,8 @@ def write(data, output):
     writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
     right = writer.GetDefaultFileExtension() if writer else "vtk"
     if output.format not in ("vtk", right):
-        text = f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}."
-        raise Failure(text, USAGE)
+        raise Failure(f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}.",
+                      USAGE)
     take_messages()
     if output.format == "vtk":
         writer = legacy.vtkGenericDataObjectWriter()

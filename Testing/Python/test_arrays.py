@@ -162,7 +162,7 @@ class Arrays(unittest.TestCase):
     def test_points_are_not_copied(self):
         for real in (numpy.float64, numpy.float32):
             points = numpy.zeros((10, 3), real)
-            shared = vtk_to_numpy(arrays._as_points(points, "points")[0].GetData())
+            shared = vtk_to_numpy(arrays.as_points(points, "points")[0].GetData())
             self.assertTrue(numpy.shares_memory(points, shared))
 
     def test_what_is_given_is_left_alone(self):

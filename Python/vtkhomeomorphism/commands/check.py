@@ -8,16 +8,16 @@ import math
 import click
 import numpy
 
-from .. import meshes, options, plots
-from ..arrays import SYSTEMS
+from .. import options, plots
+from ..arrays import SYSTEMS, make_mesh, points_of
 from ..files import Failure, Output, inform
-from ..mapping import PointMap, Settings, as_data, ground_distances
+from ..mapping import PointMap, Settings, ground_distances
 from ..report import Report
 
 
 def find_duplicates(mesh):
     """Ids of points with the coordinates of a previous point."""
-    points = meshes.points_of(mesh)
+    points = points_of(mesh)
     _, first = numpy.unique(points, axis=0, return_index=True)
     return numpy.setdiff1d(numpy.arange(len(points)), first).tolist()
 
@@ -37,9 +37,9 @@ def describe(report, pair):
         if "smallest_determinant" not in found.get(name, ()):
             found.pop(name, None)
         elif crs:
-            point = as_data(numpy.array([[found[name][f"deviation_from_linear_{axis}"] for axis in "xy"]]))
+            point = make_mesh(numpy.array([[found[name][f"deviation_from_linear_{axis}"] for axis in "xy"]]))
             both = [Settings(system, True, {"discordant_by_linear": True}) for system in (name, "linear")]
-            images = [meshes.points_of(PointMap(pair, settings).map_data(point))[:, :2] for settings in both]
+            images = [points_of(PointMap(pair, settings).map_data(point))[:, :2] for settings in both]
             distances, unit = ground_distances(*images, crs)
             if unit == "meters":
                 found[name]["deviation_in_meters"] = distances[0]

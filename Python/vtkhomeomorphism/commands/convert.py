@@ -7,42 +7,40 @@ import click
 from .. import meshes, options, pair, report
 from ..files import USAGE, Failure, Output
 
-
-def crs_options(command):
-    """Names of coordinate reference systems in triangulation files, and of the array in others."""
-    return options.add(
-        click.option("--output-array", default="Target", metavar="NAME", show_default=True,
-                     help="Name of the point array with the target's positions."),
-        click.option("--input-crs", metavar="CRS", help="Name of the source's coordinate reference system (.json)."),
-        click.option("--output-crs", metavar="CRS", help="Name of the target's coordinate reference system (.json)."),
-    )(command)
-
-
-def describe(metadata, input_crs, output_crs):
-    metadata.update({k: v for k, v in (("input_crs", input_crs), ("output_crs", output_crs)) if v})
+crs_options = options.add(
+    click.option("--output-array", default="Target", metavar="NAME", show_default=True,
+                 help="Name of the point array with the target's positions."),
+    click.option("--input-crs", metavar="CRS", help="Name of the source's coordinate reference system (.json)."),
+    click.option("--output-crs", metavar="CRS", help="Name of the target's coordinate reference system (.json)."),
+    options.replacing(lambda source, target: {name: crs for name, crs in (("input_crs", source), ("output_crs", target))
+                                              if crs}, ("input_crs", "output_crs"), "systems"),
+)
+"""Names of coordinate reference systems in triangulation files (`systems`), and of the array in others."""
 
 
 @click.command("convert")
 @options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk with the target's positions as a point "
-                "array; with --target-output, the source only: .vtp .vtk .obj .off .ply.", "json")
+                "array; with --target-output, the source only: .vtp .vtk .obj .off .ply.", "json",
+                ("json",) + meshes.WRITE, "a pair")
 @click.option("--target-output", default="", metavar="FILE", help="Write the target to a separate file.")
 @crs_options
 @options.mask_option
 @options.pair_files("SOURCE [TARGET]")
 @options.quiet
-def command(inputs, output, force, output_format, target_output, output_array, input_crs, output_crs, mask_invalid):
+def command(inputs, output, target_output, output_array, systems, mask_invalid):
     """Write a pair in another format."""
-    if target_output == output:
-        raise Failure(f"Source and target cannot both be written to {output} (--target-output).", USAGE)
+    if target_output == output.name:
+        raise Failure(f"Source and target cannot both be written to {output.name} (--target-output).", USAGE)
+    if (output.format in meshes.FLAT_WRITE) > bool(target_output) or target_output and output.format == "json":
+        raise Failure(f"Cannot write {'the source' if target_output else 'both meshes'} to {output.name}: one file of both is "
+                      "a .json, .vtp or .vtk, two files (--target-output) are .vtp, .vtk, .obj, .off or .ply.", USAGE)
     both = options.read_pair(inputs)
-    describe(both.metadata, input_crs, output_crs)
+    both.metadata.update(systems)
     if target_output:
-        outputs = [Output(name, output_format, force, meshes.WRITE, "a mesh") for name in (output, target_output)]
-        with outputs[0] as first, outputs[1] as second:
-            meshes.write(both.source, first)
+        with output, Output(target_output, output.format, output.force, meshes.WRITE, "a mesh") as second:
+            meshes.write(both.source, output)
             meshes.write(both.target, second)
         return
-    what = "a pair (with --target-output also .obj, .off and .ply)"
-    with Output(output, output_format, force, pair.FORMATS, what) as place:
+    with output:
         # PROJ does not check triangulation files.
-        pair.write(report.require_map(both, mask_invalid) if place.format == "json" else both, place, output_array)
+        pair.write(report.require_map(both, mask_invalid) if output.format == "json" else both, output, output_array)

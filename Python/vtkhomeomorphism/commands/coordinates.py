@@ -5,8 +5,9 @@
 import click
 
 from .. import options, pair
-from ..data import data_options
-from ..mapping import arrays_of, as_data, run
+from ..arrays import arrays_of, make_mesh
+from ..data import Data, data_options
+from ..mapping import run
 from ..vtkFiltersHomeomorphism import vtkTriangularCoordinates
 
 
@@ -15,8 +16,7 @@ class Coordinates:
 
     def __init__(self, mesh, settings, name):
         self.name = name
-        self.filter = vtkTriangularCoordinates()
-        settings.apply(self.filter)
+        self.filter = settings.configure(vtkTriangularCoordinates())
         self.filter.SetInputDataObject(0, mesh)
         self.filter.GenerateLinesOff()
 
@@ -27,7 +27,7 @@ class Coordinates:
         return result
 
     def map_points(self, points):
-        return points, arrays_of(self.map_data(as_data(points)))
+        return points, arrays_of(self.map_data(make_mesh(points)).GetPointData())
 
 
 @click.command("coordinates")
@@ -36,11 +36,11 @@ class Coordinates:
 @data_options
 @options.map_settings("smooth")
 @options.quiet
-def command(files, input_format, data, settings):
+def command(files, input_format, output, columns, require_inside, settings):
     """Attach triangular coordinates in a mesh to points.
 
     MESH is the triangulation (the source of a pair in one file). DATA is the same as for dhm map. The arrays are
     TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1
     on the edge) and vtkValidPointMask."""
-    mesh = pair.read_mesh(files[0], input_format)
-    data.process(files[1], input_format, Coordinates(mesh, settings, files[0]), moves=False)
+    work = Coordinates(pair.read_mesh(files[0], input_format), settings, files[0])
+    Data(output, columns, require_inside).process(files[1], input_format, work, moves=False)

@@ -5,7 +5,7 @@
 import click
 
 from .. import options
-from ..data import data_options
+from ..data import Data, data_options
 from ..mapping import PointMap
 
 
@@ -26,8 +26,8 @@ from ..mapping import PointMap
 @click.option("--keep-vectors", is_flag=True, help="Do not transform active vectors, normals and tensors.")
 @options.pair_files("SOURCE [TARGET] DATA")
 @options.quiet
-def command(inputs, data, settings, inverse, densify, jacobian, determinant, triangle_id, transform_all_vectors,
-            keep_vectors):
+def command(inputs, output, columns, require_inside, settings, inverse, crs, densify, jacobian, determinant, triangle_id,
+            transform_all_vectors, keep_vectors):
     """Map data from the source's domain to the target's.
 
     DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl), a
@@ -36,7 +36,7 @@ def command(inputs, data, settings, inverse, densify, jacobian, determinant, tri
 
     Points outside the domain become nan and have the value 0 in vtkValidPointMask; features outside become empty. For a
     PROJ triangulation file, heights (a third coordinate) and the fallback strategy are handled as in PROJ."""
-    inputs.crs = None if inverse else data.crs
+    inputs.crs = None if inverse else crs
     pair = options.read_pair(inputs)
     work = PointMap(pair, settings.choose(pair), inverse)
     work.filter.SetComputeJacobian(jacobian)
@@ -44,9 +44,8 @@ def command(inputs, data, settings, inverse, densify, jacobian, determinant, tri
     work.filter.SetComputeTriangleId(triangle_id)
     work.filter.SetTransformAllInputVectors(transform_all_vectors)
     work.filter.SetTransformActiveAttributes(not keep_vectors)
-    shift = pair.shift
-    crs = (shift.crs(inverse, output=False), shift.crs(inverse)) if shift else (None, None)
+    known = (pair.shift.crs(inverse, output=False), pair.shift.crs(inverse)) if pair.shift else (None, None)
     if pair.landmarks and pair.landmarks.crs:
         # Pixels have no coordinate reference system.
-        crs = (pair.landmarks.crs, "") if inverse else (None, pair.landmarks.crs)
-    data.process(inputs.other, inputs.format, work, True, shift, densify, crs)
+        known = (pair.landmarks.crs, "") if inverse else (None, pair.landmarks.crs)
+    Data(output, columns, require_inside, crs, pair.shift).process(inputs.other, inputs.format, work, True, densify, known)

@@ -79,7 +79,8 @@ def blend(first, second, t):
               help="Number of frames, including the first and the last.")
 @click.option("--path", type=click.Choice(list(PATHS)), default="best", show_default=True,
               help="Paths of the points: straight, rotating with the mesh as a whole, or the one with fewer folds.")
-@click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source image's).")
+@click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT",
+              help="Size of the frames (default: the source image's).")
 @background_option
 @options.map_settings("cubic; on surfaces smooth; for a PROJ triangulation file linear")
 @options.pair_files("SOURCE [TARGET]")
@@ -88,27 +89,25 @@ def command(inputs, output, force, source_image, target_image, data, frames, pat
     """Morph images or data from the source to the target, in frames.
 
     If a triangle is folded in a frame, nothing is written (status 1)."""
-    names = (source_image, target_image)
-    format = format_of(output)
-    if any(names) and data:
-        raise Failure("Morph either images or data (--data), not both.", USAGE)
-    if not any(names) and format in PICTURES:
-        raise Failure(f"Meshes and data are not images (.{format}): give --source-image or --target-image, or write .vtp.",
-                      USAGE)
-    if format_of(data) in TABLES:
-        raise Failure(f"{data} is a table, which has to become a .vtp first: dhm coordinates SOURCE {data} -o points.vtp.",
-                      USAGE)
+    names, format = (source_image, target_image), format_of(output)
+    for wrong, message in (
+            (any(names) and data, "Morph either images or data (--data), not both."),
+            (not any(names) and format in PICTURES, f"Meshes and data are not images (.{format}): give --source-image or "
+             "--target-image, or write .vtp."),
+            (format_of(data) in TABLES, f"{data} is a table, which has to become a .vtp first: dhm coordinates SOURCE {data} "
+             "-o points.vtp.")):
+        if wrong:
+            raise Failure(message, USAGE)
     known = images.WRITE if any(names) else vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
     outputs = [Output(name, "", force, known, "frames") for name in frame_names(output, frames)]
     color = images.read_background(background, format) if any(names) else None
-    size = images.read_size(size)
     rasters = {}
     for side, name in enumerate(names):
         if name:
             with Input(name) as file:
                 rasters[side] = images.read(file)
-    first = rasters.get(0, rasters.get(1))
-    if first:
+    if rasters:
+        first = rasters.get(0, rasters.get(1))
         inputs.grids = lambda marks: [rasters.get(side, first).grid for side in (0, 1)]
     both = options.read_pair(inputs)
     settings = settings.choose(both, "cubic")
@@ -118,25 +117,22 @@ def command(inputs, output, force, source_image, target_image, data, frames, pat
             things = meshes.read_data(file)
     if rasters:
         grid = images.Grid(*size) if size else first.grid
-        if both.landmarks:
-            grid = grid.hanging()
-            for raster in rasters.values():
-                raster.grid = raster.grid.hanging()
-        grids = [rasters[side].grid if side in rasters else grid for side in (0, 1)]
-        pair.fit_to_pictures(both, [(g.width, g.height) for g in grids])
+        pair.fit_to_pictures(both, [rasters[side].grid if side in rasters else grid for side in (0, 1)])
         for side, raster in rasters.items():
+            raster.grid = raster.grid.hanging() if both.landmarks else raster.grid
             images.require_overlap(raster.grid, names[side], both.meshes[side], both.name_of(side))
+        grid = grid.hanging() if both.landmarks else grid
     times = [k / (frames - 1) for k in range(frames)]
     steps = zip(times, outputs, make_meshes(both, settings.mask_invalid, path, times))
     for t, frame, mesh in progress(list(steps), "Morphing"):
         moving = {side: replace(both, meshes=[both.meshes[side], mesh], shift=None) for side in (0, 1)}
-        with frame as place:
+        with frame:
             if not rasters:
-                meshes.write(PointMap(moving[0], settings).map_data(things), place)
+                meshes.write(PointMap(moving[0], settings).map_data(things), frame)
                 continue
             warped = [images.Warp(moving[side], settings).warp(raster, grid, "") for side, raster in rasters.items()]
             pixels, mask = warped[0]
             if len(warped) == 2:
                 pixels, mask = blend(pixels, warped[1][0], t), mask & warped[1][1]
             has_alpha = all(raster.has_alpha for raster in rasters.values())
-            images.write(images.finish(pixels, mask, has_alpha, color), place, grid)
+            images.write(images.finish(pixels, mask, has_alpha, color), frame, grid)

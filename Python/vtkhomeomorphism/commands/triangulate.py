@@ -4,13 +4,12 @@
 
 import click
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .. import options, pair, vtkfiles
-from ..files import FILE, USAGE, Failure, Input, Output
+from .. import landmarks, meshes, options, pair, vtkfiles
+from ..arrays import points_of
+from ..files import FILE, USAGE, Failure, Input
 from ..isomorphic import DOMAINS, QUALITIES
 from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lines
-from ..meshes import points_of
 
 
 def read_figures(names):
@@ -24,17 +23,13 @@ def read_figures(names):
             if data.GetClassName() != "vtkPolyData":
                 file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
             figures.append(data)
-    cells, others = ([_lists(figure.GetPolys()), _lists(figure.GetLines())] for figure in figures)
+    cells, others = ([[ids.tolist() for ids in meshes.lists_of(cells)] for cells in (figure.GetPolys(), figure.GetLines())]
+                     for figure in figures)
     points = [points_of(figure) for figure in figures]
     if cells != others or len(points[0]) != len(points[1]):
         raise Failure(f"{names[0]} and {names[1]} have different cells or numbers of points: a figure is drawn twice.")
     flat = [p[:, :2] if numpy.ptp(p[:, 2]) == 0 else p for p in points]
     return Landmarks(*flat, [str(i) for i in range(len(points[0]))]), *cells
-
-
-def _lists(cells):
-    ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
-    return [part.tolist() for part in numpy.split(ids, offsets[1:-1])] if len(ids) else []
 
 
 def are_loops(lines):
@@ -63,7 +58,7 @@ def print_report(made, marks):
 
 @click.command("triangulate")
 @options.output("The pair in one file: .json (PROJ triangulation file), .vtp or .vtk (with the target as the point array "
-                "Target).", "json")
+                "Target).", "json", pair.FORMATS, "a pair")
 @click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line per row.")
 @click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop per row.")
 @click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic", show_default=True,
@@ -81,7 +76,7 @@ def print_report(made, marks):
 @click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks with the largest residuals.")
 @options.pair_files("LANDMARKS | SOURCE TARGET")
 @options.quiet
-def command(inputs, output, force, output_format, lines, outlines, domain, quality, target_angle, maximum_added_points,
+def command(inputs, output, lines, outlines, domain, quality, target_angle, maximum_added_points,
             maximum_size, leave_out_conflicts, report):
     """Make a pair of meshes with the same triangles from landmarks.
 
@@ -89,7 +84,6 @@ def command(inputs, output, force, output_format, lines, outlines, domain, quali
     file, or an IIIF georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops (polygons or
     lines) and constraint lines, with the same cells. Triangles do not fold in either domain; points are added where
     necessary."""
-    target = Output(output, output_format, force, pair.FORMATS, "a pair")
     segments, loops = [], []
     if len(inputs.pair) == 2:
         marks, loops, segments = read_figures(inputs.pair)
@@ -99,7 +93,7 @@ def command(inputs, output, force, output_format, lines, outlines, domain, quali
         with Input(name, inputs.format or "csv") as file:
             if not is_landmark_file(file.path):
                 raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv, .points and IIIF's .json.", USAGE)
-            marks = pair.read_landmark_file(file, inputs)
+            marks = landmarks.read(file, inputs)
         try:
             segments, loops = (read_lines(file, marks.names) if file else [] for file in (lines, outlines))
         except (LandmarkFileError, OSError) as error:
@@ -111,7 +105,7 @@ def command(inputs, output, force, output_format, lines, outlines, domain, quali
     )
     if marks.crs:
         both.metadata["output_crs"] = marks.crs
-    with target as place:
-        pair.write(both, place)
+    with output:
+        pair.write(both, output)
     if report:
         print_report(made, marks)

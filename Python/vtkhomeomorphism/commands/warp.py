@@ -7,7 +7,7 @@ from dataclasses import replace
 import click
 
 from .. import images, options, pair
-from ..files import USAGE, Failure, Input, Output
+from ..files import USAGE, Failure, Input
 
 background_option = click.option(
     "--background", default="", metavar="COLOR", help="Color outside the domain: transparent, white, black or "
@@ -15,10 +15,10 @@ background_option = click.option(
 
 
 @click.command("warp")
-@options.output("The warped image: .png .jpg .tif .ppm .vti, or - for standard output.", "png")
+@options.output("The warped image: .png .jpg .tif .ppm .vti, or - for standard output.", "png", images.WRITE, "an image")
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.inverse
-@click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
+@click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
 @click.option("--resolution", type=options.POSITIVE, metavar="LENGTH",
               help="Pixel size of the result on the ground (georeferenced rasters).")
 @click.option("--like", default="", metavar="FILE", help="Use the pixel grid of this GeoTIFF for the result.")
@@ -27,7 +27,7 @@ background_option = click.option(
 @background_option
 @options.pair_files("SOURCE [TARGET] IMAGE")
 @options.quiet
-def command(inputs, output, force, output_format, settings, inverse, size, resolution, like, crs, background):
+def command(inputs, output, settings, inverse, size, resolution, like, crs, background):
     """Warp an image from the source's domain to the target's.
 
     IMAGE is a .png .jpg .tif .ppm or .vti file. Meshes are in pixel coordinates (the center of the lower left pixel is
@@ -35,9 +35,7 @@ def command(inputs, output, force, output_format, settings, inverse, size, resol
     system, in tiles, to a GeoTIFF.
 
     The value of each pixel is interpolated linearly at its exact preimage."""
-    size = options.read_size(size)
-    target = Output(output, output_format, force, images.WRITE, "an image")
-    color = images.read_background(background, target.format)
+    color = images.read_background(background, output.format)
     inputs.crs = None if inverse else crs
     with Input(inputs.other, inputs.format or "png") as file:
         raster = images.read(file)
@@ -63,27 +61,23 @@ def command(inputs, output, force, output_format, settings, inverse, size, resol
         for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
             if value and not placed:
                 raise Failure(f"{name} is for georeferenced rasters, which {file.name} is not.", USAGE)
-        if placed and target.format not in ("tif", "tiff"):
-            raise Failure(f"A georeferenced raster becomes a .tif, not a .{target.format}.", USAGE)
+        if placed and output.format not in ("tif", "tiff"):
+            raise Failure(f"A georeferenced raster becomes a .tif, not a .{output.format}.", USAGE)
         grid = scan or own
         if like:
             with Input(like) as model:
                 grid = images.read(model).grid
         elif size and not placed and not scan:
-            grid = images.Grid(*size) if target.format != "vti" else replace(own, width=size[0], height=size[1])
+            grid = images.Grid(*size)
+        pair.fit_to_pictures(both, (own, grid)[:: -1 if inverse else 1])
         if marks:
             raster.grid = own if own.placed else own.hanging()
             grid = grid if placed else grid.hanging()
-        sizes = [(g.width, g.height) for g in (own, grid)]
-        pair.fit_to_pictures(both, sizes[::-1] if inverse else sizes)
         images.require_overlap(raster.grid, file.name, both.meshes[inverse], both.name_of(inverse))
-        warp = images.Warp(both, settings, inverse, (own.turn, grid.turn if like else None))
+        warp = images.Warp(both, settings, inverse)
         if placed:
             crs = crs or (both.shift and both.shift.crs(inverse)) or (marks and marks.crs) or own.crs
             grid = replace(grid, crs=crs) if like else warp.fit_grid(raster, size, resolution, crs)
         images.require_overlap(grid, "the result", both.meshes[not inverse], both.name_of(not inverse))
-        with target as place:
-            if target.format in ("tif", "tiff"):
-                images.write_tiff(place, grid, raster, warp.tiles(raster, grid), color)
-            else:
-                images.write(images.finish(*warp.warp(raster, grid), raster.has_alpha, color), place, grid)
+        with output:
+            images.write_warped(warp, raster, grid, output, color)
