@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace homeomorphism
@@ -170,48 +171,73 @@ Vector2 FitAtOrigin(const std::vector<Vector2>& from, const std::vector<Vector2>
   return coefficients[0];
 }
 
-} // namespace
-
-std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>& landmarks)
+/// The residuals of landmarks among those that are trusted.
+class Residuals
 {
-  const std::size_t n = landmarks[0].size();
-  std::vector<double> residuals(n, 0.0);
-  if (n < 5)
+public:
+  explicit Residuals(const std::array<std::vector<Vector2>, 2>& landmarks)
+    : Landmarks(landmarks)
+    , Near(landmarks[0])
+    , Terms(landmarks[0].size() < 9 ? 3 : 6)
   {
-    return residuals;
   }
-  const Cells cells(landmarks[0]);
-  const int terms = n < 9 ? 3 : 6;
-  std::vector<Vector2> from;
-  std::vector<Vector2> to;
-  std::vector<double> near;
-  std::vector<double> weights;
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < n; ++i)
+
+  /// The nearest trusted landmarks, nearest first.
+  std::vector<std::pair<double, int>> Nearest(int landmark, std::size_t count) const
   {
-    const auto nearest = cells.Nearest(static_cast<int>(i), Neighbors);
+    auto nearest = this->Near.Nearest(landmark, count + this->Rejected.size());
+    nearest.erase(std::remove_if(nearest.begin(), nearest.end(),
+                    [this](const std::pair<double, int>& p) {
+                      return std::count(this->Rejected.begin(), this->Rejected.end(), p.second);
+                    }),
+      nearest.end());
+    nearest.resize(std::min(nearest.size(), count));
+    return nearest;
+  }
+
+  /// The trusted landmarks whose residual depends on a landmark.
+  std::vector<int> DependingOn(int landmark) const
+  {
+    std::vector<int> result;
+    for (const auto& [square, other] : this->Nearest(landmark, 4 * Neighbors))
+    {
+      const auto nearest = this->Nearest(other, Neighbors);
+      if (std::any_of(nearest.begin(), nearest.end(),
+            [landmark](const std::pair<double, int>& p) { return p.second == landmark; }))
+      {
+        result.push_back(other);
+      }
+    }
+    return result;
+  }
+
+  double Compute(int landmark) const
+  {
+    const auto nearest = this->Nearest(landmark, Neighbors);
     const double radius = std::sqrt(nearest.back().first);
-    from.clear();
-    to.clear();
-    near.clear();
+    std::vector<Vector2> from;
+    std::vector<Vector2> to;
+    std::vector<double> near;
     for (const auto& [square, neighbor] : nearest)
     {
-      from.push_back((1.0 / radius) * (landmarks[0][neighbor] - landmarks[0][i]));
-      to.push_back(landmarks[1][neighbor] - landmarks[1][i]);
+      from.push_back(
+        (1.0 / radius) * (this->Landmarks[0][neighbor] - this->Landmarks[0][landmark]));
+      to.push_back(this->Landmarks[1][neighbor] - this->Landmarks[1][landmark]);
       near.push_back(std::exp(-2.0 * square / (radius * radius)));
     }
-    weights = near;
+    std::vector<double> weights = near;
+    std::vector<double> errors;
     std::array<Vector2, 6> coefficients;
     Vector2 expected;
     for (int pass = 0; pass < 12; ++pass)
     {
-      expected = FitAtOrigin(from, to, weights, terms, coefficients);
+      expected = FitAtOrigin(from, to, weights, this->Terms, coefficients);
       errors.clear();
       for (std::size_t k = 0; k < from.size(); ++k)
       {
         const std::array<double, 6> m = Monomials(from[k]);
         Vector2 error = to[k];
-        for (int r = 0; r < terms; ++r)
+        for (int r = 0; r < this->Terms; ++r)
         {
           error = error - m[r] * coefficients[r];
         }
@@ -230,7 +256,91 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
         weights[k] = near[k] / (1.0 + 0.5 * ratio * ratio);
       }
     }
-    residuals[i] = std::hypot(expected.x, expected.y);
+    return std::hypot(expected.x, expected.y);
+  }
+
+  std::vector<int> Rejected;
+
+private:
+  const std::array<std::vector<Vector2>, 2>& Landmarks;
+  Cells Near;
+  int Terms;
+};
+
+/// The landmarks with the largest residuals above a limit that are not rejected, the worst first.
+std::vector<int> FindWorst(
+  const std::vector<double>& residuals, double limit, const std::vector<int>& rejected, int count)
+{
+  std::vector<int> worst;
+  for (int i = 0; i < static_cast<int>(residuals.size()); ++i)
+  {
+    if (residuals[i] > limit && !std::count(rejected.begin(), rejected.end(), i))
+    {
+      worst.push_back(i);
+    }
+  }
+  std::sort(worst.begin(), worst.end(), [&](int a, int b) { return residuals[a] > residuals[b]; });
+  worst.resize(std::min<std::size_t>(worst.size(), count));
+  return worst;
+}
+
+} // namespace
+
+std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>& landmarks)
+{
+  const int n = static_cast<int>(landmarks[0].size());
+  std::vector<double> residuals(n, 0.0);
+  if (n < 5)
+  {
+    return residuals;
+  }
+  Residuals among(landmarks);
+  for (int i = 0; i < n; ++i)
+  {
+    residuals[i] = among.Compute(i);
+  }
+  std::vector<double> sorted = residuals;
+  std::nth_element(sorted.begin(), sorted.begin() + 4 * n / 5, sorted.end());
+  const double limit = 4.0 * sorted[4 * n / 5];
+  // Reject the landmark without which the others fit best, as long as one stands out. The worst one
+  // may only be the neighbor of a wrong one.
+  while (static_cast<int>(among.Rejected.size()) < std::min(10, n / 5))
+  {
+    double best = -1.0;
+    int rejected = -1;
+    std::vector<std::pair<int, double>> changes;
+    for (const int candidate : FindWorst(residuals, limit, among.Rejected, 8))
+    {
+      const std::vector<int> depending = among.DependingOn(candidate);
+      among.Rejected.push_back(candidate);
+      double gain = residuals[candidate];
+      std::vector<std::pair<int, double>> changed;
+      for (const int other : depending)
+      {
+        changed.emplace_back(other, among.Compute(other));
+        gain += residuals[other] - changed.back().second;
+      }
+      among.Rejected.pop_back();
+      if (gain > best)
+      {
+        best = gain;
+        rejected = candidate;
+        changes = changed;
+      }
+    }
+    if (rejected < 0)
+    {
+      break;
+    }
+    among.Rejected.push_back(rejected);
+    for (const auto& [landmark, residual] : changes)
+    {
+      residuals[landmark] = residual;
+    }
+  }
+  for (const int rejected : among.Rejected)
+  {
+    residuals[rejected] = among.Compute(rejected);
   }
   return residuals;
 }

@@ -55,16 +55,27 @@ def _usual(residuals):
     return 4 * numpy.quantile(residuals, 0.8)
 
 
-def _smooth_frame(source, target, rectangle, trusted, smooth):
+def rectangle(low, high, count):
+    """Points around a rectangle, `count` on each side."""
+    t = numpy.arange(count)[:, None] / count
+    corners = numpy.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+    return numpy.vstack([a * (1 - t) + b * t for a, b in zip(corners, numpy.roll(corners, -1, axis=0))])
+
+
+def within(source, target, rims, make):
+    """The pair within outlines of further points."""
+    points = [numpy.vstack(both) for both in zip((source, target), rims)]
+    return make(*points, outlines=[range(len(source), len(points[0]))], domain="outline")
+
+
+def _smooth_frame(source, target, frame, trusted, smooth):
     """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images
     under the quadratic polynomial that fits the trusted landmarks best, corrected by a thin-plate spline
     (or under the affine map that fits them best)."""
-    low = numpy.minimum(rectangle[::2], source.min(axis=0))
-    high = numpy.maximum(rectangle[1::2], source.max(axis=0))
+    low = numpy.minimum(frame[::2], source.min(axis=0))
+    high = numpy.maximum(frame[1::2], source.max(axis=0))
     low, high = low - 0.01 * (high - low), high + 0.01 * (high - low)
-    t = numpy.arange(8)[:, None] / 8
-    corners = numpy.array([low, [high[0], low[1]], high, [low[0], high[1]]])
-    rim = numpy.vstack([a * (1 - t) + b * t for a, b in zip(corners, numpy.roll(corners, -1, axis=0))])
+    rim = rectangle(low, high, 8)
     trusted = trusted[:: 1 + len(trusted) // 1000]
     middle, size = (low + high) / 2, numpy.hypot(*(high - low))
     a, b = (source[trusted] - middle) / size, (rim - middle) / size
@@ -89,18 +100,16 @@ def _smooth_frame(source, target, rectangle, trusted, smooth):
     return rim, images
 
 
-def _with_frame(source, target, rectangle, make):
+def _with_frame(source, target, frame, make):
     """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks
     are outside of the predictions."""
     source, target = (numpy.asarray(points, float) for points in (source, target))
     first = make(source, target)
     trusted = numpy.flatnonzero(first.residuals <= _usual(first.residuals))
     for smooth in (True, False):
-        frames = _smooth_frame(source, target, numpy.asarray(rectangle, float), trusted, smooth)
-        points = [numpy.vstack(both) for both in zip((source, target), frames)]
+        frames = _smooth_frame(source, target, numpy.asarray(frame, float), trusted, smooth)
         try:
-            outline = range(len(source), len(points[0]))
-            return make(*points, outlines=[outline], domain="outline")._replace(residuals=first.residuals)
+            return within(source, target, frames, make)._replace(residuals=first.residuals)
         except ValueError:
             continue
     return first

@@ -16,6 +16,7 @@ Formats, recognized by their content:
 from __future__ import annotations
 
 import csv
+import functools
 import json
 import os
 from dataclasses import dataclass, field, replace
@@ -24,7 +25,7 @@ from typing import List, Optional, Sequence, Tuple
 import numpy
 
 from .files import FILE, USAGE, Failure, count, import_extra, inform, quote_message
-from .isomorphic import isomorphic_triangulation
+from .isomorphic import isomorphic_triangulation, rectangle, within
 
 _COLUMNS = ("source_x", "source_y", "target_x", "target_y")
 
@@ -242,11 +243,29 @@ def read(file, options) -> Landmarks:
     return replace(marks, crs=options.crs or marks.crs)
 
 
-def _frame(grid, points, margin):
-    """The rectangle of the pixels' centers, so that borders go to borders, and of landmarks beyond them, enlarged."""
+def _frame(grid, points):
+    """Lowest and highest coordinates of the pixels' centers, so that borders go to borders, and of landmarks beyond."""
     points = numpy.vstack((points, numpy.reshape(grid.hanging().bounds, (2, 2)).T))
-    low, high = points.min(axis=0), points.max(axis=0)
-    return numpy.column_stack((low - margin * (high - low), high + margin * (high - low))).ravel()
+    return points.min(axis=0), points.max(axis=0)
+
+
+def _between_images(points, frames, more):
+    """The pair within the images' rectangles. Landmarks close to a border in one image, but not on it in both, would make
+    thin triangles there: then the domain extends half the landmarks' spacing beyond the borders, with points around."""
+    spacings = [numpy.sqrt((high - low).prod() / len(points[0])) for low, high in frames]
+    gaps = [numpy.minimum(p - low, high - p).min(axis=1) for p, (low, high) in zip(points, frames)]
+    close = (gaps[0] < 0.1 * spacings[0]) | (gaps[1] < 0.1 * spacings[1])
+    wider = [(low - 0.5 * s, high + 0.5 * s) for s, (low, high) in zip(spacings, frames)]
+    if not close[(gaps[0] != 0) | (gaps[1] != 0)].any():
+        try:
+            return isomorphic_triangulation(*points, frame=[numpy.column_stack(f).ravel() for f in frames], **more)
+        except ValueError:
+            # On different borders.
+            pass
+    make = functools.partial(isomorphic_triangulation, **more)
+    residuals = make(*points, frame=[numpy.column_stack(f).ravel() for f in wider]).residuals
+    rims = [rectangle(*frame, 1 + int(0.5 * len(points[0]) ** 0.5)) for frame in wider]
+    return within(*points, rims, make)._replace(residuals=residuals)
 
 
 def triangulate(marks, name, grids, **more):
@@ -256,16 +275,16 @@ def triangulate(marks, name, grids, **more):
     for side, grid in enumerate(grids):
         if grid or (side == 0 and marks.image_coordinates):
             points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
-    # Landmarks may be on a border on one side only: then both borders are moved outwards.
-    for margin in (0.0, 0.01):
-        if grids[0] and not more.get("outlines"):
-            more["frame"] = [grid and _frame(grid, p, margin) for grid, p in zip(grids, points)]
-        try:
+    frames = [grid and _frame(grid, p) for grid, p in zip(grids, points)]
+    try:
+        if not frames[0] or more.get("outlines") or more.get("domain") not in (None, "automatic", "frame"):
             made = isomorphic_triangulation(*points, **more)
-            break
-        except ValueError as error:
-            if margin or not all(grids):
-                raise Failure(f"{name}: {error}") from None
+        elif frames[1]:
+            made = _between_images(points, frames, more)
+        else:
+            made = isomorphic_triangulation(*points, frame=(numpy.column_stack(frames[0]).ravel(), None), **more)
+    except ValueError as error:
+        raise Failure(f"{name}: {error}") from None
     angles, worst = made.report["smallest_angles"], made.suspicious()
     inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
            f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "

@@ -108,6 +108,27 @@ def test_landmarks_of_images_have_y_down(dhm, form):
     dhm("figure", "marks.csv", "--image", "image.png", "-o", "figure.png")
 
 
+def test_landmarks_close_to_a_border_make_no_slivers(dhm):
+    """On a border of one image and just beside it in the other; on both borders, they are the domain's."""
+    Image = pytest.importorskip("PIL.Image")
+    Image.fromarray(numpy.zeros((60, 80), numpy.uint8)).save(dhm.path("image.png"))
+    source, target = landmarks(60, (80, 60))
+    rim = numpy.array([[0.5, y] for y in numpy.arange(0.5, 60, 5.9)] + [[79.5, y] for y in numpy.arange(0.5, 60, 5.9)])
+    smallest = []
+    for gap in (0.0, 0.05):
+        moved = rim + [gap, 0] * (rim[:, :1] < 1)
+        write_landmarks(dhm.path("marks.csv"), numpy.vstack((source, rim)), numpy.vstack((target, moved)))
+        dhm("triangulate", "marks.csv", "--scan", "image.png", "--scan", "image.png", "-o", "pair.json", "--force")
+        pair, _ = read_json(dhm.path("pair.json"))
+        assert_valid(pair)
+        assert (numpy.ptp(pair.source, axis=0) == [79, 59]).all() == (gap == 0)
+        corners = pair.target[pair.triangles]
+        u, v = (numpy.roll(corners, -k, axis=1) - corners for k in (1, 2))
+        angles = numpy.arccos((u * v).sum(axis=2) / numpy.hypot(*u.T).T / numpy.hypot(*v.T).T)
+        smallest.append(angles.min())
+    assert smallest[1] > 0.8 * smallest[0]
+
+
 def test_outlines_lines_and_figures(dhm):
     square = numpy.array([[0, 0], [4, 0], [4, 4], [0, 4], [1, 1], [3, 1], [2, 3]], float)
     write_landmarks(dhm.path("marks.csv"), square, square * [2, 1], list("abcdefg"))

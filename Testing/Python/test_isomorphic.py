@@ -94,3 +94,15 @@ def test_the_frame_of_an_image_is_predicted():
     rim = pair.source[80:]
     assert numpy.allclose(rim.min(axis=0), -0.01) and numpy.allclose(rim.max(axis=0), 1.01)
     assert numpy.allclose(pair.target[80:], bend(rim), atol=1e-9)
+
+
+def test_mistyped_landmarks_at_the_border_come_before_their_neighbors():
+    """The fits of these are one-sided, and follow a wrong landmark."""
+    for seed in range(80):
+        random = numpy.random.default_rng(seed)
+        source = random.random((60, 2))
+        target = source + 0.04 * numpy.sin(6 * source[:, ::-1]) + random.normal(0, 0.001, source.shape)
+        wrong = numpy.minimum(source, 1 - source).min(axis=1).argsort()[seed % 6]
+        angle = 2 * numpy.pi * random.random()
+        target[wrong] += 0.08 * numpy.array([numpy.cos(angle), numpy.sin(angle)])
+        assert isomorphic_triangulation(source, target).suspicious()[0] == wrong
