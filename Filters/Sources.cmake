@@ -9,6 +9,7 @@ set(kernel_sources
   Kernel/ContourChart.cxx
   Kernel/CubicElement.cxx
   Kernel/ExactSign.cxx
+  Kernel/Simd/CubicBatch.cxx
   Kernel/Simd/EdgeBatch.cxx
   Kernel/SmoothChart.cxx)
 set(kernel_headers
@@ -21,6 +22,7 @@ set(kernel_headers
   Kernel/LinearProgram.h
   Kernel/RootFinding.h
   Kernel/RunningError.h
+  Kernel/Simd/CubicBatch.h
   Kernel/Simd/EdgeBatch.h
   Kernel/Simd/Vectorize.h
   Kernel/SmoothChart.h)

@@ -34,14 +34,14 @@ public:
                      : SurfacePoint{};
   }
 
-  void MapSurfacePoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
+  /// Points without an image become outside ones.
+  void MapSurfacePoint(Domain from, SurfacePoint& surfacePoint, double image[3]) const
   {
-    if (surfacePoint.Triangle < 0)
+    if (surfacePoint.Triangle < 0 || !this->Map->MapPoint(from, surfacePoint, image))
     {
+      surfacePoint.Triangle = -1;
       std::fill_n(image, 3, this->OutsideCoordinate);
-      return;
     }
-    this->Map->MapPoint(from, surfacePoint, image);
   }
 
   /// Maps a point; returns its surface point.
@@ -54,7 +54,7 @@ public:
     thread_local TriangleIndex last = -1;
     const bool isHint = this->Map && last >= 0 &&
       last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
-    const SurfacePoint surfacePoint = this->Locate(from, point,
+    SurfacePoint surfacePoint = this->Locate(from, point,
       0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), isHint ? last : -1);
     last = surfacePoint.Triangle;
     double image[3];
@@ -258,7 +258,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
       {
         ReadPoints(inPts->GetData(), first, block);
         outside = internals.Map->LocateBlock(from, block, tolerance, hint);
-        internals.Map->MapBlock(from, block);
+        outside += internals.Map->MapBlock(from, block);
       }
       for (int i = 0; i < block.Count && outside > 0; ++i)
       {

@@ -492,43 +492,43 @@ CubicNet::CubicNet(const CubicElement& element)
     images[i] = element.Affine * element.Points[i];
   }
   const Vector2 center = (1.0 / 3.0) * (images[0] + images[1] + images[2]);
-  // A third of the way from one point to another.
-  const auto third = [](const Vector2& from, const Vector2& to) {
-    return (1.0 / 3.0) * (2.0 * from + to);
+  // Three times the point a third of the way from one point to another.
+  const auto third = [](const Vector2& from, const Vector2& to) { return 2.0 * from + to; };
+  const auto set = [this](double(Component::*member)[3], int i, const Vector2& ordinate) {
+    (this->X.*member)[i] = ordinate.x;
+    (this->Y.*member)[i] = ordinate.y;
   };
   for (int k = 0; k < 3; ++k)
   {
-    const Vector2 start = images[NextCorner(k)];
-    const Vector2 end = images[PreviousCorner(k)];
-    this->Ordinates[k] = images[k] + b.Corner[k];
-    this->Ordinates[AfterStart + k] = third(start, end) + b.AfterStart[k];
-    this->Ordinates[BeforeEnd + k] = third(end, start) + b.BeforeEnd[k];
-    this->Ordinates[Inner + k] = third(images[k], center) + b.Inner[k];
-    this->Ordinates[Middle + k] = (1.0 / 3.0) * (start + end + center) + b.Middle[k];
-    this->Ordinates[Spoke + k] = third(center, images[k]) + b.Spoke[k];
+    const int next = NextCorner(k);
+    const int previous = PreviousCorner(k);
+    const Vector2 start = images[next];
+    const Vector2 end = images[previous];
+    set(&Component::Corner, k, images[k] + b.Corner[k]);
+    set(&Component::Next, next, third(start, end) + 3.0 * b.AfterStart[k]);
+    set(&Component::Previous, previous, third(end, start) + 3.0 * b.BeforeEnd[k]);
+    set(&Component::Inner, k, third(images[k], center) + 3.0 * b.Inner[k]);
+    set(&Component::Middle, k, 2.0 * (start + end + center) + 6.0 * b.Middle[k]);
+    set(&Component::Spoke, k, third(center, images[k]) + 3.0 * b.Spoke[k]);
   }
-  this->Ordinates[Center] = center + b.Center;
+  this->X.Center = center.x + b.Center.x;
+  this->Y.Center = center.y + b.Center.y;
 }
 
 //------------------------------------------------------------------------------
 Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
   const Vector2& image, Vector2& step) const
 {
-  const CubicPiece piece = FindPiece(l);
-  Vector2 start;
-  Vector2 end;
-  Vector2 centroid;
-  this->Reduce(piece, start, end, centroid);
-  const Vector2 residual =
-    image - (piece.Start * start + piece.End * end + piece.Centroid * centroid);
-  // A third of the derivatives along the piece's edge and towards the centroid.
-  const Vector2 first = end - start;
-  const Vector2 second = centroid - start;
-  const Vector2 corner = points[NextCorner(piece.Opposite)];
-  const Vector2 along = points[PreviousCorner(piece.Opposite)] - corner;
-  const Vector2 inward = (1.0 / 3.0) * (along + (points[piece.Opposite] - corner));
-  const double scale = 1.0 / (3.0 * Cross(first, second));
-  step = (scale * Cross(residual, second)) * along + (scale * Cross(first, residual)) * inward;
+  const Vector2 residual = image - (*this)(l);
+  double x[3];
+  double y[3];
+  Derive(this->X, l[0], l[1], l[2], x[0], x[1], x[2]);
+  Derive(this->Y, l[0], l[1], l[2], y[0], y[1], y[2]);
+  const Vector2 first{ x[1] - x[0], y[1] - y[0] };
+  const Vector2 second{ x[2] - x[0], y[2] - y[0] };
+  const double scale = 1.0 / Cross(first, second);
+  step = (scale * Cross(residual, second)) * (points[1] - points[0]) +
+    (scale * Cross(first, residual)) * (points[2] - points[0]);
   return residual;
 }
 

@@ -167,7 +167,13 @@ private:
   double Foot = 0.0;
 };
 
-/// The Bernstein ordinates of f, not only of D, of one element: the fastest way to its values.
+/// f, not only D, of one element, as one formula for all three pieces: the fastest way to its
+/// values.
+///
+/// With m the least barycentric coordinate, n_i = l_i - m and w = 3 m, the pieces' barycentric
+/// coordinates are w and those two of n_0, n_1, n_2 that are not zero. Pieces share the ordinates
+/// on their borders. So f is the sum of n_i^3, n_i^2 n_j, n_i^2 w, n_i n_j w, n_i w^2 and w^3 times
+/// 19 ordinates and the multiplicities of Bernstein's polynomials: terms of other pieces vanish.
 class CubicNet
 {
 public:
@@ -177,12 +183,7 @@ public:
   /// f at a point with barycentric coordinates @a l.
   Vector2 operator()(const Barycentric& l) const
   {
-    const CubicPiece piece = FindPiece(l);
-    Vector2 start;
-    Vector2 end;
-    Vector2 centroid;
-    this->Reduce(piece, start, end, centroid);
-    return piece.Start * start + piece.End * end + piece.Centroid * centroid;
+    return { Map(this->X, l[0], l[1], l[2]), Map(this->Y, l[0], l[1], l[2]) };
   }
 
   /// How far f is from @a image at a point with barycentric coordinates @a l, and Newton's step
@@ -190,33 +191,83 @@ public:
   Vector2 GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
     const Vector2& image, Vector2& step) const;
 
-private:
-  void Reduce(const CubicPiece& piece, Vector2& start, Vector2& end, Vector2& centroid) const
+  /// One component of f. Element i belongs to corner i; to the edge from it to the next corner, and
+  /// to that from the previous corner to it, beside the corner; to the piece opposite it.
+  struct Component
   {
-    const std::array<Vector2, 19>& b = this->Ordinates;
-    const int k = piece.Opposite;
-    const int i = NextCorner(k);
-    const int j = PreviousCorner(k);
-    const auto [uu, uv, vv, uw, vw, ww] = piece.GetQuadratics();
-    start = uu * b[i] + uv * b[AfterStart + k] + vv * b[BeforeEnd + k] + uw * b[Inner + i] +
-      vw * b[Middle + k] + ww * b[Spoke + i];
-    end = uu * b[AfterStart + k] + uv * b[BeforeEnd + k] + vv * b[j] + uw * b[Middle + k] +
-      vw * b[Inner + j] + ww * b[Spoke + j];
-    centroid = uu * b[Inner + i] + uv * b[Middle + k] + vv * b[Inner + j] + uw * b[Spoke + i] +
-      vw * b[Spoke + j] + ww * b[Center];
+    double Corner[3];
+    double Next[3];
+    double Previous[3];
+    double Inner[3];
+    double Middle[3];
+    double Spoke[3];
+    double Center;
+  };
+
+  const Component& GetX() const { return this->X; }
+  const Component& GetY() const { return this->Y; }
+
+  static HOMEOMORPHISM_ALWAYS_INLINE double Map(const Component& b, double l0, double l1, double l2)
+  {
+    const double lesser = l1 < l0 ? l1 : l0;
+    const double m = l2 < lesser ? l2 : lesser;
+    const double n0 = l0 - m;
+    const double n1 = l1 - m;
+    const double n2 = l2 - m;
+    const double w = 3.0 * m;
+    const double ww = w * w;
+    const double at0 =
+      n0 * (n0 * b.Corner[0] + n1 * b.Next[0] + n2 * b.Previous[0] + w * b.Inner[0]);
+    const double at1 =
+      n1 * (n1 * b.Corner[1] + n2 * b.Next[1] + n0 * b.Previous[1] + w * b.Inner[1]);
+    const double at2 =
+      n2 * (n2 * b.Corner[2] + n0 * b.Next[2] + n1 * b.Previous[2] + w * b.Inner[2]);
+    return n0 * (at0 + ww * b.Spoke[0]) + n1 * (at1 + ww * b.Spoke[1]) +
+      n2 * (at2 + ww * b.Spoke[2]) +
+      w * (n1 * n2 * b.Middle[0] + n2 * n0 * b.Middle[1] + n0 * n1 * b.Middle[2] + ww * b.Center);
   }
 
-  /// As in CubicOrdinates, three of a kind, the corners' first.
-  enum : std::uint8_t
+  /// The derivatives by the barycentric coordinates, of the function of l that is homogeneous of
+  /// degree 3 and is f where they sum to 1. It is a third of their sum weighted with l.
+  static HOMEOMORPHISM_ALWAYS_INLINE void Derive(
+    const Component& b, double l0, double l1, double l2, double& d0, double& d1, double& d2)
   {
-    AfterStart = 3,
-    BeforeEnd = 6,
-    Inner = 9,
-    Middle = 12,
-    Spoke = 15,
-    Center = 18
-  };
-  std::array<Vector2, 19> Ordinates;
+    const double lesser = l1 < l0 ? l1 : l0;
+    const double m = l2 < lesser ? l2 : lesser;
+    const double n0 = l0 - m;
+    const double n1 = l1 - m;
+    const double n2 = l2 - m;
+    const double w = 3.0 * m;
+    const double ww = w * w;
+    // By n_0, n_1, n_2 and w.
+    const double by0 =
+      n0 * (3.0 * n0 * b.Corner[0] + 2.0 * (n1 * b.Next[0] + n2 * b.Previous[0] + w * b.Inner[0])) +
+      n2 * n2 * b.Next[2] + n1 * n1 * b.Previous[1] +
+      w * (n1 * b.Middle[2] + n2 * b.Middle[1] + w * b.Spoke[0]);
+    const double by1 =
+      n1 * (3.0 * n1 * b.Corner[1] + 2.0 * (n2 * b.Next[1] + n0 * b.Previous[1] + w * b.Inner[1])) +
+      n0 * n0 * b.Next[0] + n2 * n2 * b.Previous[2] +
+      w * (n2 * b.Middle[0] + n0 * b.Middle[2] + w * b.Spoke[1]);
+    const double by2 =
+      n2 * (3.0 * n2 * b.Corner[2] + 2.0 * (n0 * b.Next[2] + n1 * b.Previous[2] + w * b.Inner[2])) +
+      n1 * n1 * b.Next[1] + n0 * n0 * b.Previous[0] +
+      w * (n0 * b.Middle[1] + n1 * b.Middle[0] + w * b.Spoke[2]);
+    const double byW = n0 * n0 * b.Inner[0] + n1 * n1 * b.Inner[1] + n2 * n2 * b.Inner[2] +
+      n1 * n2 * b.Middle[0] + n2 * n0 * b.Middle[1] + n0 * n1 * b.Middle[2] +
+      2.0 * w * (n0 * b.Spoke[0] + n1 * b.Spoke[1] + n2 * b.Spoke[2]) + 3.0 * ww * b.Center;
+    // The least coordinate is in w, and is subtracted from the other two.
+    const bool is2 = l2 < lesser;
+    const bool is1 = !is2 & (l1 < l0);
+    const bool is0 = !is2 & !is1;
+    const double rest = 3.0 * byW;
+    d0 = is0 ? rest - by1 - by2 : by0;
+    d1 = is1 ? rest - by0 - by2 : by1;
+    d2 = is2 ? rest - by0 - by1 : by2;
+  }
+
+private:
+  Component X;
+  Component Y;
 };
 
 /// The weights of a quartic's Bernstein coefficients: start, end and centroid of its piece.

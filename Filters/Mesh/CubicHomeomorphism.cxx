@@ -56,6 +56,7 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     this->Numbers[t] = static_cast<std::int32_t>(planar.Triangles.size());
     this->Triangles.push_back(t);
     this->Mirrored.push_back(mirrored);
+    this->IsMirrored = this->IsMirrored || mirrored;
     this->Reversed.push_back(isReversed);
     planar.Triangles.push_back(corners);
   }
@@ -78,31 +79,89 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     });
 }
 
-Vector2 CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
-  const Vector2& inFrame, CubicTriangle& prepared) const
+namespace
 {
-  int number = this->Numbers[triangle];
-  const bool mirrored = this->Mirrored[number] != 0;
-  Vector2 image;
+
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+void SetRun(const PlaneFrame& frame, bool mirrored, const double* const l[3],
+  const double* const inFrame[2], int begin, int end, CubicBatch& batch)
+{
+  const PlaneFrame f = frame;
+  const double sign = mirrored ? -1.0 : 1.0;
+  const double* l0 = l[0];
+  const double* l1 = l[1];
+  const double* l2 = l[2];
+  const double* along = inFrame[0];
+  const double* inward = inFrame[1];
+  const int stop = begin + InWholeVectors(end - begin);
+  HOMEOMORPHISM_SIMD
+  for (int i = begin; i < stop; ++i)
+  {
+    batch.L[0][i] = l0[i];
+    batch.L[1][i] = l1[i];
+    batch.L[2][i] = l2[i];
+    const Vector2 point = f.FromFrame({ along[i], inward[i] });
+    batch.X[i] = sign * point.x;
+    batch.Y[i] = point.y;
+  }
+}
+
+} // namespace
+
+void CubicHomeomorphism::SetPoints(Domain from, TriangleIndex triangle, int begin, int end,
+  const double* const l[3], const double* const inFrame[2], CubicBatch& batch) const
+{
+  const std::int32_t number = this->Numbers[triangle];
   const bool isReversed = this->Reversed[number] != 0;
-  const Barycentric turned{ l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] };
-  if (this->Map->MapDirectly(from == Domain::Target, number, turned, image))
+  const bool isMirrored = from == Domain::Target && this->Mirrored[number] != 0;
+  const double* const turned[3] = { l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] };
+  SetRun(this->Pair.GetGeometry(from).GetPlaneFrame(triangle), isMirrored, turned, inFrame, begin,
+    end, batch);
+  std::fill(batch.Triangles + begin, batch.Triangles + end, number);
+}
+
+void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch) const
+{
+  CubicTriangle prepared = this->Map->Prepare();
+  if (from == Domain::Target)
   {
-    image.x = from == Domain::Source && mirrored ? -image.x : image.x;
-    return image;
+    this->Map->FindPreimages(batch, prepared);
+    return;
   }
-  Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
-  if (from == Domain::Source)
+  // The map changes their triangles to those of the refined pair.
+  std::uint8_t isMirrored[CubicBatch::Capacity];
+  for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
   {
-    image = this->Map->MapPoint(number, point, prepared);
-    image.x = mirrored ? -image.x : image.x;
+    isMirrored[i] = batch.Triangles[i] < 0 ? 0 : this->Mirrored[batch.Triangles[i]];
   }
-  else
+  this->Map->MapPoints(batch, prepared);
+  for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
   {
-    point.x = mirrored ? -point.x : point.x;
-    this->Map->FindPreimage(point, number, image, prepared);
+    batch.ImageX[i] = isMirrored[i] != 0 ? -batch.ImageX[i] : batch.ImageX[i];
   }
-  return image;
+}
+
+bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
+  const Vector2& inFrame, Vector2& image) const
+{
+  CubicBatch batch;
+  batch.Count = 1;
+  double coordinates[5][WidestVector];
+  for (int i = 0; i < WidestVector; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      coordinates[k][i] = l[k];
+    }
+    coordinates[3][i] = inFrame.x;
+    coordinates[4][i] = inFrame.y;
+  }
+  const double* const arrays[3] = { coordinates[0], coordinates[1], coordinates[2] };
+  const double* const frames[2] = { coordinates[3], coordinates[4] };
+  this->SetPoints(from, triangle, 0, 1, arrays, frames, batch);
+  this->MapPoints(from, batch);
+  image = { batch.ImageX[0], batch.ImageY[0] };
+  return batch.Triangles[0] >= 0;
 }
 
 void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame,

@@ -41,10 +41,19 @@ public:
     }
   }
 
-  /// The image of a point, in the plane of the other mesh, from its barycentric coordinates by the
-  /// triangle's corners and its place in the triangle's frame.
-  Vector2 MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
-    const Vector2& inFrame, CubicTriangle& prepared) const;
+  /// Sets points @a begin to @a end - 1 of a batch, which lie in one triangle, from arrays of their
+  /// barycentric coordinates for the triangle's corners and of their places in its frame. Reads and
+  /// overwrites up to WidestVector - 1 elements after the last.
+  void SetPoints(Domain from, TriangleIndex triangle, int begin, int end, const double* const l[3],
+    const double* const inFrame[2], CubicBatch& batch) const;
+
+  /// Maps the points of a batch to the plane of the other mesh. Their triangles become the map's,
+  /// -1 where there is no image.
+  void MapPoints(Domain from, CubicBatch& batch) const;
+
+  /// The image of one point, to the same bits. Returns false if there is none.
+  bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,
+    Vector2& image) const;
 
   /// The image of a point of a triangle's frame, and the derivative from frame to frame. Both are
   /// in the plane of the other mesh.
@@ -70,6 +79,8 @@ private:
   std::vector<std::int32_t> Triangles;
   std::vector<std::int32_t> Points;
   std::vector<std::uint8_t> Mirrored;
+  /// Whether any is.
+  bool IsMirrored = false;
   /// Whether a triangle's corners 1 and 2 are exchanged in the map.
   std::vector<std::uint8_t> Reversed;
 };

@@ -3,9 +3,12 @@
 
 #include "Mesh/CubicMap.h"
 
+#include "Kernel/Simd/CubicBatch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <unordered_set>
 
 namespace homeomorphism
@@ -327,10 +330,8 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
 }
 
 //------------------------------------------------------------------------------
-int CubicMap::FindChild(int triangle, const Vector2& point) const
+int CubicMap::FindChild(int triangle, Barycentric& l) const
 {
-  Barycentric l = ToBarycentric(this->Pair.GetSourceCorners(triangle),
-    point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
   int child = triangle;
   for (int level = 0; level < this->Levels; ++level)
   {
@@ -354,6 +355,14 @@ int CubicMap::FindChild(int triangle, const Vector2& point) const
     child = 4 * child + corner;
   }
   return child;
+}
+
+//------------------------------------------------------------------------------
+int CubicMap::FindChild(int triangle, const Vector2& point) const
+{
+  Barycentric l = ToBarycentric(this->Pair.GetSourceCorners(triangle),
+    point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
+  return this->FindChild(triangle, l);
 }
 
 //------------------------------------------------------------------------------
@@ -448,28 +457,264 @@ void CubicMap::Walk(int& triangle, Vector2& point) const
   }
 }
 
+namespace
+{
+
+/// Calls use(begin, end, triangle) for points in a row that are in one triangle.
+template <typename Use>
+void ForEachRun(const std::int32_t* triangles, int count, Use&& use)
+{
+  for (int begin = 0; begin < count;)
+  {
+    const std::int32_t triangle = triangles[begin];
+    int end = begin + 1;
+    while (end < count && triangles[end] == triangle)
+    {
+      ++end;
+    }
+    if (triangle >= 0)
+    {
+      use(begin, end, triangle);
+    }
+    begin = end;
+  }
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+void CubicMap::MoveToChildren(CubicBatch& batch) const
+{
+  for (int i = 0; this->Levels > 0 && i < batch.Count; ++i)
+  {
+    if (batch.Triangles[i] >= 0)
+    {
+      Barycentric l{ batch.L[0][i], batch.L[1][i], batch.L[2][i] };
+      batch.Triangles[i] = this->FindChild(batch.Triangles[i], l);
+      for (int k = 0; k < 3; ++k)
+      {
+        batch.L[k][i] = l[k];
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::MapPoints(CubicBatch& batch, CubicTriangle& prepared) const
+{
+  this->MoveToChildren(batch);
+  const PlanarPair& pair = this->GetFine();
+  const double* const l[3] = { batch.L[0], batch.L[1], batch.L[2] };
+  std::int64_t isMiddle[CubicBatch::Size];
+  ForEachRun(batch.Triangles, batch.Count, [&](int begin, int end, int t) {
+    const Vector2 origin = pair.Target[pair.Triangles[t][0]];
+    if (this->IsWhole(t))
+    {
+      MapByNet(this->Bending->Nets[t], origin, l, begin, end, batch.ImageX, batch.ImageY);
+      return;
+    }
+    if (!this->Bending)
+    {
+      const std::array<std::int32_t, 3>& corners = pair.Triangles[t];
+      const CubicTemplate::MiddleBounds& bounds = this->Template->GetMiddle(t);
+      MapMiddle({ origin, pair.Target[corners[1]], pair.Target[corners[2]] }, bounds.Least,
+        bounds.Greatest, l, begin, end, batch.ImageX, batch.ImageY, isMiddle);
+    }
+    const Vector2 from = pair.Source[pair.Triangles[t][0]];
+    for (int i = begin; i < end; ++i)
+    {
+      if (this->Bending || isMiddle[i] == 0)
+      {
+        prepared.Set(t);
+        const Vector2 image = origin + prepared.Map(Vector2{ batch.X[i], batch.Y[i] } - from);
+        batch.ImageX[i] = image.x;
+        batch.ImageY[i] = image.y;
+      }
+    }
+  });
+}
+
+//------------------------------------------------------------------------------
+// Points on their way to their preimages in whole triangles of the refined pair.
+struct CubicMap::Walkers
+{
+  int Count = 0;
+  std::int32_t Triangles[CubicBatch::Capacity];
+  /// Their numbers in the batch.
+  std::int32_t Numbers[CubicBatch::Capacity];
+  CubicWalkers Arrays;
+};
+
+//------------------------------------------------------------------------------
+void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& prepared) const
+{
+  constexpr int mostRounds = 30;
+  const PlanarPair& pair = this->GetFine();
+  CubicWalkers& arrays = walkers.Arrays;
+  const auto finish = [&](int i, int triangle, Vector2 point) {
+    const bool found = this->FindByWalking({ batch.X[i], batch.Y[i] }, triangle, point, prepared);
+    const Vector2 preimage = pair.Source[pair.Triangles[triangle][0]] + point;
+    batch.Triangles[i] = found ? triangle : -1;
+    batch.ImageX[i] = preimage.x;
+    batch.ImageY[i] = preimage.y;
+  };
+  // What whole vectors read beyond the points.
+  const auto fill = [&arrays](int count) {
+    for (int i = count; i < count + WidestVector; ++i)
+    {
+      arrays.L[0][i] = 1.0;
+      arrays.L[1][i] = arrays.L[2][i] = arrays.X[i] = arrays.Y[i] = 0.0;
+      arrays.Residual[i] = arrays.Move[i] = 0.0;
+      arrays.States[i] = CubicWalkers::Failed;
+    }
+  };
+  fill(walkers.Count);
+  ForEachRun(walkers.Triangles, walkers.Count,
+    [&](int begin, int end, int t) { StartByNet(this->Bending->Nets[t], begin, end, arrays); });
+  for (int round = 0; walkers.Count > 0; ++round)
+  {
+    int left = 0;
+    ForEachRun(walkers.Triangles, walkers.Count, [&](int begin, int end, int t) {
+      NewtonByNet(this->Bending->Nets[t], this->ResidualTolerance, begin, end, arrays);
+      const Vector2 origin = pair.Source[pair.Triangles[t][0]];
+      const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
+      for (int i = begin; i < end; ++i)
+      {
+        const int number = walkers.Numbers[i];
+        Vector2 point = arrays.L[1][i] * corners[1] + arrays.L[2][i] * corners[2];
+        if (arrays.States[i] == CubicWalkers::Found)
+        {
+          batch.Triangles[number] = t;
+          batch.ImageX[number] = origin.x + point.x;
+          batch.ImageY[number] = origin.y + point.y;
+          continue;
+        }
+        int next = t;
+        this->Walk(next, point);
+        if (arrays.States[i] != CubicWalkers::Left || round == mostRounds || !this->IsWhole(next))
+        {
+          finish(number, next, point);
+          continue;
+        }
+        // Those that go on take the places of earlier ones.
+        const Barycentric to = ToBarycentric(pair.GetSourceCorners(next), point);
+        const Vector2 image =
+          Vector2{ batch.X[number], batch.Y[number] } - pair.Target[pair.Triangles[next][0]];
+        walkers.Triangles[left] = next;
+        walkers.Numbers[left] = number;
+        for (int k = 0; k < 3; ++k)
+        {
+          arrays.L[k][left] = to[k];
+        }
+        arrays.X[left] = image.x;
+        arrays.Y[left] = image.y;
+        arrays.Residual[left] = arrays.Residual[i];
+        arrays.Move[left] = 0.0;
+        arrays.States[left] = CubicWalkers::OnTheWay;
+        ++left;
+      }
+    });
+    walkers.Count = left;
+    fill(left);
+  }
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const
+{
+  this->MoveToChildren(batch);
+  const PlanarPair& pair = this->GetFine();
+  const double* const l[3] = { batch.L[0], batch.L[1], batch.L[2] };
+  std::int64_t isMiddle[CubicBatch::Size];
+  Walkers walkers;
+  ForEachRun(batch.Triangles, batch.Count, [&](int begin, int end, int t) {
+    const std::array<std::int32_t, 3>& corners = pair.Triangles[t];
+    const Vector2 origin = pair.Source[corners[0]];
+    if (this->IsWhole(t))
+    {
+      const Vector2 image = pair.Target[corners[0]];
+      CubicWalkers& arrays = walkers.Arrays;
+      const int first = walkers.Count;
+      const int count = end - begin;
+      for (int k = 0; k < 3; ++k)
+      {
+        std::copy_n(batch.L[k] + begin, count, arrays.L[k] + first);
+      }
+      for (int i = 0; i < count; ++i)
+      {
+        walkers.Triangles[first + i] = t;
+        walkers.Numbers[first + i] = begin + i;
+        arrays.X[first + i] = batch.X[begin + i] - image.x;
+        arrays.Y[first + i] = batch.Y[begin + i] - image.y;
+        arrays.Residual[first + i] = std::numeric_limits<double>::infinity();
+        arrays.Move[first + i] = 0.0;
+      }
+      walkers.Count += count;
+      return;
+    }
+    if (!this->Bending)
+    {
+      const CubicTemplate::MiddleBounds& bounds = this->Template->GetMiddle(t);
+      MapMiddle({ origin, pair.Source[corners[1]], pair.Source[corners[2]] }, bounds.Least,
+        bounds.Greatest, l, begin, end, batch.ImageX, batch.ImageY, isMiddle);
+    }
+    const std::array<Vector2, 3> edges = pair.GetSourceCorners(t);
+    for (int i = begin; i < end; ++i)
+    {
+      if (this->Bending || isMiddle[i] == 0)
+      {
+        int triangle = t;
+        Vector2 point = batch.L[1][i] * edges[1] + batch.L[2][i] * edges[2];
+        const bool found =
+          this->FindByWalking({ batch.X[i], batch.Y[i] }, triangle, point, prepared);
+        const Vector2 preimage = pair.Source[pair.Triangles[triangle][0]] + point;
+        batch.Triangles[i] = found ? triangle : -1;
+        batch.ImageX[i] = preimage.x;
+        batch.ImageY[i] = preimage.y;
+      }
+    }
+  });
+  this->FindByNets(batch, walkers, prepared);
+  for (int i = 0; this->Levels > 0 && i < batch.Count; ++i)
+  {
+    batch.Triangles[i] = batch.Triangles[i] < 0 ? -1 : batch.Triangles[i] >> (2 * this->Levels);
+  }
+}
+
 //------------------------------------------------------------------------------
 bool CubicMap::FindPreimage(
   const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const
 {
-  // Newton's method from the piecewise linear preimage, walking over the triangles. All positions
-  // are relative to corner 0 of the current triangle.
+  CubicBatch batch;
+  batch.Count = 1;
+  batch.Triangles[0] = triangle;
+  const Barycentric l = ToBarycentric(this->Pair.GetTargetCorners(triangle),
+    image - this->Pair.Target[this->Pair.Triangles[triangle][0]]);
+  for (int k = 0; k < 3; ++k)
+  {
+    std::fill_n(batch.L[k], WidestVector, l[k]);
+  }
+  batch.X[0] = image.x;
+  batch.Y[0] = image.y;
+  this->FindPreimages(batch, prepared);
+  if (batch.Triangles[0] < 0)
+  {
+    return false;
+  }
+  triangle = batch.Triangles[0];
+  point = { batch.ImageX[0], batch.ImageY[0] };
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool CubicMap::FindByWalking(
+  const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const
+{
+  // Newton's method, walking over the triangles. All positions are relative to corner 0 of the
+  // current triangle.
   const PlanarPair& pair = this->GetFine();
-  const Vector2 origin = pair.Target[this->Pair.Triangles[triangle][0]];
   int t = triangle;
-  Vector2 x;
-  if (this->Levels > 0)
-  {
-    const Vector2 absolute = this->Pair.Source[this->Pair.Triangles[triangle][0]] +
-      Solve(this->Pair.GetAffine(triangle), image - origin);
-    t = this->FindChild(triangle, absolute);
-    x = absolute - pair.Source[pair.Triangles[t][0]];
-  }
-  else
-  {
-    prepared.Set(t);
-    x = Solve(prepared.GetAffine(), image - origin);
-  }
+  Vector2 x = point;
   this->Walk(t, x);
   Vector2 residual;
   Matrix2 derivative;
@@ -478,6 +723,8 @@ bool CubicMap::FindPreimage(
   int at = t;
   Vector2 from = x;
   double lastMove = 0.0;
+  int lastTriangle = -1;
+  int lastElement = -1;
   for (int step = 0; step < 20; ++step)
   {
     prepared.Set(at);
@@ -492,25 +739,26 @@ bool CubicMap::FindPreimage(
     x = from;
     // Within one element, the error of a step is about a constant times the square of its length,
     // and so is the error of the next. That of the last step may be small by chance, if second
-    // derivatives change their sign along it: the next step must be short beside the triangle, too.
+    // derivatives change their sign along it: the next step must be short beside the element, too.
     const double length = MaxNorm(move);
-    const double next = step > 0 ? now * (length / lastMove) * (length / lastMove) : now;
-    const std::array<Vector2, 3> corners = pair.GetSourceCorners(at);
-    const bool isShort = MostBending * now * length <=
-      this->ResidualTolerance * std::max(MaxNorm(corners[1]), MaxNorm(corners[2]));
+    const bool isSame = at == lastTriangle && prepared.GetLastElement() == lastElement;
+    const double next = isSame ? now * (length / lastMove) * (length / lastMove) : now;
+    const bool isShort =
+      MostBending * now * length <= this->ResidualTolerance * prepared.GetScale();
     size = now;
     if (now <= 0.5 * this->ResidualTolerance)
     {
       break;
     }
+    lastTriangle = at;
+    lastElement = prepared.GetLastElement();
     const Vector2 aim = from + move;
     from = aim;
     this->Walk(at, from);
     // Not where the walk ended at the boundary.
     const bool isInside = at == t && from.x == aim.x && from.y == aim.y;
-    if (isInside && prepared.IsWhole() && isShort && next <= 1e-3 * this->ResidualTolerance)
+    if (isInside && isShort && next <= 1e-3 * this->ResidualTolerance)
     {
-      t = at;
       x = from;
       size = next;
       break;
@@ -563,13 +811,13 @@ bool CubicMap::FindPreimage(
     Vector2 better;
     if (this->SearchPreimage(image, found, better))
     {
-      triangle = found >> (2 * this->Levels);
-      point = better;
+      triangle = found;
+      point = better - pair.Source[pair.Triangles[found][0]];
       return true;
     }
   }
-  triangle = t >> (2 * this->Levels);
-  point = pair.Source[pair.Triangles[t][0]] + x;
+  triangle = t;
+  point = x;
   return size <= this->ResidualTolerance;
 }
 

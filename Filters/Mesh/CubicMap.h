@@ -34,6 +34,26 @@ struct CubicMapStatistics
   BendingStatistics Bending;
 };
 
+/// Points that are mapped together, as a structure of arrays.
+struct CubicBatch
+{
+  static constexpr int Capacity = 256;
+  /// Capacity rounded up to whole SIMD vectors.
+  static constexpr int Size = Capacity + WidestVector;
+
+  int Count = 0;
+  /// The triangle of each point where the piecewise linear map, or its inverse, has it; negative
+  /// for a point that is not to be mapped.
+  std::int32_t Triangles[Capacity];
+  /// Barycentric coordinates for its corners 0, 1, 2.
+  double L[3][Size];
+  /// The points, and their images or preimages.
+  double X[Size];
+  double Y[Size];
+  double ImageX[Size];
+  double ImageY[Size];
+};
+
 /// Immutable; any number of threads may use it.
 class CubicMap
 {
@@ -55,7 +75,7 @@ public:
   /// What the functions below need to be fast for many points, one triangle after another.
   CubicTriangle Prepare() const { return CubicTriangle(*this->Template, this->Bending.get()); }
 
-  /// What MapDirectly reads of a triangle, null if little.
+  /// What MapPoints reads of a triangle, null if little.
   const CubicNet* GetNet(int triangle) const
   {
     return this->Levels == 0 && this->Bending && !this->Bending->Nets.empty()
@@ -63,29 +83,13 @@ public:
       : nullptr;
   }
 
-  /// The image of the point of a triangle with barycentric coordinates @a l, or its preimage, if
-  /// that takes no more than a formula: returns whether.
-  bool MapDirectly(bool inverse, int triangle, const Barycentric& l, Vector2& image) const
-  {
-    if (this->Levels > 0)
-    {
-      return false;
-    }
-    const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[triangle];
-    if (this->Bending)
-    {
-      if (inverse || this->Bending->Cuts[triangle] >= 0)
-      {
-        return false;
-      }
-      image = this->Pair.Target[corners[0]] + this->Bending->Nets[triangle](l);
-      return true;
-    }
-    const std::vector<Vector2>& points = inverse ? this->Pair.Source : this->Pair.Target;
-    const Vector2 origin = points[corners[0]];
-    image = origin + l[1] * (points[corners[1]] - origin) + l[2] * (points[corners[2]] - origin);
-    return this->Template->IsInMiddle(triangle, l);
-  }
+  /// Sets the images of a batch. They do not depend on what else is in the batch.
+  void MapPoints(CubicBatch& batch, CubicTriangle& prepared) const;
+
+  /// Sets the preimages of a batch, and the triangles in which they lie: -1 where no point of the
+  /// domain is found, which happens to an image outside the target's domain only. They do not
+  /// depend on what else is in the batch.
+  void FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const;
 
   /// The image of a point of a triangle.
   Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const;
@@ -114,7 +118,22 @@ public:
 
 private:
   const PlanarPair& GetFine() const { return this->Fine ? *this->Fine : this->Pair; }
+  bool IsWhole(int fineTriangle) const
+  {
+    return this->Bending && this->Bending->Cuts[fineTriangle] < 0;
+  }
   int FindChild(int triangle, const Vector2& point) const;
+  /// The triangle of the refined pair at a point of a triangle, whose coordinates become those in
+  /// it.
+  int FindChild(int triangle, Barycentric& l) const;
+  void MoveToChildren(CubicBatch& batch) const;
+  struct Walkers;
+  /// Newton's method in whole triangles, as far as it goes; the rest is left to FindByWalking.
+  void FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& prepared) const;
+  /// Finds the preimage that is near a point relative to corner 0 of a triangle of the refined
+  /// pair; both are changed.
+  bool FindByWalking(
+    const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const;
   void MapFine(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
   /// Moves a point relative to corner 0 of a triangle, and the triangle, to where the point is.
   void Walk(int& triangle, Vector2& point) const;

@@ -118,7 +118,7 @@ Vector2 TriangleCut::GetNode(int node, int origin) const
 }
 
 //------------------------------------------------------------------------------
-int TriangleCut::Find(const Vector2& point) const
+int TriangleCut::FindBesideEdges(const Vector2& point) const
 {
   std::array<Vector2, 3> from;
   std::array<double, 3> height;
@@ -180,6 +180,17 @@ int TriangleCut::Find(const Vector2& point) const
         return FirstStrip + 2 * k + (upper ? 1 : 0);
       }
     }
+  }
+  return FirstMiddle;
+}
+
+//------------------------------------------------------------------------------
+int TriangleCut::Find(const Vector2& point) const
+{
+  const int number = this->FindBesideEdges(point);
+  if (number < FirstMiddle)
+  {
+    return number;
   }
   for (int n = 0; n < 3; ++n)
   {

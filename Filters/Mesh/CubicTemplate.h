@@ -66,6 +66,9 @@ struct TriangleCut
 
   /// The element that contains a point of the triangle, relative to corner 0.
   int Find(const Vector2& point) const;
+
+  /// The same for a point in a corner or a strip, FirstMiddle in the middle.
+  int FindBesideEdges(const Vector2& point) const;
 };
 
 /// What a vertex is for the template.
@@ -118,18 +121,14 @@ public:
   /// not differentiable.
   Matrix2 GetGradient(const TriangleCut& cut, const Matrix2& affine, int triangle, int node) const;
 
-  /// Whether a point with these barycentric coordinates lies in the middle of its triangle, where
-  /// the map is affine, beyond doubt.
-  bool IsInMiddle(int triangle, const Barycentric& l) const
+  /// Of each barycentric coordinate between the strip of an edge and the corner opposite it: where
+  /// all are within, the map is affine.
+  struct MiddleBounds
   {
-    const MiddleBounds& bounds = this->Middles[triangle];
-    bool isIn = true;
-    for (int k = 0; k < 3; ++k)
-    {
-      isIn = isIn & (l[k] > bounds.Least[k]) & (l[k] < bounds.Greatest[k]);
-    }
-    return isIn;
-  }
+    std::array<double, 3> Least;
+    std::array<double, 3> Greatest;
+  };
+  const MiddleBounds& GetMiddle(int triangle) const { return this->Middles[triangle]; }
 
   /// The element, relative to the cut's GetOrigin(element) in the source and in the target. Not for
   /// those at a corner that is not differentiable.
@@ -195,12 +194,6 @@ private:
   std::vector<std::uint8_t> Boundary;
   std::vector<Matrix2> Affines;
   std::vector<std::array<double, 3>> Heights;
-  /// Of each barycentric coordinate between the strip of an edge and the corner opposite it.
-  struct MiddleBounds
-  {
-    std::array<double, 3> Least;
-    std::array<double, 3> Greatest;
-  };
   std::vector<MiddleBounds> Middles;
   /// Of triangles that are certified by bounds, and 0.
   std::vector<float> Certificates;

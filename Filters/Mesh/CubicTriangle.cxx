@@ -3,8 +3,58 @@
 
 #include "Mesh/CubicTriangle.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace homeomorphism
 {
+namespace
+{
+
+Vector2 Normal(const Vector2& along)
+{
+  return { -along.y, along.x };
+}
+
+/// The elements that are zero at the corners and on the edges, with their derivatives, but for the
+/// derivative across one edge: 9/2 of the opposite corner's barycentric coordinate in its middle.
+/// With the notation of CubicNet, that of edge k is 18 n_i n_j m + 9 (n_i + n_j) m^2 + 6 m^3.
+class EdgeBubbles
+{
+public:
+  explicit EdgeBubbles(const Barycentric& l)
+    : Least(l[0] <= l[1] ? (l[0] <= l[2] ? 0 : 2) : (l[1] <= l[2] ? 1 : 2))
+    , M(l[Least])
+    , N{ l[0] - M, l[1] - M, l[2] - M }
+  {
+  }
+
+  double operator[](int k) const
+  {
+    const double i = this->N[NextCorner(k)];
+    const double j = this->N[PreviousCorner(k)];
+    return this->M * (18.0 * i * j + this->M * (9.0 * (i + j) + 6.0 * this->M));
+  }
+
+  /// By the barycentric coordinates, which have the gradients @a by.
+  Vector2 GetGradient(int k, const std::array<Vector2, 3>& by) const
+  {
+    const double i = this->N[NextCorner(k)];
+    const double j = this->N[PreviousCorner(k)];
+    const double byI = this->M * (18.0 * j + 9.0 * this->M);
+    const double byJ = this->M * (18.0 * i + 9.0 * this->M);
+    const double byM = 18.0 * (i * j + this->M * (i + j + this->M));
+    return byI * by[NextCorner(k)] + byJ * by[PreviousCorner(k)] +
+      (byM - byI - byJ) * by[this->Least];
+  }
+
+private:
+  int Least;
+  double M;
+  std::array<double, 3> N;
+};
+
+} // anonymous namespace
 
 //------------------------------------------------------------------------------
 void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin)
@@ -39,60 +89,56 @@ void CubicTriangle::Set(int triangle)
   }
   this->Cut = this->Template.GetCut(triangle);
   this->Made.fill(-1);
+  for (EdgeTurn& edge : this->Edges)
+  {
+    edge.IsMade = false;
+  }
   for (int c = 0; c < 3; ++c)
   {
-    const Vector2 first = this->Cut.GetNode(9 + 2 * PreviousCorner(c), c);
-    const Vector2 last = this->Cut.GetNode(10 + 2 * NextCorner(c), c);
-    const Vector2 along = last - first;
-    this->CornerNormals[c] = { along.y, -along.x };
-    this->CornerOffsets[c] = Dot(this->CornerNormals[c], first + this->Cut.Corners[c]);
     this->InRings[c] =
       this->Template.GetKind(pair.Triangles[triangle][c]) != VertexKind::Differentiable;
   }
 }
 
 //------------------------------------------------------------------------------
-const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point, int& ringCorner)
+double CubicTriangle::GetScale() const
 {
-  ringCorner = -1;
+  if (!this->Whole)
+  {
+    const std::array<double, 3>& heights = this->Cut.Heights;
+    return std::min({ heights[0], heights[1], heights[2] });
+  }
+  const std::array<Vector2, 3>& points = this->Elements[0].Points;
+  return std::max(
+    { std::abs(points[1].x), std::abs(points[1].y), std::abs(points[2].x), std::abs(points[2].y) });
+}
+
+//------------------------------------------------------------------------------
+const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point)
+{
+  int& number = this->LastElement;
   if (this->Whole)
   {
+    number = 0;
     return &this->Elements[0];
   }
   const TriangleCut& cut = this->Cut;
   if (!this->Bending)
   {
-    // Most points are in the middle, where the template is affine.
-    bool inMiddle = true;
-    for (int k = 0; k < 3; ++k)
-    {
-      const Vector2 d = point - cut.Corners[NextCorner(k)];
-      inMiddle = inMiddle & (Cross(cut.Along[k], d) > cut.Heights[k]) &
-        (Dot(this->CornerNormals[k], point) > this->CornerOffsets[k]);
-    }
-    if (inMiddle)
-    {
-      return nullptr;
-    }
-  }
-  const int number = cut.Find(point);
-  if (number >= TriangleCut::FirstMiddle && !this->Bending)
-  {
+    number = cut.FindBesideEdges(point);
     return nullptr;
   }
+  number = cut.Find(point);
   const int origin = TriangleCut::GetOrigin(number);
   if (number < TriangleCut::FirstStrip && this->InRings[origin])
   {
-    ringCorner = origin;
     return nullptr;
   }
   if (this->Made[number] < 0)
   {
     this->Made[number] = static_cast<std::int8_t>(this->Elements.size());
-    const PlanarPair& pair = this->Template.GetPair();
-    const CubicElement element = this->Bending
-      ? this->Bending->GetElement(pair, cut, this->Affine, this->Triangle, number)
-      : this->Template.GetElement(cut, this->Affine, this->Triangle, number);
+    const CubicElement element = this->Bending->GetElement(
+      this->Template.GetPair(), cut, this->Affine, this->Triangle, number);
     this->Make(element.Points, CubicNet(element), origin);
   }
   return &this->Elements[this->Made[number]];
@@ -101,28 +147,25 @@ const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point, int& rin
 //------------------------------------------------------------------------------
 Vector2 CubicTriangle::Map(const Vector2& point)
 {
-  int ringCorner;
-  const Element* element = this->Find(point, ringCorner);
+  const Element* element = this->Find(point);
   if (element)
   {
     return element->TargetOrigin + element->Net(element->Frame(point - element->SourceOrigin));
   }
-  Matrix2 derivative;
-  return this->MapOutside(point, ringCorner, derivative);
+  return this->MapInClosedForm(point, nullptr);
 }
 
 //------------------------------------------------------------------------------
 Vector2 CubicTriangle::GetResidual(const Vector2& point, const Vector2& image, Vector2& step)
 {
-  int ringCorner;
-  const Element* element = this->Find(point, ringCorner);
+  const Element* element = this->Find(point);
   if (element)
   {
     return element->Net.GetResidual(element->Frame(point - element->SourceOrigin), element->Points,
       image - element->TargetOrigin, step);
   }
   Matrix2 derivative;
-  const Vector2 residual = image - this->MapOutside(point, ringCorner, derivative);
+  const Vector2 residual = image - this->MapInClosedForm(point, &derivative);
   const double determinant = derivative.Determinant();
   step = { Cross(residual, derivative.ImageOfY) / determinant,
     Cross(derivative.ImageOfX, residual) / determinant };
@@ -130,19 +173,165 @@ Vector2 CubicTriangle::GetResidual(const Vector2& point, const Vector2& image, V
 }
 
 //------------------------------------------------------------------------------
-Vector2 CubicTriangle::MapOutside(const Vector2& point, int ringCorner, Matrix2& derivative) const
+Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative)
 {
-  if (ringCorner < 0)
+  const int number = this->LastElement;
+  const int origin = TriangleCut::GetOrigin(number);
+  if (number < TriangleCut::FirstStrip && this->InRings[origin])
   {
-    derivative = this->Affine;
-    return this->Affine * point;
+    const PlanarPair& pair = this->Template.GetPair();
+    const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Triangle];
+    Vector2 image;
+    Matrix2 there;
+    this->Template.EvaluateRings(
+      this->Triangle, origin, point - this->Cut.Corners[origin], image, there);
+    if (derivative)
+    {
+      *derivative = there;
+    }
+    return image + (pair.Target[corners[origin]] - pair.Target[corners[0]]);
   }
-  const PlanarPair& pair = this->Template.GetPair();
-  const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Triangle];
-  Vector2 image;
-  this->Template.EvaluateRings(
-    this->Triangle, ringCorner, point - this->Cut.Corners[ringCorner], image, derivative);
-  return image + (pair.Target[corners[ringCorner]] - pair.Target[corners[0]]);
+  if (derivative)
+  {
+    *derivative = this->Affine;
+  }
+  const Vector2 image = this->Affine * point;
+  if (number >= TriangleCut::FirstMiddle)
+  {
+    return image;
+  }
+  return image +
+    (number < TriangleCut::FirstStrip ? this->DeviateInCorner(point, number, derivative)
+                                      : this->DeviateInStrip(point, number, derivative));
+}
+
+//------------------------------------------------------------------------------
+const CubicTriangle::EdgeTurn& CubicTriangle::GetEdge(int k)
+{
+  EdgeTurn& edge = this->Edges[k];
+  if (edge.IsMade)
+  {
+    return edge;
+  }
+  edge.IsMade = true;
+  const TriangleCut& cut = this->Cut;
+  const double height = cut.Heights[k];
+  const double strip = cut.Lengths[k] - cut.Radii[NextCorner(k)] - cut.Radii[PreviousCorner(k)];
+  edge.InverseHeight = 1.0 / height;
+  edge.InverseStrip = 1.0 / strip;
+  const double mu = height * edge.InverseStrip;
+  edge.StripShare = 1.0 / (1.0 + mu * mu);
+  edge.Turn = {};
+  const int neighbor = this->Template.GetPair().Neighbors[this->Triangle][k];
+  if (neighbor >= 0)
+  {
+    const Matrix2& across = this->Template.GetAffine(neighbor);
+    const double d = this->Affine.Determinant();
+    const double share = d / (d + across.Determinant());
+    edge.Turn = (share * height) * ((across - this->Affine) * Normal(cut.Along[k]));
+  }
+  return edge;
+}
+
+//------------------------------------------------------------------------------
+// In the strip along an edge, with s along the edge points and t across, from 0 to 1, the map is
+// L x + w c m g, g = t (1 - t)^2 with the diagonal's bubble.
+Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2* derivative)
+{
+  const int k = (number - TriangleCut::FirstStrip) / 2;
+  const TriangleCut& cut = this->Cut;
+  const EdgeTurn& edge = this->GetEdge(k);
+  const Vector2 d = point - cut.Corners[NextCorner(k)];
+  const double s = (Dot(cut.Along[k], d) - cut.Radii[NextCorner(k)]) * edge.InverseStrip;
+  const double t = Cross(cut.Along[k], d) * edge.InverseHeight;
+  // The ends of the diagonal are corners 0 and 2.
+  const bool isUpper = (number - TriangleCut::FirstStrip) % 2 == 1;
+  const EdgeBubbles bubbles(
+    isUpper ? Barycentric{ 1.0 - t, t - s, s } : Barycentric{ 1.0 - s, s - t, t });
+  const double factor = (isUpper ? 1.0 : -1.0) / 6.0 * edge.StripShare;
+  const double rest = 1.0 - t;
+  if (derivative)
+  {
+    const Vector2 byS = edge.InverseStrip * cut.Along[k];
+    const Vector2 byT = edge.InverseHeight * Normal(cut.Along[k]);
+    const Vector2 bubble = isUpper ? bubbles.GetGradient(1, { -1.0 * byT, byT - byS, byS })
+                                   : bubbles.GetGradient(1, { -1.0 * byS, byS - byT, byT });
+    *derivative =
+      *derivative + OuterProduct(edge.Turn, rest * (1.0 - 3.0 * t) * byT + factor * bubble);
+  }
+  return (t * rest * rest + factor * bubbles[1]) * edge.Turn;
+}
+
+//------------------------------------------------------------------------------
+// Beside a corner whose derivative differs from L by B, the map is L x + l_0^2 B x with bubbles
+// that make the normal derivatives on the corner's edges linear. Elements with a right angle have
+// the part of the edge besides.
+Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2* derivative)
+{
+  constexpr double eighteenth = 1.0 / 18.0;
+  const int c = number / 3;
+  const TriangleCut& cut = this->Cut;
+  const Vector2 x = point - cut.Corners[c];
+  const int id = this->Template.GetPair().Triangles[this->Triangle][c];
+  const Matrix2 turn = this->Template.GetDerivative(id) - this->Affine;
+  const Vector2 linear = turn * x;
+  if (number % 3 == 1)
+  {
+    const Vector2 a = cut.GetNode(9 + 2 * PreviousCorner(c), c);
+    const Vector2 b = cut.GetNode(10 + 2 * NextCorner(c), c);
+    const double inverse = 1.0 / Cross(a, b);
+    const double first = inverse * Cross(x, b);
+    const double second = inverse * Cross(a, x);
+    const double l = 1.0 - first - second;
+    const Vector2 imageOfA = turn * a;
+    const Vector2 imageOfB = turn * b;
+    const double product = 3.0 * Dot(a, b);
+    const Vector2 besideA = eighteenth * (imageOfB + (2.0 - product / Dot(a, a)) * imageOfA);
+    const Vector2 besideB = eighteenth * (imageOfA + (2.0 - product / Dot(b, b)) * imageOfB);
+    const EdgeBubbles bubbles({ l, first, second });
+    if (derivative)
+    {
+      const Vector2 byFirst{ inverse * b.y, -inverse * b.x };
+      const Vector2 bySecond{ -inverse * a.y, inverse * a.x };
+      const std::array<Vector2, 3> by{ -1.0 * (byFirst + bySecond), byFirst, bySecond };
+      *derivative = *derivative + (l * l) * turn + OuterProduct((2.0 * l) * linear, by[0]) +
+        OuterProduct(besideA, bubbles.GetGradient(2, by)) +
+        OuterProduct(besideB, bubbles.GetGradient(1, by));
+    }
+    return (l * l) * linear + bubbles[2] * besideA + bubbles[1] * besideB;
+  }
+  // The vertex, the edge point and the inner point are corners 0, 1 and 2; s runs along the edge
+  // and t across, from 0 to 1.
+  const bool isFirst = number % 3 == 0;
+  const int k = isFirst ? PreviousCorner(c) : NextCorner(c);
+  const EdgeTurn& edge = this->GetEdge(k);
+  const Vector2 tangent = (isFirst ? 1.0 : -1.0) * cut.Along[k];
+  const Vector2 normal = Normal(cut.Along[k]);
+  const double inverseRadius = 1.0 / cut.Radii[c];
+  const double s = Dot(tangent, x) * inverseRadius;
+  const double t = Dot(normal, x) * edge.InverseHeight;
+  const double mu = cut.Heights[k] * inverseRadius;
+  const double share = 1.0 / (1.0 + mu * mu);
+  const Vector2 along = cut.Radii[c] * (turn * tangent);
+  const Vector2 across = cut.Heights[k] * (turn * normal);
+  const Vector2 besideDiagonal =
+    ((mu * mu * share) / 6.0) * along + (1.0 / 9.0 - share / 6.0) * across;
+  const Vector2 besideEdge = eighteenth * (across + edge.Turn);
+  const double l = 1.0 - s;
+  const EdgeBubbles bubbles({ l, s - t, t });
+  if (derivative)
+  {
+    const Vector2 byS = inverseRadius * tangent;
+    const Vector2 byT = edge.InverseHeight * normal;
+    const std::array<Vector2, 3> by{ -1.0 * byS, byS - byT, byT };
+    const Vector2 own =
+      (s - t) * ((2.0 * t) * byS + (s - 3.0 * t) * byT) + (1.0 / 9.0) * bubbles.GetGradient(0, by);
+    *derivative = *derivative + (l * l) * turn + OuterProduct((2.0 * l) * linear, by[0]) +
+      OuterProduct(besideDiagonal, bubbles.GetGradient(1, by)) +
+      OuterProduct(besideEdge, bubbles.GetGradient(2, by)) + OuterProduct(edge.Turn, own);
+  }
+  return (l * l) * linear + bubbles[1] * besideDiagonal + bubbles[2] * besideEdge +
+    ((s - t) * (s - t) * t + (1.0 / 9.0) * bubbles[0]) * edge.Turn;
 }
 
 } // namespace homeomorphism

@@ -18,7 +18,8 @@
 namespace homeomorphism
 {
 
-/// Elements are made when a point in them is mapped for the first time, and kept until another
+/// The template is evaluated in closed form (see Documentation/cubic.md). Other elements of cut
+/// triangles are made when a point in them is mapped for the first time, and kept until another
 /// triangle is set. What it computes depends on the triangle and the point alone.
 class CubicTriangle
 {
@@ -31,10 +32,11 @@ public:
   }
 
   void Set(int triangle);
-  /// Whether the map is one element there.
-  bool IsWhole() const { return this->Whole; }
-  /// Of the piecewise linear map.
-  const Matrix2& GetAffine() const { return this->Affine; }
+  /// The element in which the last point was, as a number of the cut's.
+  int GetLastElement() const { return this->LastElement; }
+  /// The length of a whole triangle, or the least height of the inner points of a cut one: second
+  /// derivatives change on this scale.
+  double GetScale() const;
 
   /// The image of a point relative to that of corner 0, both relative to it.
   Vector2 Map(const Vector2& point);
@@ -53,23 +55,38 @@ private:
     Vector2 TargetOrigin;
   };
 
+  /// What the template's map needs beside an edge.
+  struct EdgeTurn
+  {
+    bool IsMade = false;
+    /// w c m: the jump of the derivative across the edge, times the share of it that is taken at
+    /// the edge points, times the height.
+    Vector2 Turn;
+    double InverseHeight = 0.0;
+    /// Between the edge points, and 1 / (1 + mu^2) there.
+    double InverseStrip = 0.0;
+    double StripShare = 0.0;
+  };
+
   void Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin);
-  /// The element that contains a point, null if the map is affine or inside rings there.
-  const Element* Find(const Vector2& point, int& ringCorner);
-  /// Where there is no element.
-  Vector2 MapOutside(const Vector2& point, int ringCorner, Matrix2& derivative) const;
+  /// Sets LastElement to that which contains a point. Null if the map is in closed form there.
+  const Element* Find(const Vector2& point);
+  /// Where there is no element. @a derivative may be null.
+  Vector2 MapInClosedForm(const Vector2& point, Matrix2* derivative);
+  const EdgeTurn& GetEdge(int k);
+  /// The template's map less the affine one. Adds its derivative to @a derivative unless null.
+  Vector2 DeviateInStrip(const Vector2& point, int number, Matrix2* derivative);
+  Vector2 DeviateInCorner(const Vector2& point, int number, Matrix2* derivative);
 
   const CubicTemplate& Template;
   const BendingSolution* Bending;
   int Triangle = -1;
   bool Whole = false;
+  int LastElement = 0;
   Matrix2 Affine;
   TriangleCut Cut;
-  /// Half planes of the points in the middle hexagon: those beyond the line of a corner's inner
-  /// points.
-  std::array<Vector2, 3> CornerNormals;
-  std::array<double, 3> CornerOffsets;
   std::array<std::uint8_t, 3> InRings{};
+  std::array<EdgeTurn, 3> Edges;
   /// Those that are made, a whole triangle's alone, and where each of a cut one's is, -1 if
   /// nowhere.
   std::vector<Element> Elements;

@@ -411,12 +411,13 @@ int Homeomorphism::LocateBlock(
   return outside;
 }
 
-void Homeomorphism::MapBlock(Domain from, PointBlock& block) const
+int Homeomorphism::MapBlock(Domain from, PointBlock& block) const
 {
+  int missing = 0;
   switch (this->GetCharts(from).GetSystem())
   {
     case CoordinateSystem::Cubic:
-      this->MapByCubics(from, block);
+      missing = this->MapByCubics(from, block);
       break;
     case CoordinateSystem::Smooth:
       this->MapByStrips(from, block);
@@ -441,6 +442,7 @@ void Homeomorphism::MapBlock(Domain from, PointBlock& block) const
       this->MapPoint(from, block.GetSurfacePoint(i), block.Images[i]);
     }
   }
+  return missing;
 }
 
 /// Maps a run of points by the affine map of their triangle.
@@ -535,37 +537,45 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
 }
 
 /// Maps the points by the Cubic system.
-void Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
+int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
 {
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   // Prefetch to hide memory latency.
   ForEachRun(
     block, [&](int, int, TriangleIndex t) { this->Cubic->PrefetchTriangle(t); }, [](int) {});
-  CubicTriangle prepared = this->Cubic->GetMap().Prepare();
+  static_assert(CubicBatch::Capacity == PointBlock::Capacity, "A batch is a block");
+  CubicBatch batch;
+  batch.Count = block.Count;
+  const double* const inFrame[2] = { block.InPlane[0], block.InPlane[1] };
+  double heights[PointBlock::Capacity];
   ForEachRun(
     block,
     [&](int begin, int end, TriangleIndex t) {
-      const std::array<const double*, 3> l = this->ByCorner(from, t, block);
+      this->Cubic->SetPoints(
+        this->ToCubic(from), t, begin, end, this->ByCorner(from, t, block).data(), inFrame, batch);
+      // Heights are measured as in the triangle's frame.
+      const double orientation = target.IsColumnar() ? 1.0 : target.GetPlaneFrame(t).Orientation;
       for (int i = begin; i < end; ++i)
       {
-        this->MapByCubic(
-          from, block.GetSurfacePoint(i), { l[0][i], l[1][i], l[2][i] }, prepared, block.Images[i]);
+        heights[i] = orientation * this->OffsetOfImage(from, block.Offsets[i]);
       }
     },
-    [](int) {});
-}
-
-void Homeomorphism::MapByCubic(Domain from, const SurfacePoint& surfacePoint, const Barycentric& l,
-  CubicTriangle& prepared, double image[3]) const
-{
-  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  const Vector2 inPlane = this->Cubic->MapPoint(
-    this->ToCubic(from), surfacePoint.Triangle, l, surfacePoint.Point.InPlane, prepared);
-  // Heights are measured as in the triangle's frame.
-  const double orientation =
-    target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
-  target.FromNormalized(
-    { inPlane.x, inPlane.y, orientation * this->OffsetOfImage(from, surfacePoint.Point.Offset) },
-    image);
+    [&](int other) {
+      batch.Triangles[other] = -1;
+      batch.ImageX[other] = batch.ImageY[other] = heights[other] = 0.0;
+    });
+  this->Cubic->MapPoints(this->ToCubic(from), batch);
+  target.FromNormalized(batch.ImageX, batch.ImageY, heights, block.Count, block.Images);
+  int missing = 0;
+  for (int i = 0; i < block.Count; ++i)
+  {
+    if (batch.Triangles[i] < 0 && block.Triangles[i] >= 0 && block.Corners[i] < 0)
+    {
+      block.Triangles[i] = -1;
+      ++missing;
+    }
+  }
+  return missing;
 }
 
 /// From barycentric coordinates in the target's affine chart of a triangle to its points.
@@ -614,7 +624,7 @@ auto Homeomorphism::VisitCharts(Domain from, TriangleIndex triangle, Use&& use) 
   }
 }
 
-void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
+bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
 {
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const double offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
@@ -623,31 +633,40 @@ void Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
     target.FromMeshPoint(
       this->Pair->GetTriangulation().GetCorners(surfacePoint.Triangle)[surfacePoint.Corner], offset,
       image);
-    return;
+    return true;
   }
   if (this->Cubic)
   {
-    CubicTriangle prepared = this->Cubic->GetMap().Prepare();
     const Barycentric l = this->Pair->GetGeometry(from)
                             .GetShape(surfacePoint.Triangle)
                             .ToBarycentric(surfacePoint.Point.InPlane);
-    this->MapByCubic(from, surfacePoint, l, prepared, image);
-    return;
+    Vector2 inPlane;
+    const bool exists = this->Cubic->MapPoint(
+      this->ToCubic(from), surfacePoint.Triangle, l, surfacePoint.Point.InPlane, inPlane);
+    // Heights are measured as in the triangle's frame.
+    const double orientation =
+      target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
+    target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
+    return exists;
   }
   FramePoint point;
   point.Offset = offset;
   point.InPlane = this->MapInFrame(from, surfacePoint.Triangle, surfacePoint.Point.InPlane);
   target.FromNormalized(target.FromFrame(surfacePoint.Triangle, point), image);
+  return true;
 }
 
 Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const
 {
   if (this->Cubic)
   {
-    CubicTriangle prepared = this->Cubic->GetMap().Prepare();
     const Barycentric l = this->Pair->GetGeometry(from).GetShape(triangle).ToBarycentric(point);
-    const Vector2 inPlane =
-      this->Cubic->MapPoint(this->ToCubic(from), triangle, l, point, prepared);
+    Vector2 inPlane;
+    if (!this->Cubic->MapPoint(this->ToCubic(from), triangle, l, point, inPlane))
+    {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      return { none, none };
+    }
     return this->Pair->GetGeometry(Opposite(from)).GetPlaneFrame(triangle).ToFrame(inPlane);
   }
   return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {

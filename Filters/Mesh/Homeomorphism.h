@@ -21,7 +21,6 @@ namespace homeomorphism
 {
 
 class CubicHomeomorphism;
-class CubicTriangle;
 
 /// How a pair of meshes, or one triangulation, is to be understood.
 struct HomeomorphismOptions
@@ -129,18 +128,21 @@ public:
   SurfacePoint Locate(
     Domain domain, const double point[3], double tolerance, TriangleIndex hint) const;
 
-  /// The image of a point of @a from's domain. Corners are mapped to corners exactly.
-  void MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
+  /// The image of a point of @a from's domain. Corners are mapped to corners exactly. Returns false
+  /// if there is none: if @a surfacePoint is not in the domain after all, or where a Cubic map is
+  /// not certified.
+  bool MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
 
-  /// The image, in the frame of the target's triangle, of a point in the frame of @a from's.
+  /// The image, in the frame of the target's triangle, of a point in the frame of @a from's; not a
+  /// number if there is none.
   Vector2 MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const;
 
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
   int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const;
 
-  /// Maps the points of a block that LocateBlock has located, to the same bits as MapPoint. Nothing
-  /// but Images is changed.
-  void MapBlock(Domain from, PointBlock& block) const;
+  /// Maps the points of a block that LocateBlock has located, to the same bits as MapPoint. Points
+  /// that have no image become outside ones, of triangle -1; returns how many.
+  int MapBlock(Domain from, PointBlock& block) const;
 
   /// The derivative at a point; on an edge, the limit from the point's triangle.
   Jacobian GetJacobian(Domain from, const SurfacePoint& surfacePoint) const;
@@ -187,9 +189,7 @@ private:
     Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;
-  void MapByCubics(Domain from, PointBlock& block) const;
-  void MapByCubic(Domain from, const SurfacePoint& surfacePoint, const Barycentric& l,
-    CubicTriangle& prepared, double image[3]) const;
+  int MapByCubics(Domain from, PointBlock& block) const;
   Domain ToCubic(Domain domain) const { return this->IsCubicInverted ? Opposite(domain) : domain; }
   template <typename Coordinates>
   void LeaveTriangle(Domain from, TriangleIndex triangle, int begin, int end,

@@ -137,10 +137,16 @@ void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
 
 void ExpectBlocksLikePoints(const MeshPair& pair, const std::string& what)
 {
-  for (const auto system : { homeomorphism::CoordinateSystem::Linear,
-         homeomorphism::CoordinateSystem::Contour, homeomorphism::CoordinateSystem::Smooth })
+  for (const auto system :
+    { homeomorphism::CoordinateSystem::Linear, homeomorphism::CoordinateSystem::Contour,
+      homeomorphism::CoordinateSystem::Smooth, homeomorphism::CoordinateSystem::Cubic })
   {
     const auto map = Make(pair, system);
+    if (!map && system == homeomorphism::CoordinateSystem::Cubic)
+    {
+      // Surfaces are refused.
+      continue;
+    }
     ASSERT_TRUE(map) << what;
     for (const Domain domain : { Domain::Source, Domain::Target })
     {
@@ -190,6 +196,37 @@ TEST(PointBlocks, BlocksEqualSinglePointsOnSurfaces)
   MeshPair mixed = MakePlanarPair(6, 25);
   mixed.Target = Moved(mixed, [](double x, double y) { return 0.1 * x * y; }).Target;
   ExpectBlocksLikePoints(mixed, "a plane and a surface");
+}
+
+TEST(PointBlocks, PointsWithoutPreimageAreOutside)
+{
+  // Located where they are not: beyond the domain, in the frame of a triangle.
+  const auto map = Make(MakePlanarPair(5, 27), homeomorphism::CoordinateSystem::Cubic);
+  ASSERT_TRUE(map);
+  const SurfacePoint far{ 3, { { 40.0, -70.0 }, 0.0 }, -1 };
+  double image[3];
+  EXPECT_FALSE(map->MapPoint(Domain::Target, far, image));
+  PointBlock block;
+  LocationHint hint;
+  block.Count = 3;
+  const Point inside{ 2.4, 2.6, 0.0 };
+  for (int i = 0; i < 3; ++i)
+  {
+    std::copy_n(inside.data(), 3, block.Points[i]);
+  }
+  ASSERT_EQ(map->LocateBlock(Domain::Target, block, 1e-12, hint), 0);
+  block.InPlane[0][1] = far.Point.InPlane.x;
+  block.InPlane[1][1] = far.Point.InPlane.y;
+  EXPECT_EQ(map->MapBlock(Domain::Target, block), 1);
+  EXPECT_EQ(block.Triangles[1], -1);
+  EXPECT_TRUE(IsSame(block.Images[1], inside.data(), 3));
+  for (int i : { 0, 2 })
+  {
+    const SurfacePoint located = map->Locate(Domain::Target, inside.data(), 1e-12, -1);
+    ASSERT_TRUE(map->MapPoint(Domain::Target, located, image));
+    EXPECT_EQ(block.Triangles[i], located.Triangle);
+    EXPECT_TRUE(IsSame(block.Images[i], image, 3));
+  }
 }
 
 TEST(PointBlocks, AnImageIsMappedLikeItsPoints)

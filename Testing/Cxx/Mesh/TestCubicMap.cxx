@@ -614,16 +614,129 @@ TEST(CubicMap, PreparedTrianglesChangeNothing)
         const Vector2 again = map.MapPoint(sample.Triangle, point, fresh);
         EXPECT_EQ(image.x, again.x);
         EXPECT_EQ(image.y, again.y);
-        Vector2 direct;
-        if (map.MapDirectly(false, sample.Triangle, sample.At, direct))
+      }
+    }
+  }
+}
+
+TEST(CubicMap, ClosedFormsAgreeWithTheElements)
+{
+  for (double strength : { 0.0, 1.2, 3.0 })
+  {
+    const PlanarPair pair = RandomPair(16, strength, 8);
+    const CubicTemplate cubicTemplate(pair, {});
+    CubicTriangle triangle(cubicTemplate, nullptr);
+    Sampler sampler(pair, 17);
+    for (int n = 0; n < 20000; ++n)
+    {
+      const Sample sample = sampler();
+      const std::array<Vector2, 3> corners = pair.GetSourceCorners(sample.Triangle);
+      const Vector2 point = sample.At[1] * corners[1] + sample.At[2] * corners[2];
+      Vector2 image;
+      Matrix2 derivative;
+      cubicTemplate.Evaluate(sample.Triangle, point, image, derivative);
+      triangle.Set(sample.Triangle);
+      // In the plane's axes, as elements are evaluated here, very thin ones lose digits.
+      EXPECT_LT(Norm(triangle.Map(point) - image), strength < 2.0 ? 1e-14 : 1e-12);
+      Vector2 step;
+      const Vector2 wanted = image + Vector2{ 1e-3, -2e-3 };
+      const Vector2 residual = triangle.GetResidual(point, wanted, step);
+      EXPECT_LT(Norm(derivative * step - residual),
+        (strength < 2.0 ? 1e-9 : 1e-7) * std::sqrt(SquaredNorm(derivative)) * (1e-3 + Norm(step)));
+    }
+  }
+}
+
+TEST(CubicMap, BatchesGiveTheBitsOfSinglePoints)
+{
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (int refinement = 0; refinement < (bending == CubicBending::Least ? 2 : 1); ++refinement)
+    {
+      for (double strength : { 0.0, 0.4, 1.2 })
+      {
+        CubicMapOptions options = Options(bending);
+        options.FairnessRefinement = refinement;
+        const CubicMap map(RandomPair(18, strength, 5), options);
+        const PlanarPair& pair = map.GetPair();
+        CubicTriangle prepared = map.Prepare();
+        Sampler sampler(pair, 19);
+        for (int round = 0; round < 10; ++round)
         {
-          EXPECT_LT(Norm(direct - image), 1e-14);
-          Vector2 preimage;
-          if (map.MapDirectly(true, sample.Triangle, sample.At, preimage))
+          // Runs of one to twenty points in a triangle.
+          CubicBatch points;
+          points.Count = CubicBatch::Capacity - round;
+          for (int i = 0; i < CubicBatch::Size; ++i)
           {
-            EXPECT_LT(Norm(preimage - point), 1e-14);
+            Sample sample = sampler();
+            const bool stays = i > 0 && i < points.Count && i % (7 * round + 1) % 20 != 0;
+            sample.Triangle = stays ? points.Triangles[i - 1] : sample.Triangle;
+            for (int k = 0; k < 3; ++k)
+            {
+              points.L[k][i] = sample.At[k];
+            }
+            if (i < points.Count)
+            {
+              const Vector2 point = PointAt(pair, pair.Source, sample);
+              points.X[i] = point.x;
+              points.Y[i] = point.y;
+              points.Triangles[i] = sample.Triangle;
+            }
+          }
+          for (bool inverse : { false, true })
+          {
+            CubicBatch batch = points;
+            for (int i = 0; i < points.Count && inverse; ++i)
+            {
+              const Vector2 image = PointAt(pair, pair.Target,
+                { points.Triangles[i], { points.L[0][i], points.L[1][i], points.L[2][i] } });
+              batch.X[i] = image.x;
+              batch.Y[i] = image.y;
+            }
+            const CubicBatch before = batch;
+            inverse ? map.FindPreimages(batch, prepared) : map.MapPoints(batch, prepared);
+            for (int i = 0; i < points.Count; ++i)
+            {
+              CubicBatch single;
+              single.Count = 1;
+              single.Triangles[0] = before.Triangles[i];
+              for (int k = 0; k < 3; ++k)
+              {
+                std::fill_n(single.L[k], WidestVector, before.L[k][i]);
+              }
+              single.X[0] = before.X[i];
+              single.Y[0] = before.Y[i];
+              CubicTriangle fresh = map.Prepare();
+              inverse ? map.FindPreimages(single, fresh) : map.MapPoints(single, fresh);
+              EXPECT_EQ(batch.Triangles[i], single.Triangles[0]);
+              EXPECT_EQ(batch.ImageX[i], single.ImageX[0]);
+              EXPECT_EQ(batch.ImageY[i], single.ImageY[0]);
+              const Vector2 there{ batch.ImageX[i], batch.ImageY[i] };
+              const Vector2 point{ before.X[i], before.Y[i] };
+              const Vector2 image = inverse ? map.MapPoint(batch.Triangles[i], there, fresh)
+                                            : map.MapPoint(before.Triangles[i], point, fresh);
+              EXPECT_LT(Norm(image - (inverse ? point : there)), 1e-13);
+            }
           }
         }
+      }
+    }
+  }
+}
+
+TEST(CubicMap, PointsOutsideHaveNoPreimage)
+{
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (double strength : { 0.0, 1.2 })
+    {
+      const CubicMap map(RandomPair(20, strength, 4), Options(bending));
+      for (const Vector2& image :
+        { Vector2{ -0.5, 0.3 }, Vector2{ 3.0, 7.0 }, Vector2{ 1.01, 0.5 } })
+      {
+        int triangle = 0;
+        Vector2 point;
+        EXPECT_FALSE(map.FindPreimage(image, triangle, point));
       }
     }
   }
