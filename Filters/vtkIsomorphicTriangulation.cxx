@@ -400,6 +400,7 @@ int vtkIsomorphicTriangulation::RequestData(
   options.MaximumNumberOfAddedPoints = this->MaximumNumberOfAddedPoints;
   options.TargetQuality = this->TargetMinimumAngle;
   options.MaximumTriangleSize = this->MaximumTriangleSize;
+  options.OptimizeAddedPoints = this->OptimizeAddedPoints;
   options.LeaveOutConflictingSegments = this->LeaveOutConflictingSegments;
   options.Progress = [this](double progress) {
     this->UpdateProgress(progress);
@@ -607,6 +608,7 @@ void vtkIsomorphicTriangulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumNumberOfAddedPoints: " << this->MaximumNumberOfAddedPoints << "\n";
   os << indent << "TargetMinimumAngle: " << this->TargetMinimumAngle << "\n";
   os << indent << "MaximumTriangleSize: " << this->MaximumTriangleSize << "\n";
+  os << indent << "OptimizeAddedPoints: " << this->OptimizeAddedPoints << "\n";
   os << indent << "LeaveOutConflictingSegments: " << this->LeaveOutConflictingSegments << "\n";
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
   os << indent << "SmallestAngles: " << this->SmallestAngles[0] << ", " << this->SmallestAngles[1]

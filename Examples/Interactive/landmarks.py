@@ -76,7 +76,7 @@ class Session:
             widget = set_up(vtk.vtkHandleWidget(), Representation=(vtk.vtkPointHandleRepresentation2D(),),
                             Interactor=(self.interactor,), DefaultRenderer=(self.renderers[side],),
                             CurrentRenderer=(self.renderers[side],))
-            # While dragging, the first pair found is taken; then one with few added points.
+            # While dragging, the first pair found is taken, with as many points as it needs; then one with few.
             widget.AddObserver("InteractionEvent", lambda *_, side=side: self.drag(side, 1000))
             widget.AddObserver("EndInteractionEvent", lambda *_, side=side: self.drag(side, -1))
             self.widgets.append(widget)
@@ -110,11 +110,11 @@ class Session:
 
     def drag(self, side, limit):
         self.maker.SetMaximumNumberOfAddedPoints(limit)
+        self.maker.SetOptimizeAddedPoints(limit < 0)
         points = points_of(self.figures[side]).copy()
         points[self.active[side], :2] = self.widgets[side].GetRepresentation().GetWorldPosition()[:2]
         self.figures[side].SetPoints(as_points(points)[0])
         self.update()
-        self.window.Render()
 
     def update(self):
         start = time.perf_counter()

@@ -246,7 +246,10 @@ public:
       optimization.AddPoints(90.0, added + (maximum - added) / 2);
       mesh.SetQuality(PairQuality::NonObtuse);
     }
-    optimization.AddPoints(this->Options.TargetQuality, maximum);
+    if (this->Options.OptimizeAddedPoints || this->Options.TargetQuality > 0.0)
+    {
+      optimization.AddPoints(this->Options.TargetQuality, maximum);
+    }
     if (this->Options.MaximumTriangleSize > 0.0)
     {
       std::array<double, 2> areas{ { 0.0, 0.0 } };
@@ -790,7 +793,7 @@ private:
     auto mesh = std::make_unique<PairMesh>(points, triangles, fixed, firstAdded,
       this->Options.Quality == PairQuality::NonObtuse ? PairQuality::MinimumAngle
                                                       : this->Options.Quality);
-    JointOptimization(*mesh, this->KeepGoing(0.6)).RemovePoints();
+    JointOptimization(*mesh, this->KeepGoing(0.6)).RemovePoints(this->Options.OptimizeAddedPoints);
     return mesh;
   }
 

@@ -48,6 +48,9 @@ struct IsomorphicTriangulationOptions
   double TargetQuality = 0.0;
   /// Triangles larger than this share of their domain's area are divided. 0: none is.
   double MaximumTriangleSize = 0.0;
+  /// Merge necessary points until few are left, and move them to where the triangles are best,
+  /// which takes most of the time.
+  bool OptimizeAddedPoints = true;
   /// Leave out lines' segments that do not agree with the rest of the figure instead of refusing.
   bool LeaveOutConflictingSegments = false;
   /// Called now and then with the progress from 0 to 1; false stops the work.

@@ -497,7 +497,7 @@ bool JointOptimization::MergePoints(int vertex, int other)
   return true;
 }
 
-void JointOptimization::RemovePoints()
+void JointOptimization::RemovePoints(bool mergePoints)
 {
   // Points wait until something near them has changed.
   std::vector<int> star;
@@ -514,7 +514,7 @@ void JointOptimization::RemovePoints()
   for (int pass = 0; pass < 6; ++pass)
   {
     const int before = this->Mesh.CountAdded();
-    const bool merge = before <= MergedAtAll;
+    const bool merge = mergePoints && before <= MergedAtAll;
     std::vector<char> waiting(static_cast<std::size_t>(this->Mesh.GetNumberOfPoints()), 0);
     std::priority_queue<std::pair<int, int>, std::vector<std::pair<int, int>>, std::greater<>>
       queue;
@@ -565,7 +565,7 @@ void JointOptimization::RemovePoints()
       }
     }
     this->Mesh.Commit();
-    if (!merge && this->Mesh.CountAdded() < MergedAtAll)
+    if (mergePoints && !merge && this->Mesh.CountAdded() < MergedAtAll)
     {
       continue;
     }

@@ -25,8 +25,8 @@ public:
   /// Flips edges while the worse of two triangles gets better.
   void Flip();
 
-  /// Takes out added points, and merges neighboring ones, as long as that is possible.
-  void RemovePoints();
+  /// Takes out added points, and on request merges neighboring ones, as long as that is possible.
+  void RemovePoints(bool mergePoints);
 
   /// Moves the free points of each domain, and flips: at most @a rounds times.
   void Improve(int rounds);

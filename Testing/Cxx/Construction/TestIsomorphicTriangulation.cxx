@@ -312,6 +312,17 @@ TEST(IsomorphicTriangulation, HolesAndIslands)
   EXPECT_EQ("", Check(figure, result));
 }
 
+TEST(IsomorphicTriangulation, AddedPointsNeedNotBeOptimized)
+{
+  const FigurePair figure = Noise(200, 0.5, 4);
+  IsomorphicTriangulationOptions options;
+  const auto few = MakeIsomorphicTriangulation(figure, options);
+  options.OptimizeAddedPoints = false;
+  const auto many = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_EQ("", Check(figure, many));
+  EXPECT_LT(few.NumberOfAddedPoints, many.NumberOfAddedPoints);
+}
+
 TEST(IsomorphicTriangulation, OrderOfLandmarksDoesNotMatter)
 {
   const FigurePair figure = Noise(200, 0.3, 3);
