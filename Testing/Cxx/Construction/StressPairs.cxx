@@ -7,7 +7,7 @@
 //   StressPairs --smooth NUMBER
 // or, as CSV, the smallest angle and the shares of obtuse and discordant triangles that are reached
 // with a number of added points:
-//   StressPairs --curve NAME MAXIMUM
+//   StressPairs --curve NAME MAXIMUM [STEP]
 //
 // Times are those of the processor, in one thread.
 
@@ -177,13 +177,15 @@ void Growth(int number)
   std::printf("%d smooth landmarks: at most %.0f MB\n", number, usage.ru_maxrss / 1e3);
 }
 
-int Curve(const std::string& name, int maximum)
+/// Of the inside of an outline, or of landmarks in a frame.
+int Curve(const std::string& name, int maximum, int step)
 {
+  const bool isOutline = name == "letters-U-S" || name == "outlines-37";
   std::cout << "name,quality,points,source_angle,target_angle,obtuse,discordant\n";
   for (const PairQuality quality :
     { PairQuality::MinimumAngle, PairQuality::Concordance, PairQuality::NonObtuse })
   {
-    for (int count = 0; count <= maximum; ++count)
+    for (int count = 0; count <= maximum; count += step)
     {
       FigurePair figure;
       if (!Read(name, figure, false))
@@ -191,7 +193,10 @@ int Curve(const std::string& name, int maximum)
         std::cerr << "There is no " << name << "\n";
         return 1;
       }
-      figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
+      if (isOutline)
+      {
+        figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
+      }
       IsomorphicTriangulationOptions options;
       options.MaximumNumberOfAddedPoints = count;
       options.TargetQuality = 90.0;
@@ -218,9 +223,9 @@ int Curve(const std::string& name, int maximum)
 
 int main(int argc, char** argv)
 {
-  if (argc == 4 && std::strcmp(argv[1], "--curve") == 0)
+  if ((argc == 4 || argc == 5) && std::strcmp(argv[1], "--curve") == 0)
   {
-    return Curve(argv[2], std::atoi(argv[3]));
+    return Curve(argv[2], std::atoi(argv[3]), argc == 5 ? std::atoi(argv[4]) : 1);
   }
   if (argc == 3 && std::strcmp(argv[1], "--smooth") == 0)
   {
