@@ -150,6 +150,35 @@ inline std::vector<Vector2> Circle(int corners, double radius = 1.0, Vector2 cen
   return points;
 }
 
+/// A ring of two circles, the inner one turned in the target, with a third circle in its hole.
+inline FigurePair Annulus(int corners, double turn, bool island)
+{
+  FigurePair figure;
+  for (int d = 0; d < 2; ++d)
+  {
+    figure.Points[d] = Circle(corners, 4.0);
+    for (const double radius : { 2.0, 1.0 })
+    {
+      for (const Vector2& p : Circle(corners, radius))
+      {
+        const double a = d * turn;
+        figure.Points[d].push_back(
+          { std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y });
+      }
+    }
+    if (!island)
+    {
+      figure.Points[d].resize(static_cast<std::size_t>(2 * corners));
+    }
+  }
+  figure.Loops = { Range(0, corners), Range(corners, 2 * corners) };
+  if (island)
+  {
+    figure.Loops.push_back(Range(2 * corners, 3 * corners));
+  }
+  return figure;
+}
+
 /// A comb with teeth of two corners each; @a shift moves the numbering.
 inline std::vector<Vector2> Comb(int corners, int shift)
 {

@@ -79,34 +79,6 @@ FigurePair Holes(int side, int landmarksInBays)
   return figure;
 }
 
-FigurePair Annulus(int corners, double turn, bool island)
-{
-  FigurePair figure;
-  for (int d = 0; d < 2; ++d)
-  {
-    figure.Points[d] = Circle(corners, 4.0);
-    for (const double radius : { 2.0, 1.0 })
-    {
-      for (const Vector2& p : Circle(corners, radius))
-      {
-        const double a = d * turn;
-        figure.Points[d].push_back(
-          { std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y });
-      }
-    }
-    if (!island)
-    {
-      figure.Points[d].resize(static_cast<std::size_t>(2 * corners));
-    }
-  }
-  figure.Loops = { Range(0, corners), Range(corners, 2 * corners) };
-  if (island)
-  {
-    figure.Loops.push_back(Range(2 * corners, 3 * corners));
-  }
-  return figure;
-}
-
 FigurePair Scaled(FigurePair figure, double x, double y, double scale, bool toFloat)
 {
   for (auto& points : figure.Points)

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -32,6 +33,14 @@ FigurePair Square()
   return figure;
 }
 
+/// In the target the second line passes between the first one's ends.
+void MakeCrossing(FigurePair& figure)
+{
+  figure.Lines = { { 4, 5 }, { 6, 0 } };
+  figure.Points[1][6] = { 3, 2.5 };
+  figure.Points[0][6] = { 0.5, 3 };
+}
+
 const FigureProblem& OnlyProblem(const IsomorphicTriangulationResult& result)
 {
   EXPECT_EQ(1u, result.Problems.size());
@@ -48,6 +57,14 @@ FigureProblem Refusal(const FigurePair& figure, const IsomorphicTriangulationOpt
 }
 
 using Ids = std::vector<int>;
+
+/// A frame around the unit square.
+IsomorphicTriangulationOptions WithFrames()
+{
+  IsomorphicTriangulationOptions options;
+  options.Frames.fill({ { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } });
+  return options;
+}
 
 /// The triangles of a result by the positions of their corners, in both domains.
 std::set<std::set<std::array<double, 4>>> ByPosition(
@@ -68,136 +85,85 @@ std::set<std::set<std::array<double, 4>>> ByPosition(
   return triangles;
 }
 
-TEST(FigureRefusals, Empty)
+/// A change of the square of which the first problem follows; domain, line and loop are -1 where
+/// they do not matter.
+struct RefusalCase
 {
-  EXPECT_EQ(Kind::Empty, Refusal({}).What);
-}
+  Kind What;
+  int Domain;
+  Ids Points;
+  int Line;
+  int Loop;
+  std::function<void(FigurePair&)> Change;
+};
 
-TEST(FigureRefusals, DifferentCounts)
+TEST(FigureRefusals, NameWhatIsWrong)
 {
-  FigurePair figure = Square();
-  figure.Points[1].pop_back();
-  EXPECT_EQ(Kind::PointCountsDiffer, Refusal(figure).What);
-}
-
-TEST(FigureRefusals, NotFinite)
-{
-  FigurePair figure = Square();
-  figure.Points[1][5].x = std::numeric_limits<double>::quiet_NaN();
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::NotFinite, problem.What);
-  EXPECT_EQ(1, problem.Domain);
-  EXPECT_EQ(Ids{ 5 }, problem.Points);
-}
-
-TEST(FigureRefusals, Coincident)
-{
-  FigurePair figure = Square();
-  figure.Points[0][6] = figure.Points[0][4];
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::Coincident, problem.What);
-  EXPECT_EQ(0, problem.Domain);
-  EXPECT_EQ((Ids{ 4, 6 }), problem.Points);
-}
-
-TEST(FigureRefusals, Crossing)
-{
-  FigurePair figure = Square();
-  figure.Lines = { { 4, 5 }, { 6, 0 } };
-  // In the target the second line passes between the first one's ends.
-  figure.Points[1][6] = { 3, 2.5 };
-  figure.Points[0][6] = { 0.5, 3 };
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::Crossing, problem.What);
-  EXPECT_EQ(1, problem.Domain);
-  EXPECT_EQ((Ids{ 0, 6, 4, 5 }), problem.Points);
-  EXPECT_EQ(1, problem.Line);
-}
-
-TEST(FigureRefusals, PointOnSegment)
-{
-  FigurePair figure = Square();
-  figure.Lines = { { 4, 5 } };
-  figure.Points[1][6] = { 2, 1 };
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::PointOnSegment, problem.What);
-  EXPECT_EQ(1, problem.Domain);
-  EXPECT_EQ((Ids{ 6, 4, 5 }), problem.Points);
-}
-
-TEST(FigureRefusals, CyclicOrder)
-{
-  FigurePair figure = Square();
-  Add(figure, { 2, 1.5 }, { 2, 1.5 });
-  figure.Lines = { { 7, 4 }, { 7, 5 }, { 7, 6 } };
-  std::swap(figure.Points[1][4], figure.Points[1][5]);
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::CyclicOrder, problem.What);
-  EXPECT_EQ(-1, problem.Domain);
-  EXPECT_EQ(Ids{ 7 }, problem.Points);
-}
-
-TEST(FigureRefusals, OtherFace)
-{
-  FigurePair figure = Square();
-  Add(figure, { 2, 2 }, { 0.5, 3 });
-  figure.Lines = { { 4, 5, 6, 4 } };
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::OtherFace, problem.What);
-  EXPECT_EQ(-1, problem.Domain);
-  EXPECT_NE(problem.Points.end(), std::find(problem.Points.begin(), problem.Points.end(), 7));
-}
-
-TEST(FigureRefusals, OutlineAgainstHole)
-{
-  FigurePair figure = Square();
-  figure.Loops.push_back({ 4, 5, 6 });
-  for (const int i : { 4, 5, 6 })
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vector2> line{ { 0, 0 }, { 1, 1 }, { 3, 3 } };
+  const std::vector<RefusalCase> cases{
+    { Kind::Empty, -1, {}, -1, -1, [](FigurePair& f) { f = {}; } },
+    { Kind::PointCountsDiffer, -1, {}, -1, -1, [](FigurePair& f) { f.Points[1].pop_back(); } },
+    { Kind::NotFinite, 1, { 5 }, -1, -1, [nan](FigurePair& f) { f.Points[1][5].x = nan; } },
+    { Kind::Coincident, 0, { 4, 6 }, -1, -1,
+      [](FigurePair& f) { f.Points[0][6] = f.Points[0][4]; } },
+    { Kind::Crossing, 1, { 0, 6, 4, 5 }, 1, -1, MakeCrossing },
+    { Kind::PointOnSegment, 1, { 6, 4, 5 }, -1, -1,
+      [](FigurePair& f) {
+        f.Lines = { { 4, 5 } };
+        f.Points[1][6] = { 2, 1 };
+      } },
+    { Kind::CyclicOrder, -1, { 7 }, -1, -1,
+      [](FigurePair& f) {
+        Add(f, { 2, 1.5 }, { 2, 1.5 });
+        f.Lines = { { 7, 4 }, { 7, 5 }, { 7, 6 } };
+        std::swap(f.Points[1][4], f.Points[1][5]);
+      } },
+    { Kind::OtherFace, -1, {}, -1, -1,
+      [](FigurePair& f) {
+        Add(f, { 2, 2 }, { 0.5, 3 });
+        f.Lines = { { 4, 5, 6, 4 } };
+      } },
+    { Kind::OutlineAgainstHole, -1, {}, -1, 0,
+      [](FigurePair& f) {
+        f.Loops.push_back({ 4, 5, 6 });
+        std::for_each(f.Points[1].begin() + 4, f.Points[1].end(), [](Vector2& p) { p.x += 10.0; });
+      } },
+    { Kind::LoopSense, -1, {}, -1, 1,
+      [](FigurePair& f) {
+        f.Loops.push_back({ 4, 5, 6 });
+        std::swap(f.Points[1][4], f.Points[1][5]);
+      } },
+    { Kind::OutsideDomain, -1, { 7 }, -1, -1,
+      [](FigurePair& f) {
+        Add(f, { 9, 9 }, { 9, 9 });
+      } },
+    { Kind::BadCell, -1, {}, 0, -1,
+      [](FigurePair& f) {
+        f.Lines = { { 4, 99 } };
+      } },
+    { Kind::Collinear, 0, {}, -1, -1,
+      [&line](FigurePair& f) {
+        f = {};
+        f.Points = { { line, { { 0, 0 }, { 1, 0 }, { 0, 1 } } } };
+      } },
+  };
+  for (const RefusalCase& one : cases)
   {
-    figure.Points[1][i].x += 10.0;
+    SCOPED_TRACE(static_cast<int>(one.What));
+    FigurePair figure = Square();
+    one.Change(figure);
+    const auto result = MakeIsomorphicTriangulation(figure, {});
+    ASSERT_FALSE(result.Problems.empty());
+    EXPECT_TRUE(result.Triangles.empty());
+    const FigureProblem& problem = result.Problems[0];
+    EXPECT_FALSE(problem.Message().empty());
+    EXPECT_EQ(one.What, problem.What);
+    EXPECT_TRUE(one.Domain < 0 || one.Domain == problem.Domain);
+    EXPECT_TRUE(one.Points.empty() || one.Points == problem.Points);
+    EXPECT_TRUE(one.Line < 0 || one.Line == problem.Line);
+    EXPECT_TRUE(one.Loop < 0 || one.Loop <= problem.Loop);
   }
-  const FigureProblem problem = MakeIsomorphicTriangulation(figure, {}).Problems.at(0);
-  EXPECT_EQ(Kind::OutlineAgainstHole, problem.What);
-  EXPECT_LE(0, problem.Loop);
-}
-
-TEST(FigureRefusals, LoopSense)
-{
-  FigurePair figure = Square();
-  figure.Loops.push_back({ 4, 5, 6 });
-  std::swap(figure.Points[1][4], figure.Points[1][5]);
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::LoopSense, problem.What);
-  EXPECT_EQ(1, problem.Loop);
-}
-
-TEST(FigureRefusals, OutsideDomain)
-{
-  FigurePair figure = Square();
-  Add(figure, { 9, 9 }, { 9, 9 });
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::OutsideDomain, problem.What);
-  EXPECT_EQ(Ids{ 7 }, problem.Points);
-}
-
-TEST(FigureRefusals, BadCells)
-{
-  FigurePair figure = Square();
-  figure.Lines = { { 4, 99 } };
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::BadCell, problem.What);
-  EXPECT_EQ(0, problem.Line);
-}
-
-TEST(FigureRefusals, Collinear)
-{
-  FigurePair figure;
-  Add(figure, { 0, 0 }, { 0, 0 });
-  Add(figure, { 1, 1 }, { 1, 0 });
-  Add(figure, { 3, 3 }, { 0, 1 });
-  const FigureProblem problem = Refusal(figure);
-  EXPECT_EQ(Kind::Collinear, problem.What);
-  EXPECT_EQ(0, problem.Domain);
 }
 
 TEST(FigureRefusals, HullsDiffer)
@@ -233,9 +199,7 @@ TEST(FigureRefusals, StopsOnRequest)
 TEST(IsomorphicTriangulation, LeavesOutWhatConflicts)
 {
   FigurePair figure = Square();
-  figure.Lines = { { 4, 5 }, { 6, 0 } };
-  figure.Points[1][6] = { 3, 2.5 };
-  figure.Points[0][6] = { 0.5, 3 };
+  MakeCrossing(figure);
   IsomorphicTriangulationOptions options;
   options.LeaveOutConflictingSegments = true;
   const auto result = MakeIsomorphicTriangulation(figure, options);
@@ -254,10 +218,7 @@ TEST(IsomorphicTriangulation, PointsOnFramesAndOutlines)
   EXPECT_EQ("", Check(figure, result));
   figure.Loops.clear();
   IsomorphicTriangulationOptions options;
-  for (auto& frame : options.Frames)
-  {
-    frame = { { 0, 0 }, { 4, 0 }, { 4, 6 }, { 0, 6 } };
-  }
+  options.Frames.fill({ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 0, 6 } });
   result = MakeIsomorphicTriangulation(figure, options);
   EXPECT_EQ("", Check(figure, result));
   EXPECT_EQ(2, result.NumberOfFrameCorners);
@@ -291,25 +252,10 @@ TEST(IsomorphicTriangulation, ConvexHullOfMirroredPoints)
 
 TEST(IsomorphicTriangulation, HolesAndIslands)
 {
-  const auto make = [](double turn) {
-    std::vector<Vector2> points = Circle(24, 10.0);
-    for (const auto& [count, radius] : { std::pair<int, double>{ 16, 6.0 }, { 12, 3.0 } })
-    {
-      for (Vector2 p : Circle(count, radius))
-      {
-        points.push_back({ std::cos(turn) * p.x - std::sin(turn) * p.y,
-          std::sin(turn) * p.x + std::cos(turn) * p.y });
-      }
-    }
-    points.push_back({ 8.0, 0.5 });
-    points.push_back({ 0.5, 0.5 });
-    return points;
-  };
-  FigurePair figure;
-  figure.Points = { { make(0.0), make(1.0) } };
-  figure.Loops = { Range(0, 24), Range(24, 40), Range(40, 52) };
-  const auto result = MakeIsomorphicTriangulation(figure, {});
-  EXPECT_EQ("", Check(figure, result));
+  FigurePair figure = Annulus(24, 1.0, true);
+  Add(figure, { 3.0, 0.5 }, { 3.0, 0.5 });
+  Add(figure, { 0.5, 0.5 }, { 0.5, 0.5 });
+  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
 }
 
 TEST(IsomorphicTriangulation, AddedPointsNeedNotBeOptimized)
@@ -334,11 +280,7 @@ TEST(IsomorphicTriangulation, OrderOfLandmarksDoesNotMatter)
     std::swap(shuffled.Points[0][i], shuffled.Points[0][k]);
     std::swap(shuffled.Points[1][i], shuffled.Points[1][k]);
   }
-  IsomorphicTriangulationOptions options;
-  for (auto& frame : options.Frames)
-  {
-    frame = { { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } };
-  }
+  const IsomorphicTriangulationOptions options = WithFrames();
   const auto a = MakeIsomorphicTriangulation(figure, options);
   const auto b = MakeIsomorphicTriangulation(shuffled, options);
   EXPECT_EQ("", Check(figure, a));
@@ -351,9 +293,7 @@ TEST(IsomorphicTriangulation, SwappingSourceAndTargetSwapsThePair)
   FigurePair figure = Noise(200, 0.3, 8);
   for (const bool mirrored : { false, true })
   {
-    IsomorphicTriangulationOptions options;
-    options.Frames[0] = { { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } };
-    options.Frames[1] = options.Frames[0];
+    IsomorphicTriangulationOptions options = WithFrames();
     if (mirrored)
     {
       for (auto* points : { &figure.Points[1], &options.Frames[1] })

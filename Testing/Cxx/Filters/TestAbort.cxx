@@ -10,10 +10,6 @@
 #include "vtkResampleThroughHomeomorphism.h"
 #include "vtkTriangularCoordinates.h"
 
-#include "vtkCellData.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
-
 namespace
 {
 
@@ -71,9 +67,9 @@ void UpdateAndAbort(vtkHomeomorphismAlgorithm* algorithm, double progress)
 vtkSmartPointer<vtkImageData> MakeLargeImage()
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(500, 500, 1);
+  image->SetDimensions(420, 420, 1);
   image->SetOrigin(0.1, 0.1, 0.0);
-  image->SetSpacing(7.8 / 499.0, 7.8 / 499.0, 1.0);
+  image->SetSpacing(7.8 / 419.0, 7.8 / 419.0, 1.0);
   image->GetPointData()->SetScalars(RandomArray("Brightness", 1, image->GetNumberOfPoints(), 3));
   return image;
 }
@@ -168,9 +164,7 @@ TEST(Abort, Coordinates)
 TEST(Abort, Continuity)
 {
   const MeshPair pair = MakePlanarPair(50, 44);
-  vtkNew<vtkJacobianContinuity> continuity;
-  continuity->SetSourceData(pair.Source);
-  continuity->SetTargetData(pair.Target);
+  const auto continuity = MakeAlgorithm<vtkJacobianContinuity>(pair);
   UpdateAndAbort(continuity, 0.2);
   // A part must not look like the whole.
   EXPECT_EQ(continuity->GetOutput()->GetNumberOfCells(), 0);
@@ -188,9 +182,7 @@ TEST(Abort, Continuity)
 TEST(Abort, Resample)
 {
   const MeshPair pair = MakePlanarPair(8, 46);
-  vtkNew<vtkResampleThroughHomeomorphism> filter;
-  filter->SetSourceData(pair.Source);
-  filter->SetTargetData(pair.Target);
+  const auto filter = MakeAlgorithm<vtkResampleThroughHomeomorphism>(pair);
   filter->SetDataObject(MakeLargeImage());
   filter->SetSamplingDimensions(500, 500);
   for (const double progress : { 0.1, 0.3 })

@@ -5,13 +5,8 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkCellData.h"
-#include "vtkIntArray.h"
 #include "vtkShortArray.h"
 #include "vtkUnstructuredGrid.h"
-
-#include <map>
-#include <utility>
 
 namespace
 {
@@ -59,58 +54,6 @@ vtkSmartPointer<vtkPolyData> MakeCloudWithArrays(vtkPolyData* mesh, std::uint64_
 }
 
 // --- Forward and back ----------------------------------------------------------------------------
-
-TEST_P(AttributesInEverySystem, ForwardThenBackIsTheIdentity)
-{
-  for (const Pairing& pairing : AllPairings(8, 2, 400))
-  {
-    const MeshPair& pair = pairing.Meshes;
-    const auto cloud = MakeCloudWithArrays(pair.Source, 50);
-    cloud->GetPointData()->AddArray(RandomArray("Gradient", 3, cloud->GetNumberOfPoints(), 70));
-    cloud->GetPointData()->AddArray(RandomArray("Metric", 9, cloud->GetNumberOfPoints(), 71));
-    const auto forward = MakeFilter(GetParam(), pair, cloud);
-    const auto backward = MakeFilter(GetParam(), pair);
-    backward->SetDataConnection(forward->GetOutputPort());
-    backward->InverseOn();
-    for (const auto& filter : { forward, backward })
-    {
-      filter->TransformAllInputVectorsOn();
-      filter->SetAttributeTransformation(
-        "Gradient", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
-      filter->SetAttributeTransformation(
-        "Metric", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
-    }
-    forward->ComputeJacobianOn();
-    vtkPointSet* back = Output(backward);
-    vtkPointSet* image = vtkPointSet::SafeDownCast(forward->GetOutputDataObject(0));
-    for (const char* name :
-      { "Vectors", "Normals", "Tensors", "Displacement", "Stress", "Gradient", "Metric" })
-    {
-      vtkDataArray* before = PointArray(cloud, name);
-      vtkDataArray* between = PointArray(image, name);
-      vtkDataArray* after = PointArray(back, name);
-      ASSERT_TRUE(after) << name;
-      EXPECT_GT(CountDifferentValues(before, between), before->GetNumberOfTuples()) << name;
-      // The two Jacobians are computed at points that differ by rounding.
-      Worst worst;
-      for (vtkIdType i = 0; i < before->GetNumberOfTuples(); ++i)
-      {
-        const Matrix j = MatrixOf(PointArray(image, "Jacobian"), i);
-        const double condition = Norm(j) * Norm(Inverted(j));
-        double difference = 0.0;
-        double size = 0.0;
-        for (int k = 0; k < before->GetNumberOfComponents(); ++k)
-        {
-          difference =
-            std::hypot(difference, after->GetComponent(i, k) - before->GetComponent(i, k));
-          size = std::hypot(size, before->GetComponent(i, k));
-        }
-        worst.Take(difference / size, 1e-11 * condition * condition);
-      }
-      EXPECT_LE(worst.OverBound, 1.0) << pairing.Name << " " << name;
-    }
-  }
-}
 
 TEST_P(AttributesInEverySystem, FollowsTheJacobian)
 {
@@ -175,71 +118,6 @@ TEST_P(AttributesInEverySystem, FollowsTheJacobian)
 }
 
 // --- Geometry ------------------------------------------------------------------------------------
-
-TEST_P(AttributesInEverySystem, GradientsOfImagesAreImagesOfGradients)
-{
-  // A scalar s on P with its gradient, and on Q the scalar s o f^-1 with the transformed gradient.
-  const auto scalar = [](const Point& p) {
-    return std::sin(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[0] * p[1] + 0.5 * p[2];
-  };
-  const auto gradient = [](const Point& p) -> Point {
-    return { 0.7 * std::cos(0.7 * p[0]) * std::cos(0.4 * p[1]) + 0.3 * p[1],
-      -0.4 * std::sin(0.7 * p[0]) * std::sin(0.4 * p[1]) + 0.3 * p[0], 0.5 };
-  };
-  for (const Pairing& pairing : AllPairings(8, 2, 440))
-  {
-    const MeshPair& pair = pairing.Meshes;
-    const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 3000, 100, 0.02);
-    const auto cloud = MakeCloud(pair.Source, samples);
-    const vtkIdType count = cloud->GetNumberOfPoints();
-    const auto gradients = RandomArray("Gradient", 3, count, 101);
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      gradients->SetTuple(i, gradient(PointOf(cloud, i)).data());
-    }
-    cloud->GetPointData()->AddArray(gradients);
-    const auto filter = MakeFilter(GetParam(), pair, cloud);
-    filter->SetAttributeTransformation(
-      "Gradient", vtkDifferentiableHomeomorphism::GRADIENT_TRANSFORMATION);
-    vtkPointSet* output = Output(filter);
-
-    // Differences on Q, within the plane of the triangle.
-    constexpr double h = 1e-6;
-    std::vector<Point> stencil;
-    std::vector<std::array<Point, 2>> directions;
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      const std::array<Point, 3> c =
-        CornersOf(pair.Target, samples[static_cast<std::size_t>(i)].Triangle);
-      directions.push_back({ Unit(c[1] - c[0]), Unit(c[2] - c[0]) });
-      for (const Point& direction : directions.back())
-      {
-        stencil.push_back(PointOf(output, i) + h * direction);
-        stencil.push_back(PointOf(output, i) - h * direction);
-      }
-    }
-    const auto inverse = MakeFilter(GetParam(), pair, MakeCloud(stencil));
-    inverse->InverseOn();
-    vtkPointSet* preimages = Output(inverse);
-    EXPECT_EQ(inverse->GetNumberOfOutsidePoints(), 0) << pairing.Name;
-    std::vector<double> errors;
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      const Point mapped = VectorOf(PointArray(output, "Gradient"), i);
-      for (int k = 0; k < 2; ++k)
-      {
-        const double difference = (scalar(PointOf(preimages, 4 * i + 2 * k)) -
-                                    scalar(PointOf(preimages, 4 * i + 2 * k + 1))) /
-          (2.0 * h);
-        errors.push_back(
-          std::abs(difference - Dot(mapped, directions[static_cast<std::size_t>(i)][k])) /
-          (0.1 + Norm(mapped)));
-      }
-    }
-    std::sort(errors.begin(), errors.end());
-    EXPECT_LT(errors[errors.size() * 99 / 100], 1e-6) << pairing.Name;
-  }
-}
 
 // --- Cells ---------------------------------------------------------------------------------------
 

@@ -6,14 +6,9 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkCellData.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkJacobianContinuity.h"
 #include "vtkTriangularCoordinates.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace
 {
@@ -132,9 +127,7 @@ TEST(CubicSystem, IsDifferentiableAtEdgesAndVertices)
   const MeshPair pair = MakePair(false, false);
   for (int bending : { vtkJacobianContinuity::LOCAL, vtkJacobianContinuity::LEAST })
   {
-    vtkNew<vtkJacobianContinuity> measure;
-    measure->SetSourceData(pair.Source);
-    measure->SetTargetData(pair.Target);
+    const auto measure = MakeAlgorithm<vtkJacobianContinuity>(pair);
     measure->SetCoordinateSystemToCubic();
     measure->SetCubicBending(bending);
     measure->VerticesOn();
@@ -154,9 +147,7 @@ TEST(CubicSystem, IsDifferentiableAtEdgesAndVertices)
 TEST(CubicSystem, TellsWhatItIs)
 {
   const MeshPair pair = MakePair(false, false);
-  vtkNew<vtkDifferentiableHomeomorphism> filter;
-  filter->SetSourceData(pair.Source);
-  filter->SetTargetData(pair.Target);
+  const auto filter = MakeAlgorithm<vtkDifferentiableHomeomorphism>(pair);
   filter->SetCoordinateSystemToCubic();
   filter->Update();
   auto* mesh = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
@@ -190,10 +181,8 @@ TEST(CubicSystem, RefusesSurfacesAndCoordinates)
   pair.Target->GetPoint(24, raised);
   raised[2] = 0.5;
   pair.Target->GetPoints()->SetPoint(24, raised);
-  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  const auto filter = MakeAlgorithm<vtkDifferentiableHomeomorphism>(pair);
   Messages errors(filter);
-  filter->SetSourceData(pair.Source);
-  filter->SetTargetData(pair.Target);
   filter->SetCoordinateSystemToCubic();
   filter->Update();
   EXPECT_TRUE(errors.HasError());

@@ -8,20 +8,14 @@
 
 #include "vtkTriangularCoordinates.h"
 
-#include "vtkCellData.h"
 #include "vtkCellType.h"
 #include "vtkFieldData.h"
-#include "vtkImageData.h"
-#include "vtkIntArray.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStringArray.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
-
-#include <functional>
 
 namespace
 {

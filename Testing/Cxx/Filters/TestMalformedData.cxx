@@ -9,13 +9,9 @@
 #include "vtkResampleThroughHomeomorphism.h"
 #include "vtkTriangularCoordinates.h"
 
-#include "vtkCellData.h"
 #include "vtkCellType.h"
-#include "vtkImageData.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnstructuredGrid.h"
-
-#include <functional>
 
 namespace
 {
@@ -332,22 +328,6 @@ TEST_F(MalformedData, AnArrayKeepsAllItsRoles)
 }
 
 // --- Pieces --------------------------------------------------------------------------------------
-
-TEST_F(MalformedData, TheMeshItselfIsInTheFirstPiece)
-{
-  for (const bool inverse : { false, true })
-  {
-    this->Filter->SetInverse(inverse);
-    for (const int pieces : { 1, 2, 3 })
-    {
-      for (int piece = 0; piece < pieces; ++piece)
-      {
-        EXPECT_EQ(UpdatePiece(this->Filter, piece, pieces)->GetNumberOfCells(), piece == 0 ? 8 : 0);
-      }
-    }
-  }
-  EXPECT_EQ(this->Filter->GetNumberOfMeshBuilds(), 1);
-}
 
 TEST_F(MalformedData, PiecesOfSeveralOutputs)
 {

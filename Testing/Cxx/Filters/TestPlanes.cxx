@@ -228,25 +228,6 @@ TEST_P(Planes, CornersMapToTheStoredCorners)
   }
 }
 
-TEST(Planes, RoundedPlanesArePlanar)
-{
-  Random random(5);
-  for (int round = 0; round < 100; ++round)
-  {
-    // Every other one as a user would write it, with y computed from x.
-    const Plane plane = PlaneWithNormal(
-      { 0.0, 0.3, 0.0 }, round % 2 == 0 ? random.Vector() : Point{ -1, 1, 0 }, random.Vector());
-    MeshPair pair = MakePair(3, random, plane, plane);
-    pair = round % 2 == 0 ? MeshPair{ AsFloats(pair.Source), AsFloats(pair.Target) } : pair;
-    // Only in a plane are points far above it inside.
-    const auto raised = Moved(MakeCloud(pair.Source, InnerSamples(pair.Source, 100, 1, 1e-3)),
-      [&plane](const Point& p) { return p + 0.7 * plane.Normal; });
-    const auto filter = MakeFilter(Smooth, pair, raised);
-    filter->Update();
-    ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0) << round;
-  }
-}
-
 TEST(Planes, AThinHalfTubeIsNone)
 {
   // If it were flattened, the ratio of areas would be about 2 only where it is steep. The tolerance

@@ -8,17 +8,7 @@
 
 #include "Mesh/Homeomorphism.h"
 
-#include "vtkDifferentiableHomeomorphism.h"
-#include "vtkImageData.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <limits>
 #include <memory>
-#include <random>
-#include <string>
 
 namespace
 {
@@ -46,39 +36,26 @@ bool IsSame(const double* a, const double* b, int count)
 /// outside, and NaN.
 std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
 {
+  Random random(seed);
   const std::vector<Point> corners = PointsOf(mesh);
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> proportion(0.0, 1.0);
   std::vector<Point> queries = corners;
-  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  for (const Triangle& t : TrianglesOf(mesh))
   {
-    const vtkNew<vtkIdList> ids;
-    mesh->GetCellPoints(cell, ids);
-    const auto combine = [&](double a, double b, double c) {
-      Point p;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        p[axis] = a * corners[ids->GetId(0)][axis] + b * corners[ids->GetId(1)][axis] +
-          c * corners[ids->GetId(2)][axis];
-      }
-      return p;
-    };
-    for (int i = 0; i < 40; ++i)
+    for (int i = 0; i < 20; ++i)
     {
       // Runs of points in one triangle, at first close to each other.
-      const double a = i < 30 ? 0.02 * i + 0.1 : proportion(generator);
-      const double b = i < 30 ? 0.2 : (1.0 - a) * proportion(generator);
-      queries.push_back(combine(a, b, 1.0 - a - b));
+      const double a = i < 15 ? 0.04 * i + 0.1 : random.Uniform();
+      const double b = i < 15 ? 0.2 : (1.0 - a) * random.Uniform();
+      queries.push_back(PointIn(mesh, t, { a, b, 1.0 - a - b }));
     }
-    const double w = proportion(generator);
-    queries.push_back(combine(w, 1.0 - w, 0.0));
-    queries.push_back(combine(0.0, w, 1.0 - w));
-    queries.push_back(combine(1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0));
-    queries.push_back(combine(w, 1.2 - w, -0.2));
+    const double w = random.Uniform();
+    for (const Point& weights : { Point{ w, 1.0 - w, 0.0 }, { 0.0, w, 1.0 - w },
+           { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 }, { w, 1.2 - w, -0.2 } })
+    {
+      queries.push_back(PointIn(mesh, t, weights));
+    }
   }
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  for (const double bad : { none, infinity, -infinity, 1e300, -1e160, 1e20 })
+  for (const double bad : { NotANumber, Infinity, -Infinity, 1e300, -1e160, 1e20 })
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -94,8 +71,7 @@ std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
 void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
   const std::vector<Point>& points, const std::string& what)
 {
-  const double tolerance =
-    map.GetAbsoluteTolerance(domain, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
+  const double tolerance = map.GetAbsoluteTolerance(domain, 0.0, 0.5 * Ulp);
   PointBlock block;
   LocationHint hint;
   for (std::size_t first = 0; first < points.size(); first += block.Count)
@@ -158,44 +134,20 @@ void ExpectBlocksLikePoints(const MeshPair& pair, const std::string& what)
   }
 }
 
-MeshPair Moved(const MeshPair& pair, double (*height)(double, double))
+TEST(PointBlocks, BlocksEqualSinglePoints)
 {
-  MeshPair moved;
-  const auto move = [height](vtkPolyData* mesh) {
-    std::vector<Point> points = PointsOf(mesh);
-    for (Point& p : points)
-    {
-      p[2] = height(p[0], p[1]);
-    }
-    const auto result = vtkSmartPointer<vtkPolyData>::New();
-    result->DeepCopy(MakeMesh(points, {}));
-    result->SetPolys(mesh->GetPolys());
-    return result;
+  const auto sloping = [](const Point& p) -> Point {
+    return { p[0], p[1], 0.5 * p[0] - 0.25 * p[1] };
   };
-  moved.Source = move(pair.Source);
-  moved.Target = move(pair.Target);
-  return moved;
-}
-
-TEST(PointBlocks, BlocksEqualSinglePointsInAPlane)
-{
-  ExpectBlocksLikePoints(MakePlanarPair(9, 21), "a plane");
+  const auto curved = [](const Point& p) -> Point { return { p[0], p[1], 0.1 * p[0] * p[1] }; };
+  const MeshPair plane = MakePlanarPair(9, 21);
+  ExpectBlocksLikePoints(plane, "a plane");
   ExpectBlocksLikePoints(MakePlanarPair(1, 22), "two triangles");
-}
-
-TEST(PointBlocks, BlocksEqualSinglePointsInATiltedPlane)
-{
   ExpectBlocksLikePoints(
-    Moved(MakePlanarPair(9, 23), [](double x, double y) { return 0.5 * x - 0.25 * y; }),
-    "a tilted plane");
-}
-
-TEST(PointBlocks, BlocksEqualSinglePointsOnSurfaces)
-{
-  ExpectBlocksLikePoints(MakeClosedPair(4, 24), "a closed surface");
-  MeshPair mixed = MakePlanarPair(6, 25);
-  mixed.Target = Moved(mixed, [](double x, double y) { return 0.1 * x * y; }).Target;
-  ExpectBlocksLikePoints(mixed, "a plane and a surface");
+    { fixtures::Moved(plane.Source, sloping), fixtures::Moved(plane.Target, sloping) },
+    "tilted planes");
+  ExpectBlocksLikePoints(MakeClosedPair(3, 24), "a closed surface");
+  ExpectBlocksLikePoints({ plane.Source, fixtures::Moved(plane.Target, curved) }, "a surface");
 }
 
 TEST(PointBlocks, PointsWithoutPreimageAreOutside)
@@ -226,44 +178,6 @@ TEST(PointBlocks, PointsWithoutPreimageAreOutside)
     ASSERT_TRUE(map->MapPoint(Domain::Target, located, image));
     EXPECT_EQ(block.Triangles[i], located.Triangle);
     EXPECT_TRUE(IsSame(block.Images[i], image, 3));
-  }
-}
-
-TEST(PointBlocks, AnImageIsMappedLikeItsPoints)
-{
-  // Rows and slices end anywhere in a block.
-  const MeshPair pair = MakePlanarPair(9, 26);
-  vtkNew<vtkImageData> image;
-  image->SetExtent(-3, 13, 2, 14, -1, 8);
-  image->SetOrigin(2.3, -1.9, 0.4);
-  image->SetSpacing(0.61, 0.83, 0.27);
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
-  {
-    points->InsertNextPoint(image->GetPoint(i));
-  }
-  vtkNew<vtkPolyData> cloud;
-  cloud->SetPoints(points);
-  vtkNew<vtkPoints> images[2];
-  for (vtkDataSet* data : { static_cast<vtkDataSet*>(image), static_cast<vtkDataSet*>(cloud) })
-  {
-    vtkNew<vtkDifferentiableHomeomorphism> filter;
-    filter->SetSourceData(pair.Source);
-    filter->SetTargetData(pair.Target);
-    filter->SetDataObject(data);
-    filter->Update();
-    EXPECT_LT(filter->GetNumberOfOutsidePoints(), points->GetNumberOfPoints() / 2);
-    images[data == cloud]->ShallowCopy(
-      vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPoints());
-  }
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-  {
-    Point a;
-    Point b;
-    images[0]->GetPoint(i, a.data());
-    images[1]->GetPoint(i, b.data());
-    ASSERT_TRUE(IsSame(a.data(), b.data(), 3)) << i;
   }
 }
 

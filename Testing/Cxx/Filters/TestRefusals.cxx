@@ -14,16 +14,12 @@
 #include "vtkResampleThroughHomeomorphism.h"
 #include "vtkTriangularCoordinates.h"
 
-#include "vtkCellData.h"
 #include "vtkFieldData.h"
-#include "vtkImageData.h"
-#include "vtkTable.h"
 #include "vtkTransform.h"
 #include "vtkVariant.h"
 
 #include <fstream>
 #include <iterator>
-#include <set>
 
 namespace
 {

@@ -5,24 +5,11 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkCellData.h"
-#include "vtkDataArray.h"
 #include "vtkExtractVOI.h"
-#include "vtkFloatArray.h"
 #include "vtkHomeomorphismTransform.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkPointData.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkResampleThroughHomeomorphism.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-#include <string>
 
 namespace
 {
@@ -76,9 +63,7 @@ vtkSmartPointer<vtkImageData> MakeImage()
 vtkSmartPointer<vtkResampleThroughHomeomorphism> MakeResample(
   const MeshPair& pair, vtkDataObject* data)
 {
-  auto filter = vtkSmartPointer<vtkResampleThroughHomeomorphism>::New();
-  filter->SetSourceData(pair.Source);
-  filter->SetTargetData(pair.Target);
+  auto filter = MakeAlgorithm<vtkResampleThroughHomeomorphism>(pair);
   filter->SetDataObject(data);
   filter->SetSamplingDimensions(50, 40);
   return filter;
@@ -365,18 +350,6 @@ TEST(Resample, GridsAreRequestedInTheExtentOfTheOutput)
   }
 }
 
-TEST(Resample, NewDataDoesNotRebuildTheMap)
-{
-  const MeshPair pair = MakePair();
-  const auto filter = MakeResample(pair, MakeImage());
-  for (int i = 0; i < 4; ++i)
-  {
-    filter->SetDataObject(MakeImage());
-    filter->Update();
-  }
-  EXPECT_EQ(filter->GetNumberOfMeshBuilds(), 1);
-}
-
 TEST(Resample, DataMayBeReplacedInPlace)
 {
   // VTK keeps lists of the cells of each point from the first search.
@@ -435,33 +408,6 @@ TEST(Resample, DataMayBeReplacedInPlace)
     resample->Update();
     ExpectPulledBack(vtkDataSet::SafeDownCast(resample->GetOutputDataObject(0)), pair);
   }
-}
-
-TEST(Resample, RefusalsAreReported)
-{
-  const MeshPair pair = MakePair();
-  const auto filter =
-    MakeResample({ pair.Source, MakeMesh(GridPoints(3, 1, 0.0), GridTriangles(3)) }, MakeImage());
-  Messages messages(filter.Get());
-  filter->Update();
-  EXPECT_TRUE(messages.HasError());
-  EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::MESHES_REFUSED);
-  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
-}
-
-TEST(Resample, ImagesNeedAPlaneParallelToXY)
-{
-  const auto sheet = MakeSheet(4, 1, 0.5);
-  const auto filter = MakeResample({ sheet, sheet }, nullptr);
-  Messages messages(filter.Get());
-  filter->Update();
-  EXPECT_TRUE(messages.HasError());
-  EXPECT_EQ(filter->GetErrorCode(), vtkHomeomorphismAlgorithm::MESHES_REFUSED);
-  filter->SetGridData(sheet);
-  messages.Clear();
-  filter->Update();
-  EXPECT_EQ(messages.Error(), "");
-  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
 }
 
 } // namespace

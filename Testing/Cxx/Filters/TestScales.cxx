@@ -68,34 +68,6 @@ TEST_P(Scales, PowersOfTwoAreExact)
   }
 }
 
-TEST_P(Scales, OtherSizesAreAsAccurate)
-{
-  for (const Pairing& pairing : ScaledPairings())
-  {
-    vtkPolyData* from = pairing.Meshes.Source;
-    const std::vector<Point> points = SamplePoints(from, TrianglesOf(from), 5, 31);
-    const std::vector<Point> expected = MapScaled(GetParam(), pairing.Meshes, points, 1.0, 1.0);
-    for (const auto& sizes :
-      std::vector<std::array<double, 2>>{ { 1e-300, 1e-300 }, { 1e-10, 1e-10 }, { 1e10, 1e-3 },
-        { 1e100, 1e100 }, { 2e307, 2e307 }, { 1e200, 1e-200 }, { 1e-6, 1e6 } })
-    {
-      const std::vector<Point> images =
-        MapScaled(GetParam(), pairing.Meshes, points, sizes[0], sizes[1]);
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        ASSERT_LT(Distance(images[i], expected[i]), 4e-13) << pairing.Name << sizes[0];
-      }
-      // An image off a surface by rounding alone must not be outside on the way back.
-      const std::vector<Point> back =
-        MapScaled(GetParam(), pairing.Meshes, images, sizes[0], sizes[1], true);
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        ASSERT_LT(Distance(back[i], points[i]), 4e-13) << pairing.Name << sizes[0];
-      }
-    }
-  }
-}
-
 TEST_P(Scales, HeightsAreExactWhateverTheScales)
 {
   // Heights above a plane are lengths of the ambient space.
@@ -176,36 +148,6 @@ TEST_P(Scales, ATinyTriangleInAUnitMesh)
   MovePoint(pair.Source, 2, { 0.5e-170, 0.0, 0.0 });
   ExpectRefused(
     Read(pair), { { Kind::DegenerateTriangle, Where::Source, { 0 } } }, Remedy::RepairOrMask);
-}
-
-TEST_P(Scales, ANeedleWhoseHeightIsLostInRounding)
-{
-  // The far corners are so far away that the others coincide in their frame, but the triangles are
-  // not degenerate.
-  const std::vector<Triangle> triangles{ { 0, 1, 3 }, { 0, 3, 2 } };
-  const MeshPair pair{ MakeMesh({ { 1.25, 0.125, 0.0 }, { -2.25, 4.9375, 0.0 },
-                                  { 5.875, 4.75, 0.0 }, { -7.5, 0x1p74, 0.0 } },
-                         triangles),
-    MakeMesh({ { -7.5, -7.5, 0.0 }, { -7.5, -3.5625, 0.0 }, { 0.0625, 0.0625, 0.0 },
-               { 0.0625, -0x1p57, 0.0 } },
-      triangles) };
-  for (const bool inverse : { false, true })
-  {
-    std::vector<Point> points =
-      SamplePoints(inverse ? pair.Target : pair.Source, triangles, 100, 5);
-    points.push_back({ -7.5, -7.5, 0.0 });
-    MapOptions options;
-    options.CoordinateSystem = GetParam().CoordinateSystem;
-    options.Mask = true;
-    options.Inverse = inverse;
-    options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
-    const MappedPoints mapped = MapPoints(pair, points, options);
-    ASSERT_EQ(mapped.Error, "");
-    for (const Point& image : mapped.Images)
-    {
-      EXPECT_TRUE(std::isfinite(image[0]) && std::isfinite(image[1]));
-    }
-  }
 }
 
 TEST_P(Scales, CoordinatesFarFromTheOrigin)

@@ -13,22 +13,29 @@
 #include "vtkDifferentiableHomeomorphism.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkIntArray.h"
 #include "vtkMath.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <functional>
 #include <ostream>
+#include <set>
 #include <string>
 
 namespace fixtures
@@ -251,13 +258,21 @@ void SetSystem(Algorithm* algorithm, const System& system)
   algorithm->SetDiscordantTriangles(Algorithm::USE_LINEAR);
 }
 
+/// An algorithm of two meshes, with its default options.
+template <typename Algorithm>
+vtkSmartPointer<Algorithm> MakeAlgorithm(const MeshPair& pair)
+{
+  auto algorithm = vtkSmartPointer<Algorithm>::New();
+  algorithm->SetSourceData(pair.Source);
+  algorithm->SetTargetData(pair.Target);
+  return algorithm;
+}
+
 inline vtkSmartPointer<vtkDifferentiableHomeomorphism> MakeFilter(
   const System& system, const MeshPair& pair, vtkDataObject* data = nullptr)
 {
-  auto filter = vtkSmartPointer<vtkDifferentiableHomeomorphism>::New();
+  auto filter = MakeAlgorithm<vtkDifferentiableHomeomorphism>(pair);
   SetSystem(filter.Get(), system);
-  filter->SetSourceData(pair.Source);
-  filter->SetTargetData(pair.Target);
   if (data)
   {
     filter->SetDataObject(data);

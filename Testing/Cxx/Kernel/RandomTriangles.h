@@ -222,6 +222,51 @@ inline Barycentric AnyBarycentric(RandomNumbers& random)
   return { x, y, 1.0 - x - y };
 }
 
+/// No subnormal numbers beside 0: the predicate for sides of a line could not form their products.
+inline double MovedByUlps(double x, int count)
+{
+  if (x == 0.0)
+  {
+    return count * 0x1p-200;
+  }
+  for (int i = 0; i < std::abs(count); ++i)
+  {
+    x = std::nextafter(x, count > 0 ? 1e308 : -1e308);
+  }
+  return x;
+}
+
+/// The distance of a point from a closed triangle of either orientation.
+inline double DistanceOutside(const Corners& corners, const Vector2& point)
+{
+  const int sign = Orientation(corners[0], corners[1], corners[2]);
+  double nearest = std::numeric_limits<double>::infinity();
+  bool inside = true;
+  for (int k = 0; k < 3; ++k)
+  {
+    Vector2 start = corners[NextCorner(k)];
+    Vector2 end = corners[PreviousCorner(k)];
+    inside = inside && sign * Orientation(start, end, point) >= 0;
+    // Measured from the nearer end, so that rounding of the length of the edge does not matter.
+    if (Norm(point - end) < Norm(point - start))
+    {
+      std::swap(start, end);
+    }
+    const Vector2 edge = end - start;
+    const double length = Norm(edge);
+    const Vector2 d = point - start;
+    const double along = std::min(1.0, std::max(0.0, Dot(d, (1.0 / length) * edge) / length));
+    nearest = std::min(nearest, Norm(d - along * edge));
+  }
+  // Negated so that NaN counts as outside.
+  return inside ? 0.0 : nearest;
+}
+
+inline double DistanceOutside(const TriangleShape& shape, const Vector2& point)
+{
+  return DistanceOutside(Corners{ shape.Corner(0), shape.Corner(1), shape.Corner(2) }, point);
+}
+
 /// Barycentric coordinates on the inner border of the strip of edge @a k, u = 1.
 inline Barycentric OnStripBorder(int k, double tau, double proportion)
 {
@@ -358,6 +403,27 @@ inline std::string Description(const PlaneTriangle& t, const Vector2& inFrame)
     t.Shape.Base, t.Shape.ApexX, t.Shape.Height, t.Shape.Apex, inFrame.x, inFrame.y);
   return text;
 }
+
+/// The largest of many values, NaN above all, and where it occurs.
+class Worst
+{
+public:
+  template <typename Describe>
+  void Take(double value, Describe&& describe)
+  {
+    if (!(value <= this->Value) && !std::isnan(this->Value))
+    {
+      this->Value = value;
+      this->Where = describe();
+    }
+  }
+  void Take(double value, const PlaneTriangle& triangle, const Vector2& point)
+  {
+    this->Take(value, [&]() { return Description(triangle, point); });
+  }
+  double Value = 0.0;
+  std::string Where;
+};
 
 } // namespace homeomorphism_test
 

@@ -29,20 +29,6 @@ AdjacentTriangles ConcordantPair(RandomNumbers& random)
   }
 }
 
-/// The pair after rotation, scaling and translation.
-AdjacentTriangles SimilarPair(RandomNumbers& random, const AdjacentTriangles& pair)
-{
-  const double scale = random.PowerOfTen(-1.0, 1.0);
-  const double angle = random.Uniform(0.0, 6.283185307179586);
-  const Vector2 shift{ random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0) };
-  const Vector2 u{ scale * std::cos(angle), scale * std::sin(angle) };
-  const auto move = [&](const Vector2& v) -> Vector2 {
-    return { shift.x + v.x * u.x - v.y * u.y, shift.y + v.x * u.y + v.y * u.x };
-  };
-  return { move(pair.Start), move(pair.End), move(pair.First.Corners[2]),
-    move(pair.Second.Corners[2]) };
-}
-
 std::array<ContourChart, 2> Charts(const AdjacentTriangles& pair, CenterPoint center)
 {
   return { ContourChart(pair.First.Shape, pair.First.Views(), center),
@@ -134,43 +120,6 @@ TEST(ContourEdge, JumpIsMeasuredFromMappedPoints)
     worst = std::max(worst, Norm(jump - expected) / Norm(at.First));
   }
   EXPECT_LT(worst, 1e-7);
-}
-
-TEST(ContourEdge, NoJumpBetweenSimilarPairs)
-{
-  RandomNumbers random(63);
-  double worst = 0.0;
-  for (int n = 0; n < 20000; ++n)
-  {
-    const AdjacentTriangles p = ConcordantPair(random);
-    const AdjacentTriangles q = SimilarPair(random, p);
-    const BothSides at(p, q, random.Uniform(0.001, 0.999), AnyCenter(random));
-    const double scale = q.Length() / p.Length();
-    worst = std::max({ worst, at.Jump() / scale, std::abs(at.FirstRatio - scale) / scale,
-      std::abs(at.SecondRatio - scale) / scale });
-  }
-  EXPECT_LT(worst, 1e-13);
-}
-
-TEST(ContourEdge, NoJumpBetweenMirrorImages)
-{
-  // If each triangle is the mirror image of its neighbor, contours that meet have the same length,
-  // in P and in Q.
-  RandomNumbers random(64);
-  double worst = 0.0;
-  const auto mirrored = [](const AdjacentTriangles& pair) -> AdjacentTriangles {
-    const Vector2 apex = pair.First.Corners[2];
-    const double height = Dot(apex - pair.Start, pair.Normal());
-    return { pair.Start, pair.End, apex, apex - (2.0 * height) * pair.Normal() };
-  };
-  for (int n = 0; n < 20000; ++n)
-  {
-    const AdjacentTriangles p = mirrored(ConcordantPair(random));
-    const AdjacentTriangles q = mirrored(ConcordantPair(random));
-    const BothSides at(p, q, random.Uniform(0.001, 0.999), AnyCenter(random));
-    worst = std::max(worst, at.Jump() / Norm(at.First));
-  }
-  EXPECT_LT(worst, 1e-13);
 }
 
 } // namespace

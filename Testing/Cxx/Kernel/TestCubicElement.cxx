@@ -6,6 +6,7 @@
 
 #include "Kernel/CubicElement.h"
 #include "Kernel/LinearProgram.h"
+#include "Mesh/Vector3.h"
 
 #include <gtest/gtest.h>
 
@@ -85,6 +86,22 @@ public:
         return p;
       }
     }
+  }
+
+  /// An element whose derivative differs from that of its affine map by up to @a change.
+  CubicElement Element(double change)
+  {
+    CubicElement element{ this->Triangle(), this->Matrix(1.0), {}, {} };
+    while (!(element.Affine.Determinant() > 0.05))
+    {
+      element.Affine = this->Matrix(1.0);
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      element.Values[i] = this->Vector(change);
+      element.Gradients[i] = this->Matrix(change);
+    }
+    return element;
   }
 
 private:
@@ -187,31 +204,6 @@ TEST(CubicElement, CertifiesNoneThatIsNotPositive)
     }
   }
   EXPECT_GE(certified, 0.99 * positive);
-}
-
-TEST(CubicElement, TakesItsData)
-{
-  Random random(2);
-  for (int n = 0; n < 200; ++n)
-  {
-    CubicElement element{ random.Triangle(), random.Matrix(1.0), {}, {} };
-    for (int i = 0; i < 3; ++i)
-    {
-      element.Values[i] = random.Vector(1.0);
-      element.Gradients[i] = random.Matrix(1.0);
-    }
-    const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
-    for (int i = 0; i < 3; ++i)
-    {
-      Barycentric corner{};
-      corner[i] = 1.0;
-      Vector2 value;
-      Matrix2 derivative;
-      Evaluate(element, ordinates, corner, value, derivative);
-      EXPECT_LT(Norm(value - element.Values[i]), 1e-14);
-      EXPECT_LT(SquaredNorm(derivative - element.Gradients[i]), 1e-24);
-    }
-  }
 }
 
 TEST(CubicElement, ReproducesQuadraticMaps)
@@ -361,38 +353,27 @@ TEST(LinearProgram, FindsTheBestCorner)
       {
         for (std::size_t c = b + 1; c < all.size(); ++c)
         {
-          const auto& p = all[a].Normal;
-          const auto& q = all[b].Normal;
-          const auto& r = all[c].Normal;
-          const auto det = [](const auto& x, const auto& y, const auto& z) {
-            return x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) +
-              x[2] * (y[0] * z[1] - y[1] * z[0]);
-          };
-          const double d = det(p, q, r);
+          const Vector3& p = all[a].Normal;
+          const Vector3& q = all[b].Normal;
+          const Vector3& r = all[c].Normal;
+          const double d = Dot3(p, Cross3(q, r));
           if (std::abs(d) < 1e-9)
           {
             continue;
           }
-          std::array<double, 3> x;
+          // Cramer's rule.
+          Vector3 x;
           for (std::size_t i = 0; i < 3; ++i)
           {
-            auto pp = p;
-            auto qq = q;
-            auto rr = r;
-            pp[i] = all[a].Limit;
-            qq[i] = all[b].Limit;
-            rr[i] = all[c].Limit;
-            x[i] = det(pp, qq, rr) / d;
+            x[i] = (all[a].Limit * Cross3(q, r)[i] + all[b].Limit * Cross3(r, p)[i] +
+                     all[c].Limit * Cross3(p, q)[i]) /
+              d;
           }
-          bool feasible = true;
-          for (const HalfSpace<3>& h : all)
-          {
-            feasible = feasible &&
-              h.Normal[0] * x[0] + h.Normal[1] * x[1] + h.Normal[2] * x[2] <= h.Limit + 1e-9;
-          }
+          const bool feasible = std::all_of(all.begin(), all.end(),
+            [&x](const HalfSpace<3>& h) { return Dot3(h.Normal, x) <= h.Limit + 1e-9; });
           if (feasible)
           {
-            best = std::max(best, objective[0] * x[0] + objective[1] * x[1] + objective[2] * x[2]);
+            best = std::max(best, Dot3(objective, x));
           }
         }
       }
@@ -403,7 +384,7 @@ TEST(LinearProgram, FindsTheBestCorner)
     if (found && best > -1e300)
     {
       ++solved;
-      EXPECT_NEAR(objective[0] * x[0] + objective[1] * x[1] + objective[2] * x[2], best, 1e-6);
+      EXPECT_NEAR(Dot3(objective, x), best, 1e-6);
     }
   }
   EXPECT_GT(solved, 200);
@@ -456,44 +437,15 @@ TEST(CubicElement, RightAnglesChangeNothingButRounding)
   }
 }
 
-// A random element whose derivative differs from its affine map's by up to @a change.
-namespace
-{
-CubicElement RandomElement(std::mt19937_64& random, double change)
-{
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto vector = [&] { return Vector2{ uniform(random), uniform(random) }; };
-  CubicElement element;
-  do
-  {
-    element.Points = { vector(), vector(), vector() };
-  } while (
-    !(Cross(element.Points[1] - element.Points[0], element.Points[2] - element.Points[0]) > 0.05));
-  do
-  {
-    element.Affine = { vector(), vector() };
-  } while (!(element.Affine.Determinant() > 0.05));
-  for (int i = 0; i < 3; ++i)
-  {
-    element.Values[i] = change * vector();
-    element.Gradients[i] = change * Matrix2{ vector(), vector() };
-  }
-  return element;
-}
-}
-
 TEST(CubicElement, NetsAgreeWithTheElement)
 {
-  std::mt19937_64 random(21);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(21);
   for (int n = 0; n < 2000; ++n)
   {
-    const CubicElement element = RandomElement(random, 0.5);
+    const CubicElement element = random.Element(0.5);
     const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
     const CubicNet net(element);
-    Barycentric l{ uniform(random), uniform(random), uniform(random) };
-    const double sum = l[0] + l[1] + l[2];
-    l = { l[0] / sum, l[1] / sum, l[2] / sum };
+    const Barycentric l = random.Point();
     Vector2 value;
     Matrix2 gradient;
     Evaluate(element, ordinates, l, value, gradient);
@@ -502,7 +454,7 @@ TEST(CubicElement, NetsAgreeWithTheElement)
     const Vector2 image = element.Affine * point + value;
     EXPECT_LT(Norm(net(l) - image), 1e-14);
     // Newton's step brings the derivative to the residual.
-    const Vector2 target{ uniform(random), uniform(random) };
+    const Vector2 target = random.Vector(1.0);
     Vector2 step;
     const Vector2 residual = net.GetResidual(l, element.Points, target, step);
     EXPECT_LT(Norm(residual - (target - image)), 1e-14);
@@ -517,11 +469,11 @@ TEST(CubicElement, NetsAgreeWithTheElement)
 
 TEST(CubicElement, BoundsByNormsAreBelowAllCoefficients)
 {
-  std::mt19937_64 random(22);
+  Random random(22);
   int bounded = 0;
   for (int n = 0; n < 20000; ++n)
   {
-    const CubicElement element = RandomElement(random, std::pow(10.0, -4.0 * (n % 100) / 100.0));
+    const CubicElement element = random.Element(std::pow(10.0, -4.0 * (n % 100) / 100.0));
     const DeterminantCoefficients c = GetDeterminantCoefficients(element);
     const double least = *std::min_element(c.begin(), c.end());
     // Without subdivision no bound is above the least coefficient.

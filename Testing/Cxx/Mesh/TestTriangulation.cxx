@@ -9,15 +9,7 @@
 #include "Mesh/MeshGeometry.h"
 #include "Mesh/Triangulation.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <functional>
-#include <map>
 #include <numeric>
-#include <random>
-#include <set>
-#include <utility>
 
 namespace
 {
@@ -126,35 +118,6 @@ TEST(Triangulation, AdjacencyOfRandomTriangles)
   }
 }
 
-TEST(Triangulation, AdjacencyOfMeshes)
-{
-  std::mt19937_64 generator(2);
-  for (const bool closed : { false, true })
-  {
-    const auto mesh = closed ? MakeClosedPair(4, 2).Source : MakePlanarPair(40, 2).Source;
-    std::vector<Triangulation::Corners> triangles = Narrow(TrianglesOf(mesh));
-    for (Triangulation::Corners& corners : triangles)
-    {
-      std::shuffle(corners.begin(), corners.end(), generator);
-    }
-    std::shuffle(triangles.begin(), triangles.end(), generator);
-    Triangulation triangulation;
-    triangulation.SetTriangles(triangles, 5);
-    ExpectAdjacency(triangulation, mesh->GetNumberOfPoints());
-    EXPECT_EQ(5 + 17, triangulation.GetCellId(17));
-    EXPECT_TRUE(triangulation.FindNonOrientable().empty());
-    int boundary = 0;
-    for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
-    {
-      for (int k = 0; k < 3; ++k)
-      {
-        boundary += triangulation.GetTwin(t, k).Triangle < 0;
-      }
-    }
-    EXPECT_EQ(closed ? 0 : 160, boundary);
-  }
-}
-
 //------------------------------------------------------------------------------------------------
 // Orientability.
 
@@ -223,34 +186,6 @@ TEST(Triangulation, OrientabilityOfRandomTriangles)
   }
   EXPECT_GT(oneSided, 200);
   EXPECT_LT(oneSided, 3800);
-}
-
-TEST(Triangulation, ClosedStrips)
-{
-  // A strip of triangles closed to a ring is non-orientable if the number of points is odd.
-  for (std::int32_t points = 5; points < 30; ++points)
-  {
-    std::vector<Triangulation::Corners> strip;
-    for (std::int32_t i = 0; i < points; ++i)
-    {
-      strip.push_back({ i, (i + 1) % points, (i + 2) % points });
-    }
-    Triangulation triangulation;
-    triangulation.SetTriangles(strip, 0);
-    ASSERT_TRUE(triangulation.FindAdjacency(points).empty());
-    const std::vector<TriangleIndex> found = triangulation.FindNonOrientable();
-    if (points % 2 == 0)
-    {
-      EXPECT_TRUE(found.empty());
-      continue;
-    }
-    // The two triangles at the only edge with inconsistent windings, in ascending order.
-    ASSERT_EQ(2u, found.size());
-    EXPECT_LT(found[0], found[1]);
-    triangulation.Mask(found[0]);
-    triangulation.FindAdjacency(points);
-    EXPECT_TRUE(triangulation.FindNonOrientable().empty());
-  }
 }
 
 //------------------------------------------------------------------------------------------------

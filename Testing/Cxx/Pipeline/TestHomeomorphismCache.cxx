@@ -6,12 +6,10 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkCellData.h"
 #include "vtkHomeomorphismTransform.h"
 #include "vtkTriangularCoordinates.h"
 #include "vtkWeakPointer.h"
 
-#include <functional>
 #include <memory>
 
 namespace

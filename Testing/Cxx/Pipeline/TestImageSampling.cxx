@@ -113,33 +113,6 @@ TEST(ImageSampling, InterpolatesLinearly)
   }
 }
 
-TEST(ImageSampling, ReproducesValuesAtPixels)
-{
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(7, 5, 1);
-  image->SetSpacing(0.1, 0.3, 1.0);
-  FillImage(image, [](const double p[3]) { return std::floor(97.0 * p[0] + 13.0 * p[1]); });
-  vtkNew<vtkPointData> output;
-  const ImageSampling sampling(image, output, 35);
-  double points[35][3];
-  bool wanted[35];
-  std::fill_n(wanted, 35, true);
-  for (int i = 0; i < 35; ++i)
-  {
-    image->GetPoint(i, points[i]);
-  }
-  vtkNew<vtkUnsignedCharArray> mask;
-  mask->SetNumberOfTuples(35);
-  mask->FillValue(0);
-  sampling.Sample(points, wanted, 35, 0, mask);
-  for (int i = 0; i < 35; ++i)
-  {
-    EXPECT_EQ(mask->GetValue(i), 1);
-    EXPECT_NEAR(GetValue(output, "Value", i), GetValue(image->GetPointData(), "Value", i), 1e-12);
-    EXPECT_EQ(GetValue(output, "Byte", i), GetValue(image->GetPointData(), "Byte", i));
-  }
-}
-
 TEST(ImageSampling, RefusesUnnamedArrays)
 {
   vtkNew<vtkImageData> image;

@@ -12,7 +12,6 @@
 
 #include "Fixtures/MeasuredMaps.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
@@ -211,19 +210,6 @@ int CreaseOnVerticalLines(Continuity* filter, vtkIdType cell, int)
   return bounds[0] == bounds[1] ? Continuity::CREASE : Continuity::DIFFERENTIABLE;
 }
 
-/// Prints the progress, as an interactive program would.
-void PrintProgress(vtkObject* caller, unsigned long, void* lastShown, void*)
-{
-  const int percent = static_cast<int>(100.0 * vtkAlgorithm::SafeDownCast(caller)->GetProgress());
-  int& last = *static_cast<int*>(lastShown);
-  if (percent >= last + 10)
-  {
-    last = percent - percent % 10;
-    std::printf(" %d %%", last);
-    std::fflush(stdout);
-  }
-}
-
 void PrintTime(vtkIdType triangles)
 {
   const int n = static_cast<int>(std::ceil(std::sqrt(0.5 * static_cast<double>(triangles))));
@@ -234,12 +220,7 @@ void PrintTime(vtkIdType triangles)
     filter->SetSourceData(pair.Source);
     filter->SetTargetData(pair.Target);
     filter->SetCoordinateSystem(system);
-    int lastShown = 0;
-    vtkNew<vtkCallbackCommand> progress;
-    progress->SetCallback(PrintProgress);
-    progress->SetClientData(&lastShown);
-    filter->AddObserver(vtkCommand::ProgressEvent, progress);
-    std::printf("system %d, %lld triangles, %d samples an edge, %d threads:", system,
+    std::printf("system %d, %lld triangles, %d samples an edge, %d threads", system,
       static_cast<long long>(pair.Source->GetNumberOfCells()), filter->GetSamplesPerEdge(),
       vtkSMPTools::GetEstimatedNumberOfThreads());
     const auto start = std::chrono::steady_clock::now();

@@ -35,32 +35,10 @@ int Count(int full)
   return std::max(1, static_cast<int>(full * Share));
 }
 
-double Norm(const Vector2& v)
-{
-  return std::hypot(v.x, v.y);
-}
-
 Vector2 MapLinearly(const PlanarPair& pair, int t, const Vector2& point)
 {
   const std::int32_t corner = pair.Triangles[t][0];
   return pair.Target[corner] + pair.GetAffine(t) * (point - pair.Source[corner]);
-}
-
-/// The triangle of a mesh that contains a point, walking from one of them; -1 outside.
-int Locate(const PlanarPair& pair, const std::vector<Vector2>& points, int t, const Vector2& point)
-{
-  for (int step = 0; step < 10000; ++step)
-  {
-    const std::array<Vector2, 3> corners = PlanarPair::GetCorners(points, pair.Triangles[t]);
-    const Barycentric l = ToBarycentric(corners, point - points[pair.Triangles[t][0]]);
-    const int least = static_cast<int>(std::min_element(l.begin(), l.end()) - l.begin());
-    if (l[least] >= -1e-12 || pair.Neighbors[t][least] < 0)
-    {
-      return l[least] >= -1e-9 ? t : -1;
-    }
-    t = pair.Neighbors[t][least];
-  }
-  return -1;
 }
 
 struct Result
@@ -176,97 +154,34 @@ void RunNeedles()
 {
   PrintHead();
   std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto apex = [&](double sign) {
-    return Vector2{ 20.0 * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) };
-  };
   Result result;
   for (int n = 0; n < Count(10000); ++n)
   {
-    PlanarPair pair;
-    pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
-    pair.Target = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
-    pair.Triangles = { { 0, 1, 2 }, { 1, 0, 3 } };
-    pair.FindNeighbors();
     CubicMapOptions options;
     options.Bending = CubicBending::Local;
-    const CubicMap map(std::move(pair), options);
+    const CubicMap map(RandomNeedles(random, 20.0), options);
     Measure(map, 20, random, result);
   }
   Print("two needles, LOCAL", result);
 }
 
-/// Angles of the rays of a star, no sector wider than 172 degrees.
-std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
-{
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  constexpr double turn = 2.0 * 3.141592653589793;
-  while (true)
-  {
-    std::vector<double> angles{ turn * uniform(random) };
-    double sum = 0.0;
-    std::vector<double> steps;
-    for (int i = 0; i < valence; ++i)
-    {
-      steps.push_back(0.02 + std::pow(uniform(random), 2.0));
-      sum += steps.back();
-    }
-    double widest = 0.0;
-    for (int i = 0; i < valence; ++i)
-    {
-      const double step = steps[static_cast<std::size_t>(i)] * turn / sum;
-      widest = std::max(widest, step);
-      angles.push_back(angles.back() + step);
-    }
-    if (widest < turn * 172.0 / 360.0)
-    {
-      angles.pop_back();
-      return angles;
-    }
-  }
-}
-
 void RunStars()
 {
   std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  constexpr double turn = 2.0 * 3.141592653589793;
   // By whether the rays turn within 90 degrees: stars, with a derivative at once, in rings, none.
   int numbers[2][4] = {};
   int uncertified = 0;
   std::vector<int> rings;
   for (int n = 0; n < Count(10000); ++n)
   {
-    const int valence = 3 + n % 7;
-    const std::vector<double> from = RandomAngles(random, valence);
-    const std::vector<double> to = RandomAngles(random, valence);
-    PlanarPair pair;
-    double least = 1e300;
-    double greatest = -1e300;
-    double before = to[0] - from[0];
-    for (int i = 0; i < valence; ++i)
-    {
-      const std::size_t k = static_cast<std::size_t>(i);
-      const double radius = std::exp(uniform(random));
-      const double image = std::exp(2.8 * uniform(random));
-      pair.Source.push_back({ radius * std::cos(from[k]), radius * std::sin(from[k]) });
-      pair.Target.push_back({ image * std::cos(to[k]), image * std::sin(to[k]) });
-      pair.Triangles.push_back({ valence, i, (i + 1) % valence });
-      double angle = to[k] - from[k];
-      angle -= turn * std::round((angle - before) / turn);
-      before = angle;
-      least = std::min(least, angle);
-      greatest = std::max(greatest, angle);
-    }
-    pair.Source.push_back({});
-    pair.Target.push_back({});
-    pair.FindNeighbors();
+    double turn;
+    PlanarPair pair = RandomStar(random, 3 + n % 7, 2.8, turn);
     CubicMapOptions options;
     options.Bending = CubicBending::Local;
     const CubicMap map(std::move(pair), options);
     const CubicMapStatistics& statistics = map.GetStatistics();
     uncertified += statistics.UncertifiedTriangles;
-    int* row = numbers[greatest - least < 0.25 * turn ? 0 : 1];
+    int* row = numbers[turn < 0.5 * 3.141592653589793 ? 0 : 1];
     ++row[0];
     if (!statistics.ExceptionalInteriorPoints.empty())
     {

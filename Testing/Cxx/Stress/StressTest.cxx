@@ -5,24 +5,20 @@
 // errors with the bounds of Documentation/accuracy.md. The result depends on the seed and on the
 // number of points, not on the number of threads.
 //
-//   StressTest [--points N] [--seconds S] [--seed N] [--system NAME] [--family NAME] [--threads N]
+//   StressTest [--points N] [--seed N] [--system NAME] [--family NAME] [--threads N]
 //   StressTest --reproduce SYSTEM FAMILY CASE [--seed N]
 
 #include "StressMeshes.h"
 
+#include "../Fixtures/Meshes.h"
+
 #include "Kernel/ExactSign.h"
 #include "Mesh/Homeomorphism.h"
 
-#include "vtkCellArray.h"
-#include "vtkNew.h"
-#include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkSMPTools.h"
-#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -69,7 +65,7 @@ constexpr double LocationLimit = 16.0;
 constexpr double InsideLimit = 8.0;
 constexpr double RoundTripLimit = 128.0;
 
-struct Worst
+struct WorstCase
 {
   double Value = 0.0;
   std::int64_t Case = -1;
@@ -87,7 +83,7 @@ struct Worst
       *this = { value, number, point };
     }
   }
-  void Take(const Worst& other)
+  void Take(const WorstCase& other)
   {
     if (other.Case >= 0)
     {
@@ -98,7 +94,7 @@ struct Worst
 
 struct Report
 {
-  std::array<Worst, NUMBER_OF_QUANTITIES> Worsts;
+  std::array<WorstCase, NUMBER_OF_QUANTITIES> Worsts;
   std::int64_t Pairs = 0;
   std::int64_t Refused = 0;
   std::int64_t Points = 0;
@@ -128,30 +124,17 @@ struct Report
 
 vtkSmartPointer<vtkPolyData> MakeMesh(const std::vector<Vector2>& points, const Triangles& cells)
 {
-  vtkNew<vtkPoints> meshPoints;
-  meshPoints->SetDataTypeToDouble();
+  std::vector<fixtures::Point> inSpace;
   for (const Vector2& p : points)
   {
-    meshPoints->InsertNextPoint(p.x, p.y, 0.0);
+    inSpace.push_back({ p.x, p.y, 0.0 });
   }
-  vtkNew<vtkCellArray> polygons;
+  std::vector<fixtures::Triangle> triangles;
   for (const auto& cell : cells)
   {
-    polygons->InsertNextCell({ cell[0], cell[1], cell[2] });
+    triangles.push_back({ cell[0], cell[1], cell[2] });
   }
-  auto mesh = vtkSmartPointer<vtkPolyData>::New();
-  mesh->SetPoints(meshPoints);
-  mesh->SetPolys(polygons);
-  return mesh;
-}
-
-double StepsAside(double x, int count)
-{
-  for (int i = 0; i < std::abs(count); ++i)
-  {
-    x = std::nextafter(x, count > 0 ? 1e308 : -1e308);
-  }
-  return x;
+  return fixtures::MakeMesh(inSpace, triangles);
 }
 
 /// One pair of meshes, its map, and test points.
@@ -313,7 +296,7 @@ private:
     {
       for (int axis = 0; axis < 2; ++axis)
       {
-        point[axis] = StepsAside(point[axis], random.Integer(-4, 4));
+        point[axis] = MovedByUlps(point[axis], random.Integer(-4, 4));
       }
     }
     return point;
@@ -395,31 +378,6 @@ private:
       this->GeometryOf(domain).GetShape(surfacePoint.Triangle), l);
   }
 
-  static double DistanceOutside(const Corners& corners, const Vector2& point)
-  {
-    const int sign = Orientation(corners[0], corners[1], corners[2]);
-    double nearest = std::numeric_limits<double>::infinity();
-    bool inside = true;
-    for (int k = 0; k < 3; ++k)
-    {
-      Vector2 start = corners[NextCorner(k)];
-      Vector2 end = corners[PreviousCorner(k)];
-      inside = inside && sign * Orientation(start, end, point) >= 0;
-      // Measured from the nearer end, so that rounding of the length of the edge does not matter.
-      if (Norm(point - end) < Norm(point - start))
-      {
-        std::swap(start, end);
-      }
-      const Vector2 edge = end - start;
-      const double length = Norm(edge);
-      const Vector2 d = point - start;
-      const double along = std::min(1.0, std::max(0.0, Dot(d, (1.0 / length) * edge) / length));
-      nearest = std::min(nearest, Norm(d - along * edge));
-    }
-    // Negated so that NaN counts as outside.
-    return inside ? 0.0 : nearest;
-  }
-
   double DistanceFromDomain(Domain domain, const Vector3& point) const
   {
     const Vector3 w = this->GeometryOf(domain).ToNormalized(point.data());
@@ -471,8 +429,8 @@ private:
     if (this->Log)
     {
       std::cout << "point " << i << " of the " << (from == Domain::Source ? "source" : "target")
-                << ": " << point[0] << ", " << point[1] << ", made in triangle " << triangle
-                << ", found in " << surfacePoint.Triangle << "\n";
+                << ": " << point[0] << ", " << point[1] << ", in triangle " << surfacePoint.Triangle
+                << "\n";
     }
     if (surfacePoint.Triangle < 0)
     {
@@ -525,11 +483,6 @@ private:
   {
     const Domain to = Opposite(from);
     const SurfacePoint there = this->Locate(to, image, -1);
-    if (this->Log)
-    {
-      std::cout << "  its image " << image[0] << ", " << image[1] << " is in triangle "
-                << there.Triangle << "\n";
-    }
     if (there.Triangle < 0)
     {
       this->Lose(i);
@@ -563,19 +516,6 @@ private:
       limit += 4.0 * this->LargestShiftNear(to, image, 32.0 * HalfUlp * stretchedSize, back);
     }
     this->Take(ROUND_TRIP, error / limit, i);
-    if (this->Log)
-    {
-      const auto first = this->Map->GetCoordinates(from, surfacePoint);
-      const auto second = this->Map->GetCoordinates(to, there);
-      std::cout << "  coordinates (" << first.Edge << ", " << first.EdgeParameter << ", "
-                << first.ContourParameter << "), there (" << second.Edge << ", "
-                << second.EdgeParameter << ", " << second.ContourParameter << ")\n"
-                << "  comes back to " << back.x / this->GeometryOf(from).GetScale() << ", "
-                << back.y / this->GeometryOf(from).GetScale() << "\n"
-                << "  round trip's error " << error << " at sizes " << sourceSize << " and "
-                << stretchedSize << ", |J^-1| " << inverseNorm << ", det J "
-                << derivative.Determinant << "\n";
-    }
   }
 
   /// The greatest distance from a position of the images of points within some distance of a point:
@@ -732,12 +672,6 @@ private:
           ? 0.0
           : std::numeric_limits<double>::infinity(),
         i);
-      if (this->Log)
-      {
-        std::cout << "  triangle of size " << size << ", area of the image "
-                  << handedness * Cross(images[1] - images[0], images[2] - images[0])
-                  << ", as predicted " << predicted << ", longest edge " << longest << "\n";
-      }
       return;
     }
   }
@@ -754,7 +688,6 @@ private:
 struct Options
 {
   double Points = 0.0;
-  double Seconds = 0.0;
   std::uint64_t Seed = 1;
   std::string System;
   std::string Family;
@@ -762,19 +695,9 @@ struct Options
   std::int64_t Reproduce = -1;
 };
 
-/// Runs the cases of one system and family until their points or the time are used up.
-Report RunCases(
-  const Options& options, const TestedSystem& system, int family, double points, double seconds)
+/// Runs the cases of one system and family until their points are used up.
+Report RunCases(const Options& options, const TestedSystem& system, int family, double points)
 {
-  const auto start = std::chrono::steady_clock::now();
-  const auto enough = [&](std::int64_t number) {
-    if (points > 0.0)
-    {
-      return static_cast<double>(number) * PointsPerCase >= points;
-    }
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >=
-      seconds;
-  };
   std::atomic<std::int64_t> next{ 0 };
   std::vector<Report> reports(options.Threads);
   std::vector<std::thread> threads;
@@ -785,7 +708,7 @@ Report RunCases(
       for (;;)
       {
         const std::int64_t number = next++;
-        if (enough(number))
+        if (static_cast<double>(number) * PointsPerCase >= points)
         {
           return;
         }
@@ -840,7 +763,7 @@ bool Print(const TestedSystem& system, int family, const Report& report)
 
 int Usage()
 {
-  std::cerr << "StressTest [--points N] [--seconds S] [--seed N] [--system NAME] [--family NAME] "
+  std::cerr << "StressTest [--points N] [--seed N] [--system NAME] [--family NAME] "
                "[--threads N]\n"
                "StressTest --reproduce SYSTEM FAMILY CASE [--seed N]\nSystems:";
   for (const TestedSystem& system : Systems)
@@ -871,10 +794,6 @@ bool Parse(int argc, char* argv[], Options& options)
     {
       options.Points = std::atof(argv[++i]);
     }
-    else if (option == "--seconds" && left >= 1)
-    {
-      options.Seconds = std::atof(argv[++i]);
-    }
     else if (option == "--seed" && left >= 1)
     {
       options.Seed = std::strtoull(argv[++i], nullptr, 10);
@@ -896,7 +815,7 @@ bool Parse(int argc, char* argv[], Options& options)
       return false;
     }
   }
-  return options.Points > 0.0 || options.Seconds > 0.0 || options.Reproduce >= 0;
+  return options.Points > 0.0 || options.Reproduce >= 0;
 }
 
 } // namespace
@@ -933,7 +852,7 @@ int main(int argc, char* argv[])
     const auto [system, family] = chosen.front();
     const Report report = Case(*system, family, options.Seed, options.Reproduce).Run();
     std::vector<int> points{ report.LostPoint };
-    for (const Worst& worst : report.Worsts)
+    for (const WorstCase& worst : report.Worsts)
     {
       if (std::find(points.begin(), points.end(), worst.Point) == points.end())
       {
@@ -958,8 +877,7 @@ int main(int argc, char* argv[])
   Report total;
   for (const auto& [system, family] : chosen)
   {
-    const Report report =
-      RunCases(options, *system, family, options.Points / share, options.Seconds / share);
+    const Report report = RunCases(options, *system, family, options.Points / share);
     total.Take(report);
     good = Print(*system, family, report) && good;
   }
