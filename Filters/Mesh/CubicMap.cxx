@@ -28,13 +28,18 @@ double MaxNorm(const Vector2& v)
 }
 
 // Whether a triangle is counterclockwise in both domains, seen from its corner 0 as the map sees
-// it: rounding may turn the parts of a refined needle over.
+// it: rounding may turn the parts of a refined needle over. Fourth powers of its lengths must be
+// representable.
 bool IsPositive(const PlanarPair& pair, int triangle)
 {
-  const auto area = [](const std::array<Vector2, 3>& corners) {
-    return DifferenceOfProducts(corners[1].x, corners[2].y, corners[1].y, corners[2].x);
+  constexpr double least = 1e-75;
+  constexpr double greatest = 1e75;
+  const auto isPositive = [](const std::array<Vector2, 3>& corners) {
+    const double length = std::max(MaxNorm(corners[1]), MaxNorm(corners[2]));
+    return length > least && length < greatest &&
+      DifferenceOfProducts(corners[1].x, corners[2].y, corners[1].y, corners[2].x) > 0.0;
   };
-  return area(pair.GetSourceCorners(triangle)) > 0.0 && area(pair.GetTargetCorners(triangle)) > 0.0;
+  return isPositive(pair.GetSourceCorners(triangle)) && isPositive(pair.GetTargetCorners(triangle));
 }
 
 // A cubic map on a triangle: ten control points, by weights of the corners.

@@ -58,6 +58,8 @@ struct CubicBatch
 class CubicMap
 {
 public:
+  /// Fourth powers of lengths must be representable: coordinates should be about 1. Otherwise
+  /// triangles are not certified. The options must be possible for the number of triangles.
   CubicMap(
     PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor = SerialFor);
   CubicMap(const CubicMap&) = delete;

@@ -7,6 +7,7 @@
 #ifndef homeomorphism_CubicMapOptions_h
 #define homeomorphism_CubicMapOptions_h
 
+#include <cstdint>
 #include <limits>
 
 namespace homeomorphism
@@ -30,6 +31,20 @@ struct CubicMapOptions
   double CertificateMargin = 0.02;
   /// With least bending: how often triangles are cut into four before.
   int FairnessRefinement = 0;
+
+  /// With least bending, the greatest number of triangles, refined: each may have 27 unknowns,
+  /// which are numbered with 32 bits.
+  static constexpr std::int64_t MostTriangles = std::int64_t(1) << 26;
+
+  /// The number of triangles of a map of @a count triangles.
+  std::int64_t GetNumberOfRefined(std::int64_t count) const
+  {
+    return this->Bending == CubicBending::Least ? count << (2 * this->FairnessRefinement) : count;
+  }
+  bool IsPossible(std::int64_t count) const
+  {
+    return this->Bending != CubicBending::Least || this->GetNumberOfRefined(count) <= MostTriangles;
+  }
 
   bool operator==(const CubicMapOptions& other) const
   {

@@ -59,10 +59,10 @@ private:
 //------------------------------------------------------------------------------
 void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin)
 {
-  this->Elements.emplace_back();
-  Element& made = this->Elements.back();
+  this->Now->Elements.emplace_back();
+  Element& made = this->Now->Elements.back();
   const PlanarPair& pair = this->Template.GetPair();
-  const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Triangle];
+  const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Now->Number];
   made.Points = points;
   made.Frame = BarycentricFrame(points);
   made.Net = net;
@@ -73,29 +73,38 @@ void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& n
 //------------------------------------------------------------------------------
 void CubicTriangle::Set(int triangle)
 {
-  if (this->Triangle == triangle)
+  if (this->Now && this->Now->Number == triangle)
   {
     return;
   }
-  this->Triangle = triangle;
-  this->Elements.clear();
+  if (!this->Triangles)
+  {
+    this->Triangles = std::make_unique<std::array<Triangle, NumberOfTriangles>>();
+  }
+  this->Now = &(*this->Triangles)[static_cast<std::size_t>(triangle % NumberOfTriangles)];
+  if (this->Now->Number == triangle)
+  {
+    return;
+  }
+  this->Now->Number = triangle;
+  this->Now->Elements.clear();
   const PlanarPair& pair = this->Template.GetPair();
-  this->Affine = this->Template.GetAffine(triangle);
-  this->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
-  if (this->Whole)
+  this->Now->Affine = this->Template.GetAffine(triangle);
+  this->Now->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
+  if (this->Now->Whole)
   {
     this->Make(pair.GetSourceCorners(triangle), this->Bending->Nets[triangle], 0);
     return;
   }
-  this->Cut = this->Template.GetCut(triangle);
-  this->Made.fill(-1);
-  for (EdgeTurn& edge : this->Edges)
+  this->Now->Cut = this->Template.GetCut(triangle);
+  this->Now->Made.fill(-1);
+  for (EdgeTurn& edge : this->Now->Edges)
   {
     edge.IsMade = false;
   }
   for (int c = 0; c < 3; ++c)
   {
-    this->InRings[c] =
+    this->Now->InRings[c] =
       this->Template.GetKind(pair.Triangles[triangle][c]) != VertexKind::Differentiable;
   }
 }
@@ -103,12 +112,12 @@ void CubicTriangle::Set(int triangle)
 //------------------------------------------------------------------------------
 double CubicTriangle::GetScale() const
 {
-  if (!this->Whole)
+  if (!this->Now->Whole)
   {
-    const std::array<double, 3>& heights = this->Cut.Heights;
+    const std::array<double, 3>& heights = this->Now->Cut.Heights;
     return std::min({ heights[0], heights[1], heights[2] });
   }
-  const std::array<Vector2, 3>& points = this->Elements[0].Points;
+  const std::array<Vector2, 3>& points = this->Now->Elements[0].Points;
   return std::max(
     { std::abs(points[1].x), std::abs(points[1].y), std::abs(points[2].x), std::abs(points[2].y) });
 }
@@ -117,12 +126,12 @@ double CubicTriangle::GetScale() const
 const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point)
 {
   int& number = this->LastElement;
-  if (this->Whole)
+  if (this->Now->Whole)
   {
     number = 0;
-    return &this->Elements[0];
+    return &this->Now->Elements[0];
   }
-  const TriangleCut& cut = this->Cut;
+  const TriangleCut& cut = this->Now->Cut;
   if (!this->Bending)
   {
     number = cut.FindBesideEdges(point);
@@ -130,18 +139,18 @@ const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point)
   }
   number = cut.Find(point);
   const int origin = TriangleCut::GetOrigin(number);
-  if (number < TriangleCut::FirstStrip && this->InRings[origin])
+  if (number < TriangleCut::FirstStrip && this->Now->InRings[origin])
   {
     return nullptr;
   }
-  if (this->Made[number] < 0)
+  if (this->Now->Made[number] < 0)
   {
-    this->Made[number] = static_cast<std::int8_t>(this->Elements.size());
+    this->Now->Made[number] = static_cast<std::int8_t>(this->Now->Elements.size());
     const CubicElement element = this->Bending->GetElement(
-      this->Template.GetPair(), cut, this->Affine, this->Triangle, number);
+      this->Template.GetPair(), cut, this->Now->Affine, this->Now->Number, number);
     this->Make(element.Points, CubicNet(element), origin);
   }
-  return &this->Elements[this->Made[number]];
+  return &this->Now->Elements[this->Now->Made[number]];
 }
 
 //------------------------------------------------------------------------------
@@ -177,14 +186,14 @@ Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative
 {
   const int number = this->LastElement;
   const int origin = TriangleCut::GetOrigin(number);
-  if (number < TriangleCut::FirstStrip && this->InRings[origin])
+  if (number < TriangleCut::FirstStrip && this->Now->InRings[origin])
   {
     const PlanarPair& pair = this->Template.GetPair();
-    const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Triangle];
+    const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Now->Number];
     Vector2 image;
     Matrix2 there;
     this->Template.EvaluateRings(
-      this->Triangle, origin, point - this->Cut.Corners[origin], image, there);
+      this->Now->Number, origin, point - this->Now->Cut.Corners[origin], image, there);
     if (derivative)
     {
       *derivative = there;
@@ -193,9 +202,9 @@ Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative
   }
   if (derivative)
   {
-    *derivative = this->Affine;
+    *derivative = this->Now->Affine;
   }
-  const Vector2 image = this->Affine * point;
+  const Vector2 image = this->Now->Affine * point;
   if (number >= TriangleCut::FirstMiddle)
   {
     return image;
@@ -208,13 +217,13 @@ Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative
 //------------------------------------------------------------------------------
 const CubicTriangle::EdgeTurn& CubicTriangle::GetEdge(int k)
 {
-  EdgeTurn& edge = this->Edges[k];
+  EdgeTurn& edge = this->Now->Edges[k];
   if (edge.IsMade)
   {
     return edge;
   }
   edge.IsMade = true;
-  const TriangleCut& cut = this->Cut;
+  const TriangleCut& cut = this->Now->Cut;
   const double height = cut.Heights[k];
   const double strip = cut.Lengths[k] - cut.Radii[NextCorner(k)] - cut.Radii[PreviousCorner(k)];
   edge.InverseHeight = 1.0 / height;
@@ -222,13 +231,13 @@ const CubicTriangle::EdgeTurn& CubicTriangle::GetEdge(int k)
   const double mu = height * edge.InverseStrip;
   edge.StripShare = 1.0 / (1.0 + mu * mu);
   edge.Turn = {};
-  const int neighbor = this->Template.GetPair().Neighbors[this->Triangle][k];
+  const int neighbor = this->Template.GetPair().Neighbors[this->Now->Number][k];
   if (neighbor >= 0)
   {
     const Matrix2& across = this->Template.GetAffine(neighbor);
-    const double d = this->Affine.Determinant();
+    const double d = this->Now->Affine.Determinant();
     const double share = d / (d + across.Determinant());
-    edge.Turn = (share * height) * ((across - this->Affine) * Normal(cut.Along[k]));
+    edge.Turn = (share * height) * ((across - this->Now->Affine) * Normal(cut.Along[k]));
   }
   return edge;
 }
@@ -239,7 +248,7 @@ const CubicTriangle::EdgeTurn& CubicTriangle::GetEdge(int k)
 Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2* derivative)
 {
   const int k = (number - TriangleCut::FirstStrip) / 2;
-  const TriangleCut& cut = this->Cut;
+  const TriangleCut& cut = this->Now->Cut;
   const EdgeTurn& edge = this->GetEdge(k);
   const Vector2 d = point - cut.Corners[NextCorner(k)];
   const double s = (Dot(cut.Along[k], d) - cut.Radii[NextCorner(k)]) * edge.InverseStrip;
@@ -270,10 +279,10 @@ Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2
 {
   constexpr double eighteenth = 1.0 / 18.0;
   const int c = number / 3;
-  const TriangleCut& cut = this->Cut;
+  const TriangleCut& cut = this->Now->Cut;
   const Vector2 x = point - cut.Corners[c];
-  const int id = this->Template.GetPair().Triangles[this->Triangle][c];
-  const Matrix2 turn = this->Template.GetDerivative(id) - this->Affine;
+  const int id = this->Template.GetPair().Triangles[this->Now->Number][c];
+  const Matrix2 turn = this->Template.GetDerivative(id) - this->Now->Affine;
   const Vector2 linear = turn * x;
   if (number % 3 == 1)
   {

@@ -13,14 +13,15 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace homeomorphism
 {
 
 /// The template is evaluated in closed form (see Documentation/cubic.md). Other elements of cut
-/// triangles are made when a point in them is mapped for the first time, and kept until another
-/// triangle is set. What it computes depends on the triangle and the point alone.
+/// triangles are made when a point in them is mapped for the first time, and kept until several
+/// other triangles have been set. What it computes depends on the triangle and the point alone.
 class CubicTriangle
 {
 public:
@@ -78,19 +79,29 @@ private:
   Vector2 DeviateInStrip(const Vector2& point, int number, Matrix2* derivative);
   Vector2 DeviateInCorner(const Vector2& point, int number, Matrix2* derivative);
 
+  /// What is known of a triangle.
+  struct Triangle
+  {
+    int Number = -1;
+    bool Whole = false;
+    Matrix2 Affine;
+    TriangleCut Cut;
+    std::array<std::uint8_t, 3> InRings{};
+    std::array<EdgeTurn, 3> Edges;
+    /// Those that are made, a whole triangle's alone, and where each of a cut one's is, -1 if
+    /// nowhere.
+    std::vector<Element> Elements;
+    std::array<std::int8_t, TriangleCut::NumberOfElements> Made;
+  };
+  /// Points in a row, and Newton's steps, come back to the same few triangles.
+  static constexpr int NumberOfTriangles = 8;
+
   const CubicTemplate& Template;
   const BendingSolution* Bending;
-  int Triangle = -1;
-  bool Whole = false;
   int LastElement = 0;
-  Matrix2 Affine;
-  TriangleCut Cut;
-  std::array<std::uint8_t, 3> InRings{};
-  std::array<EdgeTurn, 3> Edges;
-  /// Those that are made, a whole triangle's alone, and where each of a cut one's is, -1 if
-  /// nowhere.
-  std::vector<Element> Elements;
-  std::array<std::int8_t, TriangleCut::NumberOfElements> Made;
+  /// The last triangles that were set, by the ends of their numbers; made when the first is set.
+  std::unique_ptr<std::array<Triangle, NumberOfTriangles>> Triangles;
+  Triangle* Now = nullptr;
 };
 
 } // namespace homeomorphism

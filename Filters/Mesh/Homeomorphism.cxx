@@ -224,6 +224,14 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
         diagnostics.push_back(diagnostic);
       }
     }
+    const TriangleIndex count = topology.GetNumberOfTriangles();
+    if (target && !options.Cubic.IsPossible(count))
+    {
+      MeshDiagnostic diagnostic;
+      diagnostic.What = MeshDiagnostic::Kind::TooManyRefined;
+      diagnostic.Counts = { count, options.Cubic.GetNumberOfRefined(count) };
+      diagnostics.push_back(diagnostic);
+    }
     if (IsRefused(diagnostics))
     {
       return nullptr;

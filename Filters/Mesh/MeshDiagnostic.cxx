@@ -38,6 +38,8 @@ MeshDiagnostic::Remedy MeshDiagnostic::GetRemedy() const
       return Remedy::UseOtherSystem;
     case Kind::NotPlanar:
       return Remedy::UseSmoothSystem;
+    case Kind::TooManyRefined:
+      return Remedy::RefineLess;
     case Kind::NearlyPlanar:
       break;
   }

@@ -56,6 +56,9 @@ struct MeshDiagnostic
     Discordant,
     /// The mesh is a surface, and the Cubic system maps planar meshes only.
     NotPlanar,
+    /// The Cubic system with LEAST bending would have more triangles, once refined, than it can
+    /// number the unknowns of. Counts has the mesh's triangles and the refined ones.
+    TooManyRefined,
     /// The points nearly lie in a plane, but the mesh is treated as a surface. Size is the largest
     /// distance from that plane, Tolerance the relative tolerance that finds points of the plane.
     NearlyPlanar
@@ -109,6 +112,8 @@ struct MeshDiagnostic
     UseOtherSystem,
     /// Use the Smooth system.
     UseSmoothSystem,
+    /// Use less FairnessRefinement, or LOCAL bending.
+    RefineLess,
     /// Project the mesh to the plane, or use the tolerance.
     FlattenOrUseTolerance
   };

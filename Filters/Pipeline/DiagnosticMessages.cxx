@@ -3,6 +3,7 @@
 
 #include "DiagnosticMessages.h"
 
+#include "Mesh/CubicMapOptions.h"
 #include "Mesh/Triangulation.h"
 
 #include "vtkDoubleArray.h"
@@ -104,6 +105,8 @@ const char* GetAdvice(MeshDiagnostic::Remedy remedy)
              "(DiscordantTriangles).";
     case Remedy::UseSmoothSystem:
       return "Use the Smooth system, which maps surfaces too.";
+    case Remedy::RefineLess:
+      return "Use less FairnessRefinement, or LOCAL CubicBending.";
     case Remedy::FlattenOrUseTolerance:
       break;
   }
@@ -133,6 +136,12 @@ std::string DescribeWhole(const MeshDiagnostic& diagnostic)
       text << "The points of the " << GetName(diagnostic.Where)
            << " do not lie in a plane, and the Cubic system maps planar meshes only";
       break;
+    case Kind::TooManyRefined:
+      text << "FairnessRefinement divides the " << first << " triangles of the "
+           << GetName(diagnostic.Where) << " into " << second
+           << ", and the Cubic system with least bending maps at most "
+           << CubicMapOptions::MostTriangles;
+      break;
     default:
       text << "The points of the " << GetName(diagnostic.Where)
            << " do not lie in a plane, but within " << diagnostic.Size
@@ -161,7 +170,7 @@ const char* GetName(MeshDiagnostic::Kind kind)
     "PointCountsDiffer", "CellCountsDiffer", "TooManyTriangles", "NotTriangles", "TriangleStrips",
     "BadConnectivity", "ConnectivityDiffers", "RepeatedCorner", "NotFinite", "DegenerateTriangle",
     "NonManifoldEdge", "NonOrientable", "Flipped", "Overlapping", "Discordant", "NotPlanar",
-    "NearlyPlanar"
+    "TooManyRefined", "NearlyPlanar"
   };
   return names[static_cast<std::size_t>(kind)];
 }
@@ -181,9 +190,9 @@ const char* GetName(MeshDiagnostic::Outcome outcome)
 
 const char* GetName(MeshDiagnostic::Remedy remedy)
 {
-  static constexpr std::array<const char*, 11> names{ "UseSameMesh", "SplitMeshes", "Triangulate",
+  static constexpr std::array<const char*, 12> names{ "UseSameMesh", "SplitMeshes", "Triangulate",
     "ReadAgain", "UseSourceCells", "RepairOrMask", "CutOpen", "MovePointsOrMask", "UseOtherSystem",
-    "UseSmoothSystem", "FlattenOrUseTolerance" };
+    "UseSmoothSystem", "RefineLess", "FlattenOrUseTolerance" };
   return names[static_cast<std::size_t>(remedy)];
 }
 

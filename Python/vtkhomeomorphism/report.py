@@ -25,6 +25,7 @@ ADVICE = {
     "MovePointsOrMask": "move points, or leave them out with --mask-invalid",
     "UseOtherSystem": "use another --system, or --linear-where-discordant",
     "UseSmoothSystem": "use --system smooth",
+    "RefineLess": "use less --fairness-refinement, or --cubic-bending local",
     "FlattenOrUseTolerance": "project the mesh onto its plane, or use --tolerance",
 }
 """What to do, by the remedies of the table of defects."""

@@ -196,3 +196,19 @@ TEST(CubicSystem, RefusesSurfacesAndCoordinates)
   EXPECT_TRUE(moreErrors.HasError());
   EXPECT_NE(coordinates->GetErrorCode(), 0u);
 }
+
+TEST(CubicSystem, RefusesWhatItCannotNumber)
+{
+  // 263,538 triangles, 256 times as many after four refinements.
+  const vtkSmartPointer<vtkPolyData> mesh = MakePlanarPair(363, 3).Source;
+  ASSERT_GT(mesh->GetNumberOfPolys() * 256, vtkIdType(1) << 26);
+  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  Messages errors(filter);
+  filter->SetSourceData(mesh);
+  filter->SetTargetData(mesh);
+  filter->SetCoordinateSystemToCubic();
+  filter->SetFairnessRefinement(4);
+  filter->Update();
+  EXPECT_NE(errors.Error().find("at most 67108864"), std::string::npos) << errors.Error();
+  EXPECT_NE(errors.Error().find("less FairnessRefinement"), std::string::npos);
+}

@@ -640,6 +640,26 @@ TEST(CubicMap, BatchesGiveTheBitsOfSinglePoints)
   }
 }
 
+TEST(CubicMap, LengthsThatOverflowAreNotCertified)
+{
+  for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
+  {
+    for (double scale : { 1e160, 1e-170, 1e300 })
+    {
+      PlanarPair pair = RandomPair(22, 0.5, 3);
+      for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+      {
+        for (Vector2& point : *points)
+        {
+          point = scale * point;
+        }
+      }
+      const CubicMap map(pair, Options(bending));
+      EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, pair.GetNumberOfTriangles()) << scale;
+    }
+  }
+}
+
 TEST(CubicMap, PointsOutsideHaveNoPreimage)
 {
   for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
