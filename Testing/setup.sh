@@ -29,11 +29,15 @@ dhm_packages=(python3-dev python3-numpy python3-click python3-pandas python3-mes
 test_packages=(libgtest-dev openmpi-bin python3-dev python3-mpi4py python3-mpmath python3-numpy python3-scipy
   python3-vtk9 python3-pytest python3-tifffile binutils xvfb xauth proj-bin)
 
-# with_display COMMAND...: runs it with a virtual display of its own. Its number is random, because programs in a
-# chroot see other displays' sockets but not their locks.
+# with_display COMMAND...: runs it with a virtual display of its own. Programs in a chroot see other displays' sockets
+# but not their locks, so its number is one that no socket has.
 with_display()
 {
-  xvfb-run --auto-servernum --server-num=$((100 + RANDOM % 900)) "$@"
+  local number=$((100 + RANDOM % 900))
+  while grep -qs "X11-unix/X$number\$" /proc/net/unix; do
+    number=$((100 + RANDOM % 900))
+  done
+  xvfb-run --auto-servernum --server-num="$number" "$@"
 }
 
 # list_sources FOLDER...: the C++ files of this project in these folders.
