@@ -488,7 +488,7 @@ bool CubicTemplate::TakeMean(int point, const PointFans& fans, std::vector<Bound
     const Vector2 last =
       (1.0 / Length(in)) * (radius * in - this->Heights[t][NextCorner(c)] * Normal(in));
     const double sine = Cross(first, last) / std::sqrt(Dot(first, first) * Dot(last, last));
-    // See "Vertices at once" in Documentation/cubic.md.
+    // See "Vertices without a linear program" in Documentation/cubic.md.
     const double turn = std::sqrt(SquaredNorm(mean - this->Affines[t]) * squares) /
       own.Determinant * (1.0 + 2.8 / sine);
     const double bound = 1.0 - own.Fall - turn * (2.0 + 2.0 * own.Slope + turn) - rounding;
