@@ -392,28 +392,6 @@ int vtkResampleThroughHomeomorphism::RequestInformation(
   return 1;
 }
 
-int vtkResampleThroughHomeomorphism::RequestUpdateExtent(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  vtkInformation* gridInfo = inputs[3]->GetInformationObject(0);
-  if (gridInfo && !this->DependsOnPortsBefore(3))
-  {
-    vtkInformation* outInfo = outputs->GetInformationObject(0);
-    for (auto* key : { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
-           Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
-    {
-      gridInfo->CopyEntry(outInfo, key);
-    }
-    if (gridInfo->Has(Pipeline::WHOLE_EXTENT()) && outInfo->Has(Pipeline::UPDATE_EXTENT()))
-    {
-      gridInfo->CopyEntry(outInfo, Pipeline::UPDATE_EXTENT());
-    }
-  }
-  return 1;
-}
-
 bool vtkResampleThroughHomeomorphism::MakeImage(
   vtkPolyData* mesh, const int extent[6], vtkImageData* image)
 {

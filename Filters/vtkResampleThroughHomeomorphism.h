@@ -72,8 +72,6 @@ protected:
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestInformation(
     vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int Execute(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 

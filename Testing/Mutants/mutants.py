@@ -7,6 +7,7 @@ import argparse
 import fnmatch
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 COPY = ROOT / "build" / "mutants" / "source"
 BUILD = ROOT / "build" / "mutants" / "build"
 TIME_LIMIT = 600  # seconds; a test that a fault lets hang has found it
+MEMORY_LIMIT = 8 << 30  # bytes; nor may a fault take all memory of the machine
 
 
 class Fault:
@@ -86,13 +88,17 @@ def build(program):
     return result.returncode == 0, result.stdout + result.stderr
 
 
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT, MEMORY_LIMIT))
+
+
 def run_tests(program, tests):
     """The name of the first test that fails ("crash" or "time limit" if there is none), or None."""
     command = [str(BUILD / "bin" / program), f"--gtest_filter={tests}", "--gtest_fail_fast"]
     if not os.environ.get("DISPLAY"):
         command = ["xvfb-run", "-a"] + command
     try:
-        result = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT)
+        result = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT, preexec_fn=limit_memory)
     except subprocess.TimeoutExpired:
         return "time limit"
     if "[==========] 0 tests" in result.stdout or "[==========]" not in result.stdout:
