@@ -68,6 +68,7 @@ set(mesh_headers
   Mesh/MeshDiagnostic.h
   Mesh/MeshGeometry.h
   Mesh/MeshValidation.h
+  Mesh/PointBlock.h
   Mesh/PointLocation.h
   Mesh/Triangulation.h
   Mesh/TriangulationPair.h

@@ -165,7 +165,8 @@ struct EndingEquation : RootBatch<Width, true>
     const double secantDerivative = slope / secant * flatness * over * over;
     const double shareDerivative =
       -2.0 * over * over * overSecant - share * overSecant * secantDerivative;
-    this->Step(index, s * (1.0 + share) - proportion, 1.0 + share + s * shareDerivative, 0x1p-32);
+    const double value = s * (1.0 + share) - proportion;
+    this->Step(index, value, value / (1.0 + share + s * shareDerivative), 0x1p-32);
   }
 };
 
@@ -197,7 +198,8 @@ struct ThroughEquation : RootBatch<Width, true>
     // On the edge the inset is 0, although the curvature at the corner is infinite.
     const double inset = y > 0.0 ? y * sine * overOne : 0.0;
     const double insetDerivative = y > 0.0 ? derivative.Curvature * y * y * overOne / cosine : 0.0;
-    this->Step(index, arc.EdgePoint - inset - x, derivative.EdgePoint - insetDerivative, 0x1p-50);
+    const double value = arc.EdgePoint - inset - x;
+    this->Step(index, value, value / (derivative.EdgePoint - insetDerivative), 0x1p-50);
   }
 };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RootFinding.h
-/// Bracketed Newton iteration for batches of increasing functions.
+/// Bracketed iteration for batches of increasing functions, by steps of Newton or Halley.
 
 #ifndef homeomorphism_RootFinding_h
 #define homeomorphism_RootFinding_h
@@ -10,13 +10,26 @@
 #include "Kernel/Simd/Vectorize.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace homeomorphism
 {
 
+/// The step of Halley's method to the root of an increasing function, to be subtracted. Its
+/// denominator differs from Newton's by at most a factor of 2.
+HOMEOMORPHISM_ALWAYS_INLINE double HalleyStep(double value, double slope, double curvature)
+{
+  const double square = slope * slope;
+  double denominator = square - 0.5 * (value * curvature);
+  denominator = denominator > 0.5 * square ? denominator : 0.5 * square;
+  denominator = denominator < 2.0 * square ? denominator : 2.0 * square;
+  return value * slope / denominator;
+}
+
 /// Solves @a Width equations, each for the root of an increasing function in an interval. Every
-/// evaluation narrows the bracket. A Newton step that leaves the bracket is replaced by bisection.
+/// evaluation narrows the bracket. A step that leaves the bracket is replaced by bisection.
 /// Iteration ends when the step is below rounding or the bracket is empty. A root that has
 /// converged no longer changes, so the result of an equation does not depend on the others.
 ///
@@ -30,7 +43,8 @@ class RootBatch
 public:
   double Root[Width];
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Start(int index, double lower, double upper, double guess)
+  HOMEOMORPHISM_ALWAYS_INLINE void Start(
+    int index, double lower, double upper, double guess)
   {
     guess = guess < upper ? guess : upper;
     this->Root[index] = guess > lower ? guess : lower;
@@ -39,16 +53,26 @@ public:
     this->TriedLower[index] = 0.0;
     this->TriedUpper[index] = 0.0;
     this->LastStep[index] = 0.0;
-    this->Done[index] = 0.0;
+    this->Done[index] = 0;
   }
 
-  /// Takes a step from the value and slope of the function at Root. Iteration ends with a step of
-  /// at most @a enough times the root. With @a AtEnds it also ends when the ratio to the previous
+  /// Subtracts a step without a bracket. The result is the root if the step is at most @a enough times
+  /// it, and it is in the interval.
+  HOMEOMORPHISM_ALWAYS_INLINE void StepFreely(int index, double step, double enough)
+  {
+    const double x = this->Root[index] - step;
+    double done = std::abs(step) <= enough * x ? 1.0 : 0.0;
+    done = x <= this->Upper[index] ? done : 0.0;
+    this->Root[index] = x;
+    this->Done[index] = done > 0.0 ? 1 : 0;
+  }
+
+  /// Subtracts a step of Newton or Halley, given with the value of the function at Root. Iteration
+  /// ends with a step of at most @a enough times the root. With @a AtEnds it also ends when the ratio to the previous
   /// step shows that the remaining error, about the square of that ratio, is below rounding.
-  HOMEOMORPHISM_ALWAYS_INLINE void Step(int index, double value, double slope, double enough)
+  HOMEOMORPHISM_ALWAYS_INLINE void Step(int index, double value, double step, double enough)
   {
     const double x = this->Root[index];
-    const double step = value / slope;
     const double size = std::abs(step);
     const double lower = value < 0.0 ? x : this->Lower[index];
     const double upper = value > 0.0 ? x : this->Upper[index];
@@ -88,8 +112,8 @@ public:
     }
     next = size <= 0x1p-53 * x ? x : next;
     next = value == 0.0 ? x : next;
-    this->Root[index] = this->Done[index] > 0.0 ? x : next;
-    this->Done[index] = this->Done[index] > done ? this->Done[index] : done;
+    this->Root[index] = this->Done[index] != 0 ? x : next;
+    this->Done[index] = done > 0.0 ? 1 : this->Done[index];
     this->Lower[index] = lower;
     this->Upper[index] = upper;
   }
@@ -98,17 +122,13 @@ public:
   /// from 1 down to the smallest relevant root, an ulp of 1 cubed.
   HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
   {
-    // Large batches nearly always need three steps, and this test costs as much as a step.
-    if (Width > 1 && steps < 3)
-    {
-      return false;
-    }
-    double done = 1.0;
+    // Of integers, so that it vectorizes.
+    std::int64_t done = 1;
     for (int index = 0; index < Width; ++index)
     {
-      done = this->Done[index] < done ? this->Done[index] : done;
+      done &= this->Done[index];
     }
-    return done > 0.0 || steps > 250;
+    return done != 0 || steps > 250;
   }
 
 private:
@@ -117,12 +137,24 @@ private:
   double TriedLower[Width];
   double TriedUpper[Width];
   double LastStep[Width];
-  double Done[Width];
+  std::int64_t Done[Width];
+};
+
+/// Whether an equation has a function Approach.
+template <typename Equation, typename = void>
+struct HasApproach : std::false_type
+{
+};
+template <typename Equation>
+struct HasApproach<Equation, std::void_t<decltype(&Equation::Approach)>> : std::true_type
+{
 };
 
 /// Finds the roots of the equations of a batch. @a Equation is a RootBatch with functions Set and
 /// Evaluate, which take an index and the elements of @a numbers (arrays with one value per
-/// equation) for that index.
+/// equation) for that index. An equation may have a function Approach that takes a step without a
+/// bracket; it is called twice for each index, before bracketed steps are taken where the root is not
+/// found yet.
 template <int Width, typename Equation, typename... Numbers>
 HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*... numbers)
 {
@@ -130,6 +162,17 @@ HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*..
   for (int index = 0; index < Width; ++index)
   {
     equation.Set(index, numbers[index]...);
+  }
+  if constexpr (HasApproach<Equation>::value)
+  {
+    for (int step = 0; step < 2; ++step)
+    {
+      HOMEOMORPHISM_SIMD
+      for (int index = 0; index < Width; ++index)
+      {
+        equation.Approach(index, numbers[index]...);
+      }
+    }
   }
   for (int step = 0; !equation.IsDone(step); ++step)
   {

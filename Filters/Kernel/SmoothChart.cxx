@@ -28,6 +28,9 @@ struct StripFunction
   double SharePrevious;
   double Tau;
   double U;
+  /// 1 / (l_i + l_j) and 1 / (tau q).
+  double OverSum;
+  double OverWidth;
 
   HOMEOMORPHISM_ALWAYS_INLINE StripFunction(double k, double next, double previous, double tau)
     : K(k)
@@ -39,10 +42,12 @@ struct StripFunction
     double product = tau * (next * previous);
     product += 1e-290;
     const double over = 1.0 / (sum * product);
-    const double overSum = product * over;
-    this->ShareNext = next * overSum;
-    this->SharePrevious = previous * overSum;
-    double u = k * sum * (sum * over);
+    this->OverSum = product * over;
+    this->ShareNext = next * this->OverSum;
+    this->SharePrevious = previous * this->OverSum;
+    this->OverWidth = sum * sum * over;
+    // The first product does not wait for the division.
+    double u = k * (sum * sum) * over;
     // At a corner u is NaN, and there is no strip.
     u = u < 1.0 ? u : 1.0;
     u = u > 0.0 ? u : 0.0;
@@ -54,7 +59,7 @@ struct StripFunction
   HOMEOMORPHISM_ALWAYS_INLINE double W() const
   {
     const double rest = 1.0 - this->U;
-    return rest * rest * rest * (1.0 + 3.0 * this->U);
+    return rest * rest * (rest * (1.0 + 3.0 * this->U));
   }
 
   /// B = l_k W(u).
@@ -84,6 +89,23 @@ struct StripFunction
     return kappa * (1.0 - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
   }
 
+  /// The second derivative of beta - B(affine - d beta) with respect to beta, -d^T B'' d. With K'' =
+  /// -12 u (1 - u) (3 - 5 u), q' = (l_j / (l_i + l_j))^2 d_i + (l_i / (l_i + l_j))^2 d_j and q'' =
+  /// -2 (d_i l_j - d_j l_i)^2 / (l_i + l_j)^3, B'' is 12 tau u^3 (1 - u)^2 q'' + K'' / (tau q) (d_k -
+  /// u tau q')^2.
+  HOMEOMORPHISM_ALWAYS_INLINE double Curvature(
+    double kappa, double offsetNext, double offsetPrevious) const
+  {
+    const double rest = 1.0 - this->U;
+    const double turn = offsetNext * this->SharePrevious - offsetPrevious * this->ShareNext;
+    const double slope = this->SharePrevious * this->SharePrevious * offsetNext +
+      this->ShareNext * this->ShareNext * offsetPrevious;
+    const double approach = (kappa - 1.0) - this->U * (this->Tau * slope);
+    const double u2 = this->U * this->U;
+    return 24.0 * u2 * this->U * (rest * rest) * this->Tau * (turn * turn) * this->OverSum +
+      12.0 * this->U * rest * (3.0 - 5.0 * this->U) * this->OverWidth * (approach * approach);
+  }
+
   /// beta - B for a point with the affine coordinate affineK = l_k + d_k beta, without
   /// cancellation: beta (1 + d_k W) - affineK W.
   HOMEOMORPHISM_ALWAYS_INLINE double Residual(double beta, double affineK, double kappa) const
@@ -96,31 +118,60 @@ struct StripFunction
 
 /// The equations of strips. From affine = l + d B(l) and beta = B(l) follows beta = B(affine - d
 /// beta). The difference of both sides increases with beta, because its slope is the determinant
-/// ratio. B(affine) is the initial guess.
+/// ratio. Three steps of Halley's method from 0 solve it beside most triangles. Only where the last
+/// of them is not short are further steps bracketed.
 template <int Width>
 struct StripEquation : RootBatch<Width, false>
 {
-  HOMEOMORPHISM_ALWAYS_INLINE void Set(
-    int index, double k, double next, double previous, double, double, double, double tau)
+  /// The error after a step is at most about 8 times its cube, in units of the root, so this is a
+  /// fraction of the rounding error of a barycentric coordinate.
+  static constexpr double Enough = 0x1p-18;
+
+  HOMEOMORPHISM_ALWAYS_INLINE void Set(int index, double k, double next, double previous,
+    double kappa, double offsetNext, double offsetPrevious, double tau)
   {
     constexpr double bound = 0.05;
     static_assert(bound > GreatestStripFunction, "the bracket contains the root");
-    this->Start(index, 0.0, bound, StripFunction(k, next, previous, tau).Value());
+    const StripFunction function(k, next, previous, tau);
+    const double step = HalleyStep(-function.Value(),
+      function.DeterminantRatio(kappa, offsetNext, offsetPrevious),
+      function.Curvature(kappa, offsetNext, offsetPrevious));
+    this->Start(index, 0.0, bound, -step);
+  }
+
+  HOMEOMORPHISM_ALWAYS_INLINE void Approach(int index, double k, double next, double previous,
+    double kappa, double offsetNext, double offsetPrevious, double tau)
+  {
+    const Linearized at =
+      At(this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
+    this->StepFreely(index, at.Step, Enough);
   }
 
   HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int index, double k, double next, double previous,
     double kappa, double offsetNext, double offsetPrevious, double tau)
   {
-    const double beta = this->Root[index];
+    const Linearized at =
+      At(this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
+    this->Step(index, at.Value, at.Step, Enough);
+  }
+
+private:
+  /// The equation's value and Halley's step at beta.
+  struct Linearized
+  {
+    double Value;
+    double Step;
+  };
+
+  HOMEOMORPHISM_ALWAYS_INLINE static Linearized At(double beta, double k, double next,
+    double previous, double kappa, double offsetNext, double offsetPrevious, double tau)
+  {
     const StripFunction function(
       k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau);
-    // The error after a step is about its square times half the relative second derivative, which
-    // tau bounds. It is a fraction of the rounding error of a barycentric coordinate. Below 2^-53
-    // steps do not change the root any more.
-    double enough = 0x1p-24 * tau * tau;
-    enough = enough > 0x1p-53 ? enough : 0x1p-53;
-    this->Step(index, function.Residual(beta, k, kappa),
-      function.DeterminantRatio(kappa, offsetNext, offsetPrevious), enough);
+    const double value = function.Residual(beta, k, kappa);
+    return { value,
+      HalleyStep(value, function.DeterminantRatio(kappa, offsetNext, offsetPrevious),
+        function.Curvature(kappa, offsetNext, offsetPrevious)) };
   }
 };
 
@@ -329,14 +380,8 @@ void MapSmoothBatch(SmoothBatch& batch, int count)
 
 int SmoothChart::StripAt(const Barycentric& l) const
 {
-  for (int k = 0; k < 3; ++k)
-  {
-    if (this->Strips[k].Contains(l[k], l[NextCorner(k)], l[PreviousCorner(k)]))
-    {
-      return k;
-    }
-  }
-  return -1;
+  const int k = LeastCorner(l[0], l[1], l[2]);
+  return this->Strips[k].Contains(l[k], l[NextCorner(k)], l[PreviousCorner(k)]) ? k : -1;
 }
 
 SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const

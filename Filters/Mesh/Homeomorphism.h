@@ -10,6 +10,7 @@
 
 #include "ChartedTriangulation.h"
 #include "CubicMapOptions.h"
+#include "PointBlock.h"
 #include "TriangulationPair.h"
 
 #include <memory>
@@ -59,46 +60,6 @@ struct Jacobian
   }
 };
 
-/// What helps to find the next of many points; it changes how fast, never what is found.
-struct LocationHint
-{
-  TriangleIndex Triangle = -1;
-  /// How many points in a row were in one triangle lately.
-  int RunLength = 1;
-  /// For how many more blocks points are taken to be so far from each other that the last one's
-  /// triangle is no help.
-  int ScatteredBlocks = 0;
-};
-
-/// Some points that are located and mapped together, which takes a fraction of the time.
-struct PointBlock
-{
-  static constexpr int Capacity = SmoothBatch::Capacity;
-  static constexpr int Size = SmoothBatch::Size;
-
-  int Count = 0;
-  double Points[Capacity][3];
-  /// The points' images, and outside points themselves; set by MapBlock.
-  double Images[Capacity][3];
-
-  /// The located points (see SurfacePoint), as structure of arrays.
-  TriangleIndex Triangles[Capacity];
-  int Corners[Capacity];
-  double InPlane[2][Size];
-  double Offsets[Capacity];
-  /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one
-  /// before it.
-  double Apex[Size];
-  double First[Size];
-  double Second[Size];
-
-  SurfacePoint GetSurfacePoint(int i) const
-  {
-    return { this->Triangles[i], { { this->InPlane[0][i], this->InPlane[1][i] }, this->Offsets[i] },
-      this->Corners[i] };
-  }
-};
-
 /// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
 /// coordinates of a single one. Immutable; any number of threads may use it.
 class Homeomorphism
@@ -126,7 +87,10 @@ public:
 
   /// Locates a point in a mesh's domain.
   SurfacePoint Locate(
-    Domain domain, const double point[3], double tolerance, TriangleIndex hint) const;
+    Domain domain, const double point[3], double tolerance, TriangleIndex hint) const
+  {
+    return this->Pair->GetLocation(domain).Find(point, tolerance, hint);
+  }
 
   /// The image of a point of @a from's domain. Corners are mapped to corners exactly. Returns false
   /// if there is none: if @a surfacePoint is not in the domain after all, or where a Cubic map is
@@ -138,7 +102,10 @@ public:
   Vector2 MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const;
 
   /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
-  int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const;
+  int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const
+  {
+    return this->Pair->GetLocation(domain).FindBlock(block, tolerance, hint);
+  }
 
   /// Maps the points of a block that LocateBlock has located, to the same bits as MapPoint. Points
   /// that have no image become outside ones, of triangle -1; returns how many.
@@ -160,10 +127,6 @@ public:
 
 private:
   Homeomorphism() = default;
-
-  /// Locates a point that is given in both coordinates.
-  SurfacePoint Locate(Domain domain, const double point[3], const Vector3& normalized,
-    double tolerance, TriangleIndex hint) const;
 
   /// The distance of an image from the plane of its triangle. Distances from a plane are
   /// lengths of the input's space, not of either normalized space.

@@ -141,6 +141,29 @@ public:
   }
 
   /// Converts many points, whose normalized coordinates are in separate arrays.
+  void ToNormalized(const double (*points)[3], int count, double* x, double* y, double* z) const
+  {
+    if (!this->AxisParallel || this->AxisOrder[0] != 0 || this->AxisOrder[1] != 1)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        const Vector3 point = this->ToNormalized(points[i]);
+        x[i] = point[0];
+        y[i] = point[1];
+        z[i] = point[2];
+      }
+      return;
+    }
+    // A plane parallel to x and y with the normal z.
+    const double scale = this->Scale;
+    const double distance = this->PlaneDistance;
+    for (int i = 0; i < count; ++i)
+    {
+      x[i] = points[i][0] * scale;
+      y[i] = points[i][1] * scale;
+      z[i] = points[i][2] * scale - distance;
+    }
+  }
   void FromNormalized(
     const double* x, const double* y, const double* z, int count, double (*points)[3]) const
   {

@@ -64,6 +64,41 @@ struct Nearest
   }
 };
 
+/// Sets the members of a block for the points from @a begin on, up to the first that is not for
+/// certain in the interior of a triangle or is higher over the plane than @a highest. Returns the
+/// number of that one, @a end if there is none.
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+int FindRun(const PlaneFrame& frame, const double normalized[3][PointBlock::Size], int begin,
+  int end, double highest, PointBlock& block)
+{
+  const PlaneFrame f = frame;
+  const double* x = normalized[0];
+  const double* y = normalized[1];
+  const double* height = normalized[2];
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::int64_t isIn[PointBlock::Size];
+  const int stop = begin + InWholeVectors(end - begin);
+  HOMEOMORPHISM_SIMD
+  for (int i = begin; i < stop; ++i)
+  {
+    const PlaneRelation relation(f, { x[i], y[i] });
+    block.InPlane[0][i] = relation.InPlane.x;
+    block.InPlane[1][i] = relation.InPlane.y;
+    block.Apex[i] = relation.Apex;
+    block.First[i] = relation.First;
+    block.Second[i] = relation.Second;
+    // A height that is not a number is too high. No branches, which would keep points apart.
+    const double margin = std::abs(height[i]) <= highest ? relation.Margin : infinity;
+    isIn[i] = relation.Least > margin ? 1 : 0;
+  }
+  int inside = begin;
+  while (inside < end && isIn[inside] != 0)
+  {
+    ++inside;
+  }
+  return inside;
+}
+
 } // namespace
 
 PointLocation::PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry)
@@ -170,26 +205,56 @@ void PointLocation::SetOverlapping(const std::vector<TriangleIndex>& triangles)
 }
 
 SurfacePoint PointLocation::Find(
-  const Vector3& normalized, double tolerance, TriangleIndex hint) const
+  const double point[3], double tolerance, TriangleIndex hint) const
 {
+  return this->Find(point, this->Geometry.ToNormalized(point), tolerance, hint);
+}
+
+SurfacePoint PointLocation::Find(
+  const double point[3], const Vector3& normalized, double tolerance, TriangleIndex hint) const
+{
+  if (hint >= 0 && this->MayWalk(normalized, tolerance) && !this->Topology.IsMasked(hint))
+  {
+    // Most points are in the triangle of the last one or near it.
+    PlaneRelation relation;
+    const TriangleIndex found =
+      this->Walk({ normalized[0], normalized[1] }, hint, Farthest, relation);
+    if (found >= 0 && relation.IsInside())
+    {
+      return { found, { relation.InPlane, this->GetOffset(normalized) }, -1 };
+    }
+    if (found >= 0)
+    {
+      return this->ToSurfacePoint(found, point, normalized);
+    }
+  }
   if (!(std::isfinite(normalized[0]) && std::isfinite(normalized[1]) &&
         std::isfinite(normalized[2])))
   {
     return {};
   }
-  if (!this->Geometry.IsColumnar() && this->Geometry.IsPlanar() &&
-    std::abs(normalized[2]) > tolerance)
+  if (!this->Geometry.IsPlanar())
+  {
+    return this->FindNearest(normalized, tolerance, hint);
+  }
+  if (!(std::abs(normalized[2]) <= this->GetHighest(tolerance)))
   {
     return {};
   }
-  SurfacePoint location = this->Geometry.IsPlanar()
-    ? this->FindInPlane(normalized, tolerance, hint)
-    : this->FindNearest(normalized, tolerance, hint);
-  if (!this->Geometry.IsColumnar())
+  TriangleIndex found = -1;
+  const TriangleIndex seed = this->GetSeed({ normalized[0], normalized[1] });
+  if (seed >= 0)
   {
-    location.Point.Offset = 0.0;
+    PlaneRelation relation;
+    found = this->Walk(
+      { normalized[0], normalized[1] }, seed, -std::numeric_limits<double>::infinity(), relation);
   }
-  return location;
+  if (found < 0)
+  {
+    found = this->SearchPlane({ normalized[0], normalized[1] });
+  }
+  return found >= 0 ? this->ToSurfacePoint(found, point, normalized)
+                    : this->FindNearestInPlane(normalized, tolerance);
 }
 
 int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized) const
@@ -208,16 +273,42 @@ int PointLocation::FindCorner(TriangleIndex triangle, const Vector3& normalized)
   return found;
 }
 
-SurfacePoint PointLocation::ToSurfacePoint(TriangleIndex triangle, const Vector3& normalized) const
+SurfacePoint PointLocation::ToSurfacePoint(
+  TriangleIndex triangle, const double point[3], const Vector3& normalized) const
 {
-  return { triangle, this->Geometry.ToFrame(triangle, normalized),
-    this->FindCorner(triangle, normalized) };
+  FramePoint inFrame = this->Geometry.ToFrame(triangle, normalized);
+  const int corner = this->FindCorner(triangle, normalized);
+  // The rounding of a mesh point's distance from a plane that is not parallel to two axes must not
+  // move it.
+  const bool isMeshPoint = corner >= 0 &&
+    this->Geometry.IsMeshPoint(this->Topology.GetCorners(triangle)[corner], point);
+  inFrame.Offset = isMeshPoint ? 0.0 : this->GetOffset(normalized);
+  return { triangle, inFrame, corner };
 }
 
-/// The triangle that a walk comes to, or -1 if it must be searched for; where the point is for
-/// certain in the triangle's interior, @a location is set.
+/// The neighbor beyond the edge that a point outside a triangle is farthest from, or -1.
+TriangleIndex PointLocation::LeaveTowards(
+  TriangleIndex triangle, const PlaneFrame& frame, const PlaneRelation& relation) const
+{
+  int edge = frame.Apex;
+  double least = relation.Apex;
+  if (relation.First < least)
+  {
+    least = relation.First;
+    edge = NextCorner(frame.Apex);
+  }
+  if (relation.Second < least)
+  {
+    edge = PreviousCorner(frame.Apex);
+  }
+  return this->Topology.GetTwin(triangle, edge).Triangle;
+}
+
+/// The triangle that a walk comes to, or -1 if it must be searched for. @a relation is the point's to
+/// the last triangle of the walk. No walk starts from a triangle for which a barycentric coordinate
+/// of the point is less than @a farthest.
 TriangleIndex PointLocation::Walk(
-  const Vector2& point, TriangleIndex start, SurfacePoint& location) const
+  const Vector2& point, TriangleIndex start, double farthest, PlaneRelation& relation) const
 {
   // Walks in triangulations that are not Delaunay may cycle.
   constexpr int longest = 64;
@@ -225,35 +316,22 @@ TriangleIndex PointLocation::Walk(
   for (int step = 0; step < longest; ++step)
   {
     const PlaneFrame& frame = this->Geometry.GetPlaneFrame(t);
-    const PlaneRelation relation(frame, point);
+    relation = PlaneRelation(frame, point);
     if (relation.IsInside())
     {
-      if (this->IsOverlapping(t))
+      return this->IsOverlapping(t) ? -1 : t;
+    }
+    if (relation.IsOutside())
+    {
+      if (step == 0 && relation.Least < farthest * frame.Height)
       {
         return -1;
       }
-      location.Triangle = t;
-      location.Point.InPlane = relation.InPlane;
-      return t;
-    }
-    // Leave by the edge that the point is farthest beyond.
-    int edge = -1;
-    if (relation.IsOutside())
-    {
-      edge = frame.Apex;
-      double least = relation.Apex;
-      if (relation.First < least)
-      {
-        least = relation.First;
-        edge = NextCorner(frame.Apex);
-      }
-      if (relation.Second < least)
-      {
-        edge = PreviousCorner(frame.Apex);
-      }
+      t = this->LeaveTowards(t, frame, relation);
     }
     else
     {
+      int edge = -1;
       const Triangulation::Corners& corners = this->Topology.GetCorners(t);
       int onEdge = -1;
       int edges = 0;
@@ -286,8 +364,8 @@ TriangleIndex PointLocation::Walk(
           ? std::min(t, other)
           : -1;
       }
+      t = this->Topology.GetTwin(t, edge).Triangle;
     }
-    t = this->Topology.GetTwin(t, edge).Triangle;
     if (t < 0)
     {
       return -1;
@@ -311,55 +389,210 @@ TriangleIndex PointLocation::SearchPlane(const Vector2& point) const
   return found;
 }
 
-SurfacePoint PointLocation::FindInPlane(
-  const Vector3& normalized, double tolerance, TriangleIndex hint) const
+SurfacePoint PointLocation::FindNearestInPlane(const Vector3& normalized, double tolerance) const
 {
   const Vector2 point{ normalized[0], normalized[1] };
-  SurfacePoint location;
-  location.Point.Offset = normalized[2];
-  // From a triangle many times its size away, the way from the seed is shorter.
-  constexpr double far = -4.0;
-  // Coordinates of the domain are close to 1; products of huge coordinates would overflow.
-  constexpr double huge = 1e100;
-  const bool isHuge = std::abs(point.x) > huge || std::abs(point.y) > huge;
-  TriangleIndex start = isHuge || (hint >= 0 && this->Topology.IsMasked(hint)) ? -1 : hint;
-  if (start >= 0)
-  {
-    const PlaneFrame& frame = this->Geometry.GetPlaneFrame(start);
-    start = PlaneRelation(frame, point).Least < far * frame.Height ? -1 : start;
-  }
-  TriangleIndex found = -1;
-  for (const TriangleIndex candidate : { start, this->GetSeed(point) })
-  {
-    if (found < 0 && candidate >= 0)
-    {
-      found = this->Walk(point, candidate, location);
-    }
-  }
-  if (location.Triangle >= 0)
-  {
-    return location;
-  }
-  if (found < 0)
-  {
-    found = this->SearchPlane(point);
-  }
-  if (found >= 0)
-  {
-    return this->ToSurfacePoint(found, normalized);
-  }
   Nearest nearest{ {}, tolerance };
   Box<2> box = Box<2>::Around({ point.x, point.y }, tolerance);
   this->GetPlaneTree().Search(box, [&](TriangleIndex t) {
     FramePoint framePoint = this->Geometry.ToFrame(t, normalized);
     const Vector2 inTriangle = NearestInTriangle(this->Geometry.GetShape(t), framePoint.InPlane);
     const double distance = Distance(inTriangle, framePoint.InPlane);
-    framePoint.InPlane = inTriangle;
+    framePoint = { inTriangle, this->GetOffset(normalized) };
     nearest.Offer(t, framePoint, distance);
     box = Box<2>::Around({ point.x, point.y }, nearest.Distance);
     return true;
   });
   return nearest.Found;
+}
+
+int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& hint) const
+{
+  double normalized[3][PointBlock::Size];
+  this->Geometry.ToNormalized(block.Points, block.Count, normalized[0], normalized[1], normalized[2]);
+  // What whole vectors read beyond the points.
+  for (int i = block.Count; i < block.Count + WidestVector; ++i)
+  {
+    normalized[0][i] = normalized[1][i] = normalized[2][i] = 0.0;
+    block.Apex[i] = block.First[i] = block.Second[i] = 0.0;
+  }
+  int outside = 0;
+  const auto search = [&](int i, TriangleIndex start) {
+    const SurfacePoint found = this->Find(
+      block.Points[i], { normalized[0][i], normalized[1][i], normalized[2][i] }, tolerance, start);
+    this->SetPoint(block, i, found);
+    outside += found.Triangle < 0 ? 1 : 0;
+    return found.Triangle;
+  };
+  if (!this->Geometry.IsPlanar())
+  {
+    for (int i = 0; i < block.Count; ++i)
+    {
+      const TriangleIndex found = search(i, hint.Triangle);
+      hint.Triangle = found >= 0 ? found : hint.Triangle;
+    }
+    return outside;
+  }
+  if (hint.ScatteredBlocks > 0)
+  {
+    --hint.ScatteredBlocks;
+    this->FindScattered(block, normalized, tolerance, search);
+    return outside;
+  }
+  const double highest = this->GetHighest(tolerance);
+  int moves = 0;
+  int run = 0;
+  TriangleIndex last = hint.Triangle;
+  for (int i = 0; i < block.Count;)
+  {
+    const Vector3 point{ normalized[0][i], normalized[1][i], normalized[2][i] };
+    PlaneRelation relation;
+    TriangleIndex found = -1;
+    if (last >= 0 && this->MayWalk(point, tolerance) && !this->Topology.IsMasked(last))
+    {
+      found = this->Walk({ point[0], point[1] }, last, Farthest, relation);
+    }
+    const bool isInside = found >= 0 && relation.IsInside();
+    if (isInside)
+    {
+      this->SetPoint(block, i, found, relation, point);
+    }
+    else
+    {
+      found = search(i, found >= 0 ? found : last);
+    }
+    if (found == last)
+    {
+      ++run;
+    }
+    else
+    {
+      ++moves;
+      hint.RunLength = std::min(run, 32);
+      run = 1;
+    }
+    last = found >= 0 ? found : last;
+    ++i;
+    // Points in a row are often in one triangle: as many are tried as there were last time, and
+    // more.
+    while (isInside && i < block.Count && (hint.RunLength > 2 || run > 2))
+    {
+      const int end =
+        std::min(block.Count, i + std::max(WidestVector, 2 * std::max(run, hint.RunLength)));
+      const int inside =
+        FindRun(this->Geometry.GetPlaneFrame(found), normalized, i, end, highest, block);
+      for (int k = i; k < inside; ++k)
+      {
+        block.Triangles[k] = found;
+        block.Corners[k] = -1;
+        block.Offsets[k] = this->Geometry.IsColumnar() ? normalized[2][k] : 0.0;
+      }
+      run += inside - i;
+      i = inside;
+      if (inside < end)
+      {
+        break;
+      }
+    }
+  }
+  hint.Triangle = last;
+  hint.ScatteredBlocks = 2 * moves > block.Count ? 16 : 0;
+  return outside;
+}
+
+/// Finds points far from each other. All of them take a step at a time, so that the memory of many
+/// triangles is prefetched together.
+template <typename Search>
+void PointLocation::FindScattered(PointBlock& block, const double normalized[3][PointBlock::Size],
+  double tolerance, Search&& search) const
+{
+  TriangleIndex triangles[PointBlock::Capacity];
+  int walking[PointBlock::Capacity];
+  int count = 0;
+  const auto prefetch = [this](TriangleIndex t) {
+    this->Geometry.PrefetchFrame(t);
+    this->Topology.PrefetchTwin(t);
+  };
+  for (int i = 0; i < block.Count; ++i)
+  {
+    const Vector3 point{ normalized[0][i], normalized[1][i], normalized[2][i] };
+    triangles[i] =
+      this->MayWalk(point, tolerance) ? this->GetSeed({ point[0], point[1] }) : -1;
+    if (triangles[i] >= 0)
+    {
+      prefetch(triangles[i]);
+      walking[count++] = i;
+    }
+    else
+    {
+      search(i, -1);
+    }
+  }
+  constexpr int longest = 8;
+  for (int step = 0; step < longest && count > 0; ++step)
+  {
+    int left = 0;
+    for (int n = 0; n < count; ++n)
+    {
+      const int i = walking[n];
+      const TriangleIndex t = triangles[i];
+      const PlaneFrame& frame = this->Geometry.GetPlaneFrame(t);
+      const PlaneRelation relation(frame, { normalized[0][i], normalized[1][i] });
+      if (relation.IsInside() && !this->IsOverlapping(t))
+      {
+        this->SetPoint(
+          block, i, t, relation, { normalized[0][i], normalized[1][i], normalized[2][i] });
+        continue;
+      }
+      const TriangleIndex next =
+        relation.IsOutside() ? this->LeaveTowards(t, frame, relation) : -1;
+      if (next < 0)
+      {
+        search(i, t);
+        continue;
+      }
+      prefetch(next);
+      triangles[i] = next;
+      walking[left++] = i;
+    }
+    count = left;
+  }
+  for (int n = 0; n < count; ++n)
+  {
+    search(walking[n], triangles[walking[n]]);
+  }
+}
+
+/// Sets a point of a block that is for certain in the interior of a triangle.
+void PointLocation::SetPoint(PointBlock& block, int i, TriangleIndex triangle,
+  const PlaneRelation& relation, const Vector3& normalized) const
+{
+  block.Triangles[i] = triangle;
+  block.Corners[i] = -1;
+  block.InPlane[0][i] = relation.InPlane.x;
+  block.InPlane[1][i] = relation.InPlane.y;
+  block.Offsets[i] = this->GetOffset(normalized);
+  block.Apex[i] = relation.Apex;
+  block.First[i] = relation.First;
+  block.Second[i] = relation.Second;
+}
+
+void PointLocation::SetPoint(PointBlock& block, int i, const SurfacePoint& found) const
+{
+  block.Triangles[i] = found.Triangle;
+  block.Corners[i] = found.Corner;
+  block.InPlane[0][i] = found.Point.InPlane.x;
+  block.InPlane[1][i] = found.Point.InPlane.y;
+  block.Offsets[i] = found.Point.Offset;
+  block.Apex[i] = block.First[i] = block.Second[i] = 0.0;
+  if (found.Triangle >= 0)
+  {
+    const TriangleShape shape = this->Geometry.GetShape(found.Triangle);
+    const Barycentric l = shape.ToBarycentric(found.Point.InPlane);
+    block.Apex[i] = l[shape.Apex];
+    block.First[i] = l[NextCorner(shape.Apex)];
+    block.Second[i] = l[PreviousCorner(shape.Apex)];
+  }
 }
 
 SurfacePoint PointLocation::FindNearest(
@@ -387,6 +620,7 @@ SurfacePoint PointLocation::FindNearest(
   if (nearest.Found.Triangle >= 0)
   {
     nearest.Found.Corner = this->FindCorner(nearest.Found.Triangle, normalized);
+    nearest.Found.Point.Offset = 0.0;
   }
   return nearest.Found;
 }

@@ -9,6 +9,7 @@
 
 #include "BoxTree.h"
 #include "MeshGeometry.h"
+#include "PointBlock.h"
 #include "Triangulation.h"
 
 #include "Kernel/Simd/Vectorize.h"
@@ -22,17 +23,6 @@
 namespace homeomorphism
 {
 
-/// A point of a triangulation.
-struct SurfacePoint
-{
-  /// -1 if the point is outside.
-  TriangleIndex Triangle = -1;
-  /// The point in the frame of the triangle, moved to the nearest point of the closed triangle.
-  FramePoint Point;
-  /// The corner of the triangle (0 to 2) that equals the point bit for bit, or -1.
-  int Corner = -1;
-};
-
 /// The position of a point of the plane relative to a triangle, in floating point.
 struct PlaneRelation
 {
@@ -44,6 +34,8 @@ struct PlaneRelation
   /// The least of the three times the height of the triangle, and a bound of its error.
   double Least;
   double Margin;
+
+  PlaneRelation() = default;
 
   HOMEOMORPHISM_ALWAYS_INLINE PlaneRelation(const PlaneFrame& frame, const Vector2& point)
   {
@@ -96,10 +88,13 @@ public:
     return !this->Overlapping.empty() && this->Overlapping[triangle] != 0;
   }
 
-  /// @a normalized is the point in normalized coordinates, @a tolerance a distance in them, and
-  /// @a hint the triangle that probably contains the point, or -1. The geometry must have its
-  /// frames.
-  SurfacePoint Find(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
+  /// Finds a point given in the input's coordinates. @a tolerance is a distance in normalized
+  /// coordinates, @a hint the triangle that probably contains the point, or -1. The geometry must
+  /// have its frames.
+  SurfacePoint Find(const double point[3], double tolerance, TriangleIndex hint) const;
+
+  /// Finds the points of a block, to the same bits. Returns how many are outside.
+  int FindBlock(PointBlock& block, double tolerance, LocationHint& hint) const;
 
   /// A triangle of a planar mesh that is probably near a point, or -1.
   TriangleIndex GetSeed(const Vector2& point) const
@@ -122,15 +117,50 @@ public:
   }
 
 private:
+  /// Where a walk starts from a hint, the least barycentric coordinate of the point. From a triangle
+  /// many times its size away, the way from the seed is shorter.
+  static constexpr double Farthest = -4.0;
+
+  /// The largest distance from a plane at which points count.
+  double GetHighest(double tolerance) const
+  {
+    return this->Geometry.IsColumnar() ? std::numeric_limits<double>::max() : tolerance;
+  }
+  /// Whether a walk can find a point. Coordinates of the domain are close to 1; products of huge
+  /// coordinates would overflow. False for NaN.
+  bool MayWalk(const Vector3& normalized, double tolerance) const
+  {
+    constexpr double huge = 1e100;
+    return this->Geometry.IsPlanar() && std::abs(normalized[0]) <= huge &&
+      std::abs(normalized[1]) <= huge && std::abs(normalized[2]) <= this->GetHighest(tolerance);
+  }
+  /// The distance from the plane of a point of a planar mesh, where it counts.
+  double GetOffset(const Vector3& normalized) const
+  {
+    return this->Geometry.IsColumnar() ? normalized[2] : 0.0;
+  }
+
   Box<2> PlaneBox(TriangleIndex triangle) const;
   std::vector<TriangleIndex> ListTriangles() const;
   void PlantSeeds();
   const BoxTree<2>& GetPlaneTree() const;
   int FindCorner(TriangleIndex triangle, const Vector3& normalized) const;
-  SurfacePoint ToSurfacePoint(TriangleIndex triangle, const Vector3& normalized) const;
-  SurfacePoint FindInPlane(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
-  TriangleIndex Walk(const Vector2& point, TriangleIndex start, SurfacePoint& location) const;
+  SurfacePoint ToSurfacePoint(
+    TriangleIndex triangle, const double point[3], const Vector3& normalized) const;
+  SurfacePoint Find(const double point[3], const Vector3& normalized, double tolerance,
+    TriangleIndex hint) const;
+  TriangleIndex Walk(
+    const Vector2& point, TriangleIndex start, double farthest, PlaneRelation& relation) const;
+  TriangleIndex LeaveTowards(
+    TriangleIndex triangle, const PlaneFrame& frame, const PlaneRelation& relation) const;
+  template <typename Search>
+  void FindScattered(PointBlock& block, const double normalized[3][PointBlock::Size],
+    double tolerance, Search&& search) const;
+  void SetPoint(PointBlock& block, int i, TriangleIndex triangle, const PlaneRelation& relation,
+    const Vector3& normalized) const;
+  void SetPoint(PointBlock& block, int i, const SurfacePoint& found) const;
   TriangleIndex SearchPlane(const Vector2& point) const;
+  SurfacePoint FindNearestInPlane(const Vector3& normalized, double tolerance) const;
   SurfacePoint FindNearest(const Vector3& normalized, double tolerance, TriangleIndex hint) const;
 
   const Triangulation& Topology;

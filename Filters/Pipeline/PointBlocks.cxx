@@ -34,12 +34,13 @@ double PrecisionOfPoints(vtkDataSet* data)
 
 void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
 {
-  double* coordinates = &block.Points[0][0];
   if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
   {
-    std::copy_n(doubles->GetPointer(3 * first), 3 * block.Count, coordinates);
+    block.Points = reinterpret_cast<const double(*)[3]>(doubles->GetPointer(3 * first));
     return;
   }
+  block.Points = block.PointBuffer;
+  double* coordinates = &block.PointBuffer[0][0];
   const auto read = [first, coordinates, &block](auto* typed) {
     const auto values = vtk::DataArrayValueRange<3>(typed, 3 * first, 3 * (first + block.Count));
     std::transform(values.begin(), values.end(), coordinates,
@@ -59,6 +60,7 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
     ReadPoints(pointSet->GetPoints()->GetData(), first, block);
     return;
   }
+  block.Points = block.PointBuffer;
   auto* image = vtkImageData::SafeDownCast(data);
   if (image && !HasPointArray(image))
   {
@@ -71,7 +73,7 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
     for (int i = 0; i < block.Count; ++i)
     {
       image->TransformIndexToPhysicalPoint(
-        extent[0] + index[0], extent[2] + index[1], extent[4] + index[2], block.Points[i]);
+        extent[0] + index[0], extent[2] + index[1], extent[4] + index[2], block.PointBuffer[i]);
       if (++index[0] == dimensions[0])
       {
         index[0] = 0;
@@ -86,7 +88,7 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
   }
   for (int i = 0; i < block.Count; ++i)
   {
-    data->GetPoint(first + i, block.Points[i]);
+    data->GetPoint(first + i, block.PointBuffer[i]);
   }
 }
 

@@ -79,7 +79,7 @@ void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
     // Blocks of any size.
     block.Count = static_cast<int>(
       std::min<std::size_t>(1 + (first * 7919) % PointBlock::Capacity, points.size() - first));
-    std::copy_n(points[first].data(), 3 * block.Count, &block.Points[0][0]);
+    std::copy_n(points[first].data(), 3 * block.Count, &block.PointBuffer[0][0]);
     const int outside = map.LocateBlock(domain, block, tolerance, hint);
     int expectedOutside = 0;
     for (int i = 0; i < block.Count; ++i)

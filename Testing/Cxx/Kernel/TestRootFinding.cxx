@@ -32,8 +32,8 @@ struct PowerEquation : RootBatch<Width, AtEnds>
   {
     ++this->Evaluations;
     const double x = this->Root[index];
-    this->Step(
-      index, std::pow(x, power) - std::pow(root, power), power * std::pow(x, power - 1.0), 0x1p-26);
+    const double value = std::pow(x, power) - std::pow(root, power);
+    this->Step(index, value, value / (power * std::pow(x, power - 1.0)), 0x1p-26);
   }
 };
 

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file PointBlock.h
+/// Points that are located and mapped together.
+
+#ifndef homeomorphism_PointBlock_h
+#define homeomorphism_PointBlock_h
+
+#include "MeshGeometry.h"
+#include "Triangulation.h"
+
+#include "Kernel/Simd/Vectorize.h"
+#include "Kernel/SmoothChart.h"
+
+namespace homeomorphism
+{
+
+/// A point of a triangulation.
+struct SurfacePoint
+{
+  /// -1 if the point is outside.
+  TriangleIndex Triangle = -1;
+  /// The point in the frame of the triangle, moved to the nearest point of the closed triangle.
+  FramePoint Point;
+  /// The corner of the triangle (0 to 2) that equals the point bit for bit, or -1.
+  int Corner = -1;
+};
+
+/// What helps to find the next of many points; it changes how fast, never what is found.
+struct LocationHint
+{
+  TriangleIndex Triangle = -1;
+  /// How many points in a row were in one triangle lately.
+  int RunLength = 1;
+  /// For how many more blocks points are taken to be so far from each other that the last one's
+  /// triangle is no help.
+  int ScatteredBlocks = 0;
+};
+
+/// Some points that are located and mapped together, which takes a fraction of the time. Not
+/// copyable, because it refers to its own buffers.
+struct PointBlock
+{
+  static constexpr int Capacity = SmoothBatch::Capacity;
+  static constexpr int Size = SmoothBatch::Size;
+
+  PointBlock() = default;
+  PointBlock(const PointBlock&) = delete;
+  PointBlock& operator=(const PointBlock&) = delete;
+
+  int Count = 0;
+  /// The points, in the buffer or in an array of the caller.
+  const double (*Points)[3] = this->PointBuffer;
+  /// The points' images, and outside points themselves; set by MapBlock, in the buffer or in an
+  /// array of the caller.
+  double (*Images)[3] = this->ImageBuffer;
+
+  /// The located points (see SurfacePoint), as structure of arrays.
+  TriangleIndex Triangles[Capacity];
+  int Corners[Capacity];
+  double InPlane[2][Size];
+  double Offsets[Capacity];
+  /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one
+  /// before it.
+  double Apex[Size];
+  double First[Size];
+  double Second[Size];
+
+  double PointBuffer[Capacity][3];
+  double ImageBuffer[Capacity][3];
+
+  SurfacePoint GetSurfacePoint(int i) const
+  {
+    return { this->Triangles[i], { { this->InPlane[0][i], this->InPlane[1][i] }, this->Offsets[i] },
+      this->Corners[i] };
+  }
+};
+
+} // namespace homeomorphism
+
+#endif
