@@ -43,8 +43,7 @@ class RootBatch
 public:
   double Root[Width];
 
-  HOMEOMORPHISM_ALWAYS_INLINE void Start(
-    int index, double lower, double upper, double guess)
+  HOMEOMORPHISM_ALWAYS_INLINE void Start(int index, double lower, double upper, double guess)
   {
     guess = guess < upper ? guess : upper;
     this->Root[index] = guess > lower ? guess : lower;
@@ -56,8 +55,8 @@ public:
     this->Done[index] = 0;
   }
 
-  /// Subtracts a step without a bracket. The result is the root if the step is at most @a enough times
-  /// it, and it is in the interval.
+  /// Subtracts a step without a bracket. The result is the root if the step is at most @a enough
+  /// times it, and it is in the interval.
   HOMEOMORPHISM_ALWAYS_INLINE void StepFreely(int index, double step, double enough)
   {
     const double x = this->Root[index] - step;
@@ -68,8 +67,9 @@ public:
   }
 
   /// Subtracts a step of Newton or Halley, given with the value of the function at Root. Iteration
-  /// ends with a step of at most @a enough times the root. With @a AtEnds it also ends when the ratio to the previous
-  /// step shows that the remaining error, about the square of that ratio, is below rounding.
+  /// ends with a step of at most @a enough times the root. With @a AtEnds it also ends when the
+  /// ratio to the previous step shows that the remaining error, about the square of that ratio, is
+  /// below rounding.
   HOMEOMORPHISM_ALWAYS_INLINE void Step(int index, double value, double step, double enough)
   {
     const double x = this->Root[index];
@@ -153,8 +153,8 @@ struct HasApproach<Equation, std::void_t<decltype(&Equation::Approach)>> : std::
 /// Finds the roots of the equations of a batch. @a Equation is a RootBatch with functions Set and
 /// Evaluate, which take an index and the elements of @a numbers (arrays with one value per
 /// equation) for that index. An equation may have a function Approach that takes a step without a
-/// bracket; it is called twice for each index, before bracketed steps are taken where the root is not
-/// found yet.
+/// bracket; it is called twice for each index, before bracketed steps are taken where the root is
+/// not found yet.
 template <int Width, typename Equation, typename... Numbers>
 HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*... numbers)
 {

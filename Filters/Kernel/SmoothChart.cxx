@@ -89,10 +89,10 @@ struct StripFunction
     return kappa * (1.0 - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
   }
 
-  /// The second derivative of beta - B(affine - d beta) with respect to beta, -d^T B'' d. With K'' =
-  /// -12 u (1 - u) (3 - 5 u), q' = (l_j / (l_i + l_j))^2 d_i + (l_i / (l_i + l_j))^2 d_j and q'' =
-  /// -2 (d_i l_j - d_j l_i)^2 / (l_i + l_j)^3, B'' is 12 tau u^3 (1 - u)^2 q'' + K'' / (tau q) (d_k -
-  /// u tau q')^2.
+  /// The second derivative of beta - B(affine - d beta) with respect to beta, -d^T B'' d. With K''
+  /// = -12 u (1 - u) (3 - 5 u), q' = (l_j / (l_i + l_j))^2 d_i + (l_i / (l_i + l_j))^2 d_j and q''
+  /// = -2 (d_i l_j - d_j l_i)^2 / (l_i + l_j)^3, B'' is 12 tau u^3 (1 - u)^2 q'' + K'' / (tau q)
+  /// (d_k - u tau q')^2.
   HOMEOMORPHISM_ALWAYS_INLINE double Curvature(
     double kappa, double offsetNext, double offsetPrevious) const
   {
@@ -133,9 +133,9 @@ struct StripEquation : RootBatch<Width, false>
     constexpr double bound = 0.05;
     static_assert(bound > GreatestStripFunction, "the bracket contains the root");
     const StripFunction function(k, next, previous, tau);
-    const double step = HalleyStep(-function.Value(),
-      function.DeterminantRatio(kappa, offsetNext, offsetPrevious),
-      function.Curvature(kappa, offsetNext, offsetPrevious));
+    const double step =
+      HalleyStep(-function.Value(), function.DeterminantRatio(kappa, offsetNext, offsetPrevious),
+        function.Curvature(kappa, offsetNext, offsetPrevious));
     this->Start(index, 0.0, bound, -step);
   }
 
@@ -272,7 +272,7 @@ HOMEOMORPHISM_FOR_WIDE_VECTORS
 void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const coordinates[3],
   const SmoothStrips& source, const SmoothStrips& target)
 {
-  if (end - begin < 3)
+  if (end - begin < LeastVector)
   {
     for (int i = begin; i < end; ++i)
     {

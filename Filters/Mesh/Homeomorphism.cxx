@@ -75,24 +75,32 @@ struct SmoothCoordinates
   }
 };
 
-/// From barycentric coordinates of a run to the plane of a triangle's frame.
+/// From barycentric coordinates to the plane of a triangle's frame, as
+/// TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
+HOMEOMORPHISM_ALWAYS_INLINE Vector2 ToPlane(const PlaneFrame& frame, double apex, double second)
+{
+  return frame.FromFrame({ frame.Base * second + frame.ApexX * apex, frame.Height * apex });
+}
+
+/// From barycentric coordinates of a run to its images, in a plane parallel to the x and y axes at
+/// a distance from the origin. Offsets times @a slope are in the units of the input, as the images
+/// are. Overwrites up to WidestVector - 1 images after the last.
 template <typename Coordinates>
-HOMEOMORPHISM_FOR_WIDE_VECTORS void BarycentricToPlane(const PlaneFrame& frame, int begin, int end,
-  const Coordinates& coordinates, double plane[3][PointBlock::Size])
+HOMEOMORPHISM_FOR_WIDE_VECTORS void ToHorizontalPlane(const PlaneFrame& frame, double slope,
+  double distance, double scale, double inverseScale, int begin, int end,
+  const Coordinates& coordinates, const double* offsets, double (*images)[3])
 {
   const PlaneFrame f = frame;
   const Coordinates from = coordinates;
-  const double orientation = f.Orientation;
   const int stop = begin + InWholeVectors(end - begin);
   HOMEOMORPHISM_SIMD
   for (int i = begin; i < stop; ++i)
   {
-    // As in TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
     const auto [apex, second] = from.Get(i);
-    const double x = f.Base * second + f.ApexX * apex;
-    const double y = orientation * (f.Height * apex);
-    plane[0][i] = f.Origin.x + (x * f.Tangent.x - y * f.Tangent.y);
-    plane[1][i] = f.Origin.y + (x * f.Tangent.y + y * f.Tangent.x);
+    const Vector2 p = ToPlane(f, apex, second);
+    images[i][0] = p.x * inverseScale;
+    images[i][1] = p.y * inverseScale;
+    images[i][2] = (slope * offsets[i] * scale + distance) * inverseScale;
   }
 }
 
@@ -428,15 +436,21 @@ void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin
     return;
   }
   const PlaneFrame& frame = target.GetPlaneFrame(triangle);
-  const double orientation = target.IsColumnar() ? 1.0 : frame.Orientation;
-  double mapped[3][PointBlock::Size];
-  BarycentricToPlane(frame, begin, end, coordinates, mapped);
+  const double orientation = target.IsColumnar() ? 1.0 : double(frame.Orientation);
+  if (target.IsHorizontal() && end - begin >= LeastVector)
+  {
+    ToHorizontalPlane(frame, orientation * this->Pair->GetGeometry(from).GetInverseScale(),
+      target.GetPlaneDistance(), target.GetScale(), target.GetInverseScale(), begin, end,
+      coordinates, block.Offsets, block.Images);
+    return;
+  }
   for (int i = begin; i < end; ++i)
   {
-    mapped[2][i] = orientation * this->OffsetOfImage(from, block.Offsets[i]);
+    const auto [apex, second] = coordinates.Get(i);
+    const Vector2 p = ToPlane(frame, apex, second);
+    target.FromNormalized(
+      { p.x, p.y, orientation * this->OffsetOfImage(from, block.Offsets[i]) }, block.Images[i]);
   }
-  target.FromNormalized(
-    mapped[0] + begin, mapped[1] + begin, mapped[2] + begin, end - begin, block.Images + begin);
 }
 
 template <typename Use>

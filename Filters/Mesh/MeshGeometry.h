@@ -86,6 +86,14 @@ public:
   bool IsFinite() const { return this->Finite; }
   /// Whether all points lie in one plane, up to the rounding of their coordinates.
   bool IsPlanar() const { return this->Planar; }
+  /// Whether the plane is parallel to the x and y axes and has the normal z, so that points are
+  /// converted by a scale and the plane's distance from the origin alone.
+  bool IsHorizontal() const
+  {
+    return this->AxisParallel && this->AxisOrder[0] == 0 && this->AxisOrder[1] == 1;
+  }
+  /// Distance of a planar mesh's plane from the origin along its normal, in normalized coordinates.
+  double GetPlaneDistance() const { return this->PlaneDistance; }
   /// Whether distances from the plane are unlimited and measured along its normal, as in both
   /// meshes of a planar pair. Otherwise each triangle has a normal of its own, given by its
   /// winding.
@@ -140,10 +148,10 @@ public:
     return this->Planar ? this->ToTiltedPlane(p) : p;
   }
 
-  /// Converts many points, whose normalized coordinates are in separate arrays.
+  /// Converts many points. Their normalized coordinates are in separate arrays.
   void ToNormalized(const double (*points)[3], int count, double* x, double* y, double* z) const
   {
-    if (!this->AxisParallel || this->AxisOrder[0] != 0 || this->AxisOrder[1] != 1)
+    if (!this->IsHorizontal())
     {
       for (int i = 0; i < count; ++i)
       {
@@ -154,7 +162,6 @@ public:
       }
       return;
     }
-    // A plane parallel to x and y with the normal z.
     const double scale = this->Scale;
     const double distance = this->PlaneDistance;
     for (int i = 0; i < count; ++i)
@@ -164,28 +171,6 @@ public:
       z[i] = points[i][2] * scale - distance;
     }
   }
-  void FromNormalized(
-    const double* x, const double* y, const double* z, int count, double (*points)[3]) const
-  {
-    if (!this->AxisParallel || this->AxisOrder[0] != 0 || this->AxisOrder[1] != 1)
-    {
-      for (int i = 0; i < count; ++i)
-      {
-        this->FromNormalized({ x[i], y[i], z[i] }, points[i]);
-      }
-      return;
-    }
-    // A plane parallel to x and y with the normal z.
-    const double scale = this->InverseScale;
-    const double distance = this->PlaneDistance;
-    for (int i = 0; i < count; ++i)
-    {
-      points[i][0] = x[i] * scale;
-      points[i][1] = y[i] * scale;
-      points[i][2] = (z[i] + distance) * scale;
-    }
-  }
-
   void FromNormalized(const Vector3& normalized, double point[3]) const
   {
     if (this->AxisParallel)

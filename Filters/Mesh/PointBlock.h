@@ -39,7 +39,7 @@ struct LocationHint
 };
 
 /// Some points that are located and mapped together, which takes a fraction of the time. Not
-/// copyable, because it refers to its own buffers.
+/// copyable, because it refers to its own buffer.
 struct PointBlock
 {
   static constexpr int Capacity = SmoothBatch::Capacity;
@@ -52,15 +52,14 @@ struct PointBlock
   int Count = 0;
   /// The points, in the buffer or in an array of the caller.
   const double (*Points)[3] = this->PointBuffer;
-  /// The points' images, and outside points themselves; set by MapBlock, in the buffer or in an
-  /// array of the caller.
-  double (*Images)[3] = this->ImageBuffer;
+  /// The points' images, and outside points themselves; set by MapBlock.
+  double Images[Size][3];
 
   /// The located points (see SurfacePoint), as structure of arrays.
   TriangleIndex Triangles[Capacity];
   int Corners[Capacity];
   double InPlane[2][Size];
-  double Offsets[Capacity];
+  double Offsets[Size];
   /// Barycentric coordinates of the apex of the triangle's frame, the corner after it and the one
   /// before it.
   double Apex[Size];
@@ -68,7 +67,6 @@ struct PointBlock
   double Second[Size];
 
   double PointBuffer[Capacity][3];
-  double ImageBuffer[Capacity][3];
 
   SurfacePoint GetSurfacePoint(int i) const
   {

@@ -204,8 +204,7 @@ void PointLocation::SetOverlapping(const std::vector<TriangleIndex>& triangles)
   }
 }
 
-SurfacePoint PointLocation::Find(
-  const double point[3], double tolerance, TriangleIndex hint) const
+SurfacePoint PointLocation::Find(const double point[3], double tolerance, TriangleIndex hint) const
 {
   return this->Find(point, this->Geometry.ToNormalized(point), tolerance, hint);
 }
@@ -280,8 +279,8 @@ SurfacePoint PointLocation::ToSurfacePoint(
   const int corner = this->FindCorner(triangle, normalized);
   // The rounding of a mesh point's distance from a plane that is not parallel to two axes must not
   // move it.
-  const bool isMeshPoint = corner >= 0 &&
-    this->Geometry.IsMeshPoint(this->Topology.GetCorners(triangle)[corner], point);
+  const bool isMeshPoint =
+    corner >= 0 && this->Geometry.IsMeshPoint(this->Topology.GetCorners(triangle)[corner], point);
   inFrame.Offset = isMeshPoint ? 0.0 : this->GetOffset(normalized);
   return { triangle, inFrame, corner };
 }
@@ -304,9 +303,9 @@ TriangleIndex PointLocation::LeaveTowards(
   return this->Topology.GetTwin(triangle, edge).Triangle;
 }
 
-/// The triangle that a walk comes to, or -1 if it must be searched for. @a relation is the point's to
-/// the last triangle of the walk. No walk starts from a triangle for which a barycentric coordinate
-/// of the point is less than @a farthest.
+/// The triangle that a walk comes to, or -1 if it must be searched for. @a relation is the point's
+/// to the last triangle of the walk. No walk starts from a triangle for which a barycentric
+/// coordinate of the point is less than @a farthest.
 TriangleIndex PointLocation::Walk(
   const Vector2& point, TriangleIndex start, double farthest, PlaneRelation& relation) const
 {
@@ -409,7 +408,8 @@ SurfacePoint PointLocation::FindNearestInPlane(const Vector3& normalized, double
 int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& hint) const
 {
   double normalized[3][PointBlock::Size];
-  this->Geometry.ToNormalized(block.Points, block.Count, normalized[0], normalized[1], normalized[2]);
+  this->Geometry.ToNormalized(
+    block.Points, block.Count, normalized[0], normalized[1], normalized[2]);
   // What whole vectors read beyond the points.
   for (int i = block.Count; i < block.Count + WidestVector; ++i)
   {
@@ -443,14 +443,17 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
   int moves = 0;
   int run = 0;
   TriangleIndex last = hint.Triangle;
+  TriangleIndex next = -1;
   for (int i = 0; i < block.Count;)
   {
+    const TriangleIndex start = next >= 0 ? next : last;
+    next = -1;
     const Vector3 point{ normalized[0][i], normalized[1][i], normalized[2][i] };
     PlaneRelation relation;
     TriangleIndex found = -1;
-    if (last >= 0 && this->MayWalk(point, tolerance) && !this->Topology.IsMasked(last))
+    if (start >= 0 && this->MayWalk(point, tolerance) && !this->Topology.IsMasked(start))
     {
-      found = this->Walk({ point[0], point[1] }, last, Farthest, relation);
+      found = this->Walk({ point[0], point[1] }, start, Farthest, relation);
     }
     const bool isInside = found >= 0 && relation.IsInside();
     if (isInside)
@@ -459,7 +462,7 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
     }
     else
     {
-      found = search(i, found >= 0 ? found : last);
+      found = search(i, found >= 0 ? found : start);
     }
     if (found == last)
     {
@@ -491,6 +494,11 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
       i = inside;
       if (inside < end)
       {
+        // The next point is elsewhere: beyond which edge is known already.
+        relation.Apex = block.Apex[i];
+        relation.First = block.First[i];
+        relation.Second = block.Second[i];
+        next = this->LeaveTowards(found, this->Geometry.GetPlaneFrame(found), relation);
         break;
       }
     }
@@ -516,8 +524,7 @@ void PointLocation::FindScattered(PointBlock& block, const double normalized[3][
   for (int i = 0; i < block.Count; ++i)
   {
     const Vector3 point{ normalized[0][i], normalized[1][i], normalized[2][i] };
-    triangles[i] =
-      this->MayWalk(point, tolerance) ? this->GetSeed({ point[0], point[1] }) : -1;
+    triangles[i] = this->MayWalk(point, tolerance) ? this->GetSeed({ point[0], point[1] }) : -1;
     if (triangles[i] >= 0)
     {
       prefetch(triangles[i]);
@@ -544,8 +551,7 @@ void PointLocation::FindScattered(PointBlock& block, const double normalized[3][
           block, i, t, relation, { normalized[0][i], normalized[1][i], normalized[2][i] });
         continue;
       }
-      const TriangleIndex next =
-        relation.IsOutside() ? this->LeaveTowards(t, frame, relation) : -1;
+      const TriangleIndex next = relation.IsOutside() ? this->LeaveTowards(t, frame, relation) : -1;
       if (next < 0)
       {
         search(i, t);

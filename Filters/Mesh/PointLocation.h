@@ -117,8 +117,8 @@ public:
   }
 
 private:
-  /// Where a walk starts from a hint, the least barycentric coordinate of the point. From a triangle
-  /// many times its size away, the way from the seed is shorter.
+  /// Where a walk starts from a hint, the least barycentric coordinate of the point. From a
+  /// triangle many times its size away, the way from the seed is shorter.
   static constexpr double Farthest = -4.0;
 
   /// The largest distance from a plane at which points count.
@@ -147,8 +147,8 @@ private:
   int FindCorner(TriangleIndex triangle, const Vector3& normalized) const;
   SurfacePoint ToSurfacePoint(
     TriangleIndex triangle, const double point[3], const Vector3& normalized) const;
-  SurfacePoint Find(const double point[3], const Vector3& normalized, double tolerance,
-    TriangleIndex hint) const;
+  SurfacePoint Find(
+    const double point[3], const Vector3& normalized, double tolerance, TriangleIndex hint) const;
   TriangleIndex Walk(
     const Vector2& point, TriangleIndex start, double farthest, PlaneRelation& relation) const;
   TriangleIndex LeaveTowards(

@@ -37,6 +37,14 @@ void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
   if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
   {
     block.Points = reinterpret_cast<const double(*)[3]>(doubles->GetPointer(3 * first));
+    // The next block, to hide memory latency.
+    constexpr vtkIdType line = 64 / sizeof(double);
+    const vtkIdType end =
+      std::min(3 * (first + 2 * vtkIdType(block.Count)), doubles->GetNumberOfValues());
+    for (vtkIdType i = 3 * (first + block.Count); i < end; i += line)
+    {
+      Prefetch(doubles->GetPointer(i));
+    }
     return;
   }
   block.Points = block.PointBuffer;

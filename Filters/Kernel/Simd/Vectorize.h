@@ -39,6 +39,9 @@ namespace homeomorphism
 /// are overwritten later or never read.
 constexpr int WidestVector = 8;
 
+/// The least number of points for which a vectorized loop is faster than one by one.
+constexpr int LeastVector = 3;
+
 constexpr int InWholeVectors(int count)
 {
   return (count + WidestVector - 1) & ~(WidestVector - 1);
