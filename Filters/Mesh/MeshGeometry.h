@@ -171,6 +171,15 @@ public:
       z[i] = points[i][2] * scale - distance;
     }
   }
+  void FromNormalized(
+    const double* x, const double* y, const double* z, int count, double (*points)[3]) const
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      this->FromNormalized({ x[i], y[i], z[i] }, points[i]);
+    }
+  }
+
   void FromNormalized(const Vector3& normalized, double point[3]) const
   {
     if (this->AxisParallel)
