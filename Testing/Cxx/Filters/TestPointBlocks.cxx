@@ -164,7 +164,7 @@ TEST(PointBlocks, PointsWithoutPreimageAreOutside)
   const Point inside{ 2.4, 2.6, 0.0 };
   for (int i = 0; i < 3; ++i)
   {
-    std::copy_n(inside.data(), 3, block.Points[i]);
+    std::copy_n(inside.data(), 3, block.PointBuffer[i]);
   }
   ASSERT_EQ(map->LocateBlock(Domain::Target, block, 1e-12, hint), 0);
   block.InPlane[0][1] = far.Point.InPlane.x;
