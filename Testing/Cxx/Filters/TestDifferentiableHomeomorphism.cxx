@@ -88,7 +88,51 @@ TEST_P(FilterInEverySystem, InverseIsTheMapOfExchangedMeshes)
   }
 }
 
-TEST_P(FilterInEverySystem, VerticesMapToVertices)
+TEST_P(FilterInEverySystem, MapsCompose)
+{
+  // The triangles are concordant: in the Contour system, discordant ones are mapped by the Linear
+  // system, and they differ from pair to pair.
+  const MeshPair first = MakePlanarPair(12, 130, 0.06);
+  const auto third = MakePlanarPair(12, 132, 0.06).Source;
+  const MeshPair closed = MakeClosedPair(2, 134);
+  struct Triple
+  {
+    vtkSmartPointer<vtkPolyData> P;
+    vtkSmartPointer<vtkPolyData> Q;
+    vtkSmartPointer<vtkPolyData> R;
+    bool IsConcordant;
+  };
+  const std::vector<Triple> triples{ { first.Source, first.Target, third, true },
+    { first.Source, Tilted(first.Target, Tilt(), { 0.0, 0.0, 1.0 }), third, true },
+    { MakeSheet(8, 136, 0.4), MakeSheet(8, 137, 0.8), MakePlanarPair(8, 138).Source, false },
+    { closed.Source, closed.Target, MakeClosedPair(2, 140).Target, false } };
+  for (const Triple& triple : triples)
+  {
+    if (!triple.IsConcordant && std::string(GetParam().Name) == Contour.Name)
+    {
+      continue;
+    }
+    const auto cloud = MakeCloud(triple.P, RandomSamples(triple.P, 8000, 4));
+    const auto toQ = MakeFilter(GetParam(), { triple.P, triple.Q }, cloud);
+    const auto toR = MakeSecond(GetParam(), { triple.Q, triple.R }, toQ);
+    toR->ComputeJacobianOn();
+    const auto direct = MakeFilter(GetParam(), { triple.P, triple.R }, cloud);
+    vtkPointSet* twoSteps = Output(toR);
+    vtkPointSet* oneStep = Output(direct);
+    EXPECT_EQ(toR->GetNumberOfOutsidePoints(), 0);
+    Worst worst;
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      // As in RoundTrip: the second map magnifies the rounding in Q.
+      const double stretch = Norm(MatrixOf(PointArray(twoSteps, "Jacobian"), i));
+      worst.Take(Distance(PointOf(twoSteps, i), PointOf(oneStep, i)),
+        std::max(1e-14 * SizeOf(triple.R), 2.0 * stretch * Ulp * LargestCoordinate(triple.Q)));
+    }
+    EXPECT_LE(worst.OverBound, 1.0);
+  }
+}
+
+TEST_P(FilterInEverySystem, VerticesMapToVerticesAndEdgesLinearly)
 {
   for (const Pairing& pairing : AllPairings(10, 2, 150))
   {
@@ -99,6 +143,37 @@ TEST_P(FilterInEverySystem, VerticesMapToVertices)
     filter->InverseOn();
     EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0) << pairing.Name;
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+
+    Random random(5);
+    std::vector<MeshPoint> samples;
+    for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
+    {
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        for (int i = 0; i < 8; ++i)
+        {
+          const double p = i < 4 ? random.Uniform() : std::pow(10.0, random.Uniform(-15.0, 0.0));
+          MeshPoint surfacePoint{ t, {} };
+          surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
+          surfacePoint.Weights[(k + 2) % 3] = p;
+          samples.push_back(surfacePoint);
+        }
+      }
+    }
+    const auto onEdges = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, samples));
+    onEdges->ComputeJacobianOn();
+    vtkPointSet* output = Output(onEdges);
+    EXPECT_EQ(onEdges->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+    Worst worst;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+    {
+      const auto id = static_cast<vtkIdType>(i);
+      const double stretch = Norm(MatrixOf(PointArray(output, "Jacobian"), id));
+      worst.Take(Distance(PointOf(output, id), PositionOf(pair.Target, samples[i])),
+        std::max(
+          1e-14 * SizeOf(pair.Target), 2.0 * stretch * Ulp * LargestCoordinate(pair.Source)));
+    }
+    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
   }
 }
 
