@@ -4,6 +4,7 @@
 """The rows of this build beside those of another one, in turn, as ratios."""
 
 import contextlib
+import os
 import statistics
 
 from rows import DIRECTIONS, Program, ProgramRow, measure
@@ -45,9 +46,11 @@ def make_workloads(part, settings, folder):
     return workload, {f"{part}, {order}": (order, side * side) for order in orders}
 
 
-def compare(program, other, settings, folder, parts, thread_counts=(1,)):
+def compare(program, other, settings, folder, parts):
     """Prints a table of nanoseconds an item and ratios. Returns the rows that are too slow."""
     slow = []
+    # All programs on one processor, since those of a virtual machine differ in speed by up to a third for minutes.
+    os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     print("| | row | other build, ns | this build, ns | ratio | other against itself |")
     print("|---|---|---:|---:|---:|---:|")
     for part in (p for p in parts if p in PARTS):
@@ -58,15 +61,14 @@ def compare(program, other, settings, folder, parts, thread_counts=(1,)):
             known = set.intersection(*(set(b.names()) for b in builds))
             for title, (points, count) in orders.items():
                 for name in (n for n in row_names(part) if n in known):
-                    for threads in thread_counts:
-                        rows = [ProgramRow(build, name, threads) for build in builds]
-                        measured = measure(rows, {points: count}, settings["repetitions"], points, keep=False, quiet=True)
-                        before, now, again = (1e9 * statistics.median(m.seconds) / count for m in measured)
-                        spread = max(before / again, again / before)
-                        ratio = 2.0 * now / (before + again)
-                        too_slow = ratio > max(ALLOWED, spread)
-                        print(f"| {title} | {name} | {before:.4g} | {now:.4g} | {'**' if too_slow else ''}{ratio:.3f}"
-                              f"{'**' if too_slow else ''} | {spread:.3f} |", flush=True)
-                        if too_slow:
-                            slow.append(f"{title}: {name}")
+                    rows = [ProgramRow(build, name) for build in builds]
+                    measured = measure(rows, {points: count}, settings["repetitions"], points, keep=False, quiet=True)
+                    before, now, again = (1e9 * statistics.median(m.seconds) / count for m in measured)
+                    spread = max(before / again, again / before)
+                    ratio = 2.0 * now / (before + again)
+                    too_slow = ratio > max(ALLOWED, spread)
+                    mark = "**" if too_slow else ""
+                    print(f"| {title} | {name} | {before:.4g} | {now:.4g} | {mark}{ratio:.3f}{mark} | {spread:.3f} |", flush=True)
+                    if too_slow:
+                        slow.append(f"{title}: {name}")
     return slow
