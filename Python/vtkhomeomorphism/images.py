@@ -185,16 +185,6 @@ def _read_picture(input):
     return Raster(pixels.astype(numpy.uint16) if pixels.dtype == numpy.int32 else pixels)
 
 
-def read_size(text):
-    """(width, height) of WIDTHxHEIGHT; None of an empty text."""
-    if not text:
-        return None
-    parts = text.split("x")
-    if len(parts) == 2 and all(part.isdigit() and 1 <= int(part) <= 100000 for part in parts):
-        return int(parts[0]), int(parts[1])
-    raise Failure(f'"{text}" is not a size: WIDTHxHEIGHT in pixels, each from 1 to 100000, such as 640x480.', USAGE)
-
-
 def read_background(text, format):
     """A color as three numbers from 0 to 1, or None: transparent."""
     text = text or ("white" if format in OPAQUE else "transparent")

@@ -19,30 +19,22 @@ DOMAINS = values_of(vtkIsomorphicTriangulation, "automatic", "outline", "frame",
 
 
 class IsomorphicTriangulation(NamedTuple):
-    """A pair of triangulations with the same triangles.
-
-    source, target : array of float64 of shape (n, 2) or (n, 3)
-        The landmarks, unchanged and in their order, then points of a frame and added points.
-    triangles : array of int64 of shape (m, 3)
-    residuals : array of float64
-        For each landmark, the distance in the target from where a smooth map through its neighbors
-        puts it without it: the largest ones are suspicious.
-    added_points : int
-        Number of points added, those of a frame not counted.
-    left_out : list of (int, str)
-        Segments that conflict with others and why, if they were to be left out.
-    report : dict
-        Of both domains: smallest_angles (degrees), shares_of_angles_below_10_15_20, obtuse_share and
-        discordant_share (of triangles that are so in at least one), largest_distortion and its triangle.
-    """
+    """A pair of triangulations with the same triangles."""
 
     source: numpy.ndarray
+    """The landmarks, unchanged and in their order, then points of a frame and added points: shape (n, 2) or (n, 3)."""
     target: numpy.ndarray
     triangles: numpy.ndarray
+    """Shape (m, 3), int64."""
     residuals: numpy.ndarray
+    """For each landmark, the distance in the target from where a smooth map through its neighbors puts it."""
     added_points: int
+    """Number of points added, those of a frame not counted."""
     left_out: list
+    """(number, reason) of segments that conflict with others, if they were to be left out."""
     report: dict
+    """Of both domains: smallest_angles (degrees), shares_of_angles_below_10_15_20, obtuse_share and discordant_share (of
+    triangles that are so in at least one), largest_distortion and largest_distortion_triangle."""
 
     def suspicious(self) -> numpy.ndarray:
         """At most ten landmarks with outstanding residuals, the worst first."""
@@ -69,9 +61,8 @@ def within(source, target, rims, make):
 
 
 def _smooth_frame(source, target, frame, trusted, smooth):
-    """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images
-    under the quadratic polynomial that fits the trusted landmarks best, corrected by a thin-plate spline
-    (or under the affine map that fits them best)."""
+    """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images under the quadratic
+    polynomial that fits the trusted landmarks best, corrected by a thin-plate spline (or under the best affine map)."""
     low = numpy.minimum(frame[::2], source.min(axis=0))
     high = numpy.maximum(frame[1::2], source.max(axis=0))
     low, high = low - 0.01 * (high - low), high + 0.01 * (high - low)
@@ -101,8 +92,7 @@ def _smooth_frame(source, target, frame, trusted, smooth):
 
 
 def _with_frame(source, target, frame, make):
-    """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks
-    are outside of the predictions."""
+    """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks are outside of it."""
     source, target = (numpy.asarray(points, float) for points in (source, target))
     first = make(source, target)
     trusted = numpy.flatnonzero(first.residuals <= _usual(first.residuals))
@@ -143,22 +133,19 @@ def isomorphic_triangulation(
     source, target : array of shape (n, 2) or (n, 3)
         Corresponding points; in 3-space those of each in a plane.
     outlines : sequence of sequences of int
-        Closed polygons of point ids: outlines, holes, islands in holes. Without, a frame around the
-        points is the domain.
+        Closed polygons of point ids: outlines, holes, islands in holes. Without, a frame around the points is the domain.
     segments : sequence of sequences of int
         Polygonal lines of point ids that must become edges.
     frame : pair of (least x, largest x, least y, largest y)
-        Rectangles around source and target, for example those of images. If the target's is None, the
-        source's, enlarged by 1 %, goes where a smooth map through the landmarks that are not
-        suspicious takes it (points of shape (n, 2), without outlines).
+        Rectangles around source and target, for example those of images. If the target's is None, the source's, enlarged by
+        1 %, goes where a smooth map through the landmarks that are not suspicious takes it (in the plane, without outlines).
     domain : {"automatic", "outline", "frame", "convex_hull"}
         "automatic": the inside of the outlines if there are any, otherwise a frame.
     quality : {"minimum_angle", "concordance", "distortion", "non_obtuse"}
     target_minimum_angle : float
         Points are added until no angle is smaller, in degrees. 0: only necessary points are added.
     maximum_added_points : int, optional
-        How many points may be added. None: as many as necessary, and up to 100 more for
-        target_minimum_angle.
+        How many points may be added. None: as many as necessary, and up to 100 more for target_minimum_angle.
     maximum_triangle_size : float
         Triangles that are larger, as a share of their domain, are divided. 0: none is.
     leave_out_conflicting_segments : bool
@@ -198,13 +185,11 @@ def isomorphic_triangulation(
     outputs = [algorithm.GetOutput(0), algorithm.GetOutput(1)]
     triangles = vtk_to_numpy(outputs[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
     residuals = vtk_to_numpy(outputs[0].GetPointData().GetArray("LandmarkResidual"))
+    left_out = [(algorithm.GetLeftOutCell(i), algorithm.GetLeftOutMessage(i))
+                for i in range(algorithm.GetNumberOfLeftOutSegments())]
     return IsomorphicTriangulation(
-        *(points_of(mesh)[:, :dimension].copy() for mesh in outputs),
-        numpy.array(triangles, numpy.int64),
-        numpy.array(residuals[: len(source)]),
-        algorithm.GetNumberOfAddedPoints(),
-        [(algorithm.GetLeftOutCell(i), algorithm.GetLeftOutMessage(i))
-         for i in range(algorithm.GetNumberOfLeftOutSegments())],
+        *(points_of(mesh)[:, :dimension].copy() for mesh in outputs), numpy.array(triangles, numpy.int64),
+        numpy.array(residuals[: len(source)]), algorithm.GetNumberOfAddedPoints(), left_out,
         {
             "smallest_angles": algorithm.GetSmallestAngles(),
             "shares_of_angles_below_10_15_20": algorithm.GetSharesOfSmallAngles(),

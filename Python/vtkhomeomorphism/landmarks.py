@@ -36,23 +36,20 @@ class LandmarkFileError(ValueError):
 
 @dataclass
 class Landmarks:
-    """Corresponding points.
-
-    source, target : array of float64 of shape (n, 2)
-    names : the landmarks' identifiers as the file has them (the row's number where it has none)
-    left_out : (name, reason) of each landmark that the file lists but that is not used
-    image_coordinates : whether source is in pixels with y down
-    crs : coordinate reference system of the target as the file states it, or None
-    origin : what to add to coordinates in pixels so that 0 is at the edge of an image
-    """
+    """Corresponding points, of shape (n, 2)."""
 
     source: numpy.ndarray
     target: numpy.ndarray
     names: List[str]
+    """As the file has them (the row's number where it has none)."""
     left_out: List[Tuple[str, str]] = field(default_factory=list)
+    """(name, reason) of each landmark that the file lists but that is not used."""
     image_coordinates: bool = False
+    """Whether the source is in pixels with y down."""
     crs: Optional[str] = None
+    """Coordinate reference system of the target as the file states it."""
     origin: float = 0.0
+    """What to add to coordinates in pixels so that 0 is at the edge of an image."""
 
     def without(self, names: Sequence[str]) -> Landmarks:
         """The landmarks except those of the given names, which are left out."""
@@ -61,26 +58,22 @@ class Landmarks:
             raise LandmarkFileError(f"there is no landmark {', '.join(unknown[:5])} to leave out")
         kept = [i for i, name in enumerate(self.names) if name not in names]
         left_out = self.left_out + [(name, "on request") for name in self.names if name in names]
-        chosen = [self.names[i] for i in kept]
-        return replace(self, source=self.source[kept], target=self.target[kept], names=chosen, left_out=left_out)
+        return replace(self, source=self.source[kept], target=self.target[kept], names=[self.names[i] for i in kept],
+                       left_out=left_out)
 
 
 def _collect(rows, path: str, **facts) -> Landmarks:
     """rows: (name, four numbers, reason to leave the landmark out or None)."""
-    used, values, left_out = [], [], []
+    used, left_out = [], []
     for name, row, reason in rows:
         missing = [side for side, k in (("source", 0), ("target", 2)) if not numpy.isfinite(row[k : k + 2]).all()]
         if missing and reason != "disabled":
             reason = f"no position in the {' and the '.join(missing)}"
-        if reason:
-            left_out.append((name, reason))
-        else:
-            used.append(name)
-            values.append(row)
-    if len(values) < 3:
-        raise LandmarkFileError(f"{path}: {len(values)} usable landmarks; at least 3 are needed")
-    values = numpy.array(values, float)
-    return Landmarks(values[:, :2].copy(), values[:, 2:].copy(), used, left_out, **facts)
+        (left_out if reason else used).append((name, reason or row))
+    if len(used) < 3:
+        raise LandmarkFileError(f"{path}: {len(used)} usable landmarks; at least 3 are needed")
+    values = numpy.array([row for _, row in used], float)
+    return Landmarks(values[:, :2].copy(), values[:, 2:].copy(), [name for name, _ in used], left_out, **facts)
 
 
 def _read_table(lines: List[str], path: str, header: Optional[List[str]], columns: Sequence[str], first: int = 1):

@@ -37,17 +37,13 @@ class Settings:
         inform(f"The coordinate system is {system}{why} (--system).")
         return replace(self, system=system)
 
-    def configure(self, algorithm):
-        """The filter, with the options of the map."""
+    def set_up(self, algorithm, pair=None):
+        """The filter, with the options of the map, and the pair if it takes one."""
         configure(algorithm, self.system or "smooth", **self.options)
         algorithm.SetMaskInvalidTriangles(self.mask_invalid)
-        return algorithm
-
-    def set_up(self, algorithm, pair):
-        """The filter, with the options of the map and the pair."""
-        self.configure(algorithm)
-        algorithm.SetSourceData(pair.source)
-        algorithm.SetTargetData(pair.target)
+        if pair:
+            algorithm.SetSourceData(pair.source)
+            algorithm.SetTargetData(pair.target)
         return algorithm
 
 

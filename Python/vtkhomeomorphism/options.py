@@ -4,6 +4,7 @@
 
 import functools
 import math
+import re
 from types import SimpleNamespace
 
 import click
@@ -11,7 +12,7 @@ import click
 from . import pair
 from .arrays import BENDINGS, SYSTEMS
 from .files import PICTURES, USAGE, VECTORS, Failure, Input, Output, format_of, set_quiet
-from .images import read, read_size
+from .images import read
 from .landmarks import is_landmark_file
 from .mapping import Settings
 
@@ -32,7 +33,10 @@ class Size(click.ParamType):
     name = "size"
 
     def convert(self, value, param, context):
-        return read_size(value) if isinstance(value, str) else value
+        size = tuple(map(int, value.split("x"))) if re.fullmatch(r"\d{1,6}x\d{1,6}", value) else ()
+        if not size or not all(1 <= n <= 100000 for n in size):
+            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, each from 1 to 100000, such as 640x480", param, context)
+        return size
 
 
 POSITIVE = Number(min=0, min_open=True)
@@ -101,7 +105,7 @@ def pair_files(names):
                      help="Point array with the target's positions if one file has both meshes."),
         click.option("--target-uv", is_flag=True,
                      help="Use the texture coordinates of an OBJ file (vt, without seams) as the target."),
-        click.option("--working-size", type=Size(), default="", metavar="WIDTHxHEIGHT",
+        click.option("--working-size", type=Size(), metavar="WIDTHxHEIGHT",
                      help="For xmorph meshes that do not fill their images: the size of xmorph's working image "
                           "(resulting_size in its session file)."),
         click.option("--scan", default=(), multiple=True, metavar="FILE",

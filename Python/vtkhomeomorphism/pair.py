@@ -111,7 +111,8 @@ def from_landmarks(marks, name, options, **more):
     """The pair made of landmarks, and the IsomorphicTriangulation. Landmarks of images are in pixels, y down, and become
     those of images.Grid.hanging(). Says what was made."""
     made = landmarks.triangulate(marks, name, options.grids(marks), **more)
-    return Pair([make_mesh(points, made.triangles) for points in made[:2]], [name, name], landmarks=marks), made
+    metadata = {"output_crs": marks.crs} if marks.crs else {}
+    return Pair([make_mesh(p, made.triangles) for p in made[:2]], [name, name], None, None, metadata, marks), made
 
 
 def read_mesh(name, format=""):

@@ -16,7 +16,7 @@ class Coordinates:
 
     def __init__(self, mesh, settings, name):
         self.name = name
-        self.filter = settings.configure(vtkTriangularCoordinates())
+        self.filter = settings.set_up(vtkTriangularCoordinates())
         self.filter.SetInputDataObject(0, mesh)
         self.filter.GenerateLinesOff()
 

@@ -101,10 +101,7 @@ def command(inputs, output, lines, outlines, domain, quality, target_angle, maxi
     both, made = pair.from_landmarks(
         marks, " and ".join(inputs.pair), inputs, outlines=loops, segments=segments, domain=domain, quality=quality,
         target_minimum_angle=target_angle, maximum_added_points=maximum_added_points,
-        maximum_triangle_size=maximum_size, leave_out_conflicting_segments=leave_out_conflicts,
-    )
-    if marks.crs:
-        both.metadata["output_crs"] = marks.crs
+        maximum_triangle_size=maximum_size, leave_out_conflicting_segments=leave_out_conflicts)
     with output:
         pair.write(both, output)
     if report:
