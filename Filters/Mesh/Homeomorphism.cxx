@@ -265,10 +265,16 @@ int Homeomorphism::MapBlock(Domain from, PointBlock& block) const
       this->MapByContours(from, block);
       break;
     default:
+    {
+      // Prefetch to hide memory latency.
+      const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+      ForEachRun(
+        block, [&](int, int, TriangleIndex t) { target.PrefetchFrame(t); }, [](int) {});
       ForEachRun(
         block,
         [&](int begin, int end, TriangleIndex t) { this->MapLinearly(from, t, begin, end, block); },
         [](int) {});
+    }
   }
   for (int i = 0; i < block.Count; ++i)
   {
