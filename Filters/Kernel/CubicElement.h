@@ -207,14 +207,30 @@ public:
   const Component& GetX() const { return this->X; }
   const Component& GetY() const { return this->Y; }
 
+  /// Barycentric coordinates in the piece that contains a point: n_i = l_i - m and w = 3 m, where m
+  /// is the least of the l_i.
+  struct InPiece
+  {
+    double Lesser;
+    double N0;
+    double N1;
+    double N2;
+    double W;
+
+    HOMEOMORPHISM_ALWAYS_INLINE InPiece(double l0, double l1, double l2)
+      : Lesser(l1 < l0 ? l1 : l0)
+    {
+      const double m = l2 < this->Lesser ? l2 : this->Lesser;
+      this->N0 = l0 - m;
+      this->N1 = l1 - m;
+      this->N2 = l2 - m;
+      this->W = 3.0 * m;
+    }
+  };
+
   static HOMEOMORPHISM_ALWAYS_INLINE double Map(const Component& b, double l0, double l1, double l2)
   {
-    const double lesser = l1 < l0 ? l1 : l0;
-    const double m = l2 < lesser ? l2 : lesser;
-    const double n0 = l0 - m;
-    const double n1 = l1 - m;
-    const double n2 = l2 - m;
-    const double w = 3.0 * m;
+    const auto [lesser, n0, n1, n2, w] = InPiece(l0, l1, l2);
     const double ww = w * w;
     const double at0 =
       n0 * (n0 * b.Corner[0] + n1 * b.Next[0] + n2 * b.Previous[0] + w * b.Inner[0]);
@@ -232,12 +248,7 @@ public:
   static HOMEOMORPHISM_ALWAYS_INLINE void Derive(
     const Component& b, double l0, double l1, double l2, double& d0, double& d1, double& d2)
   {
-    const double lesser = l1 < l0 ? l1 : l0;
-    const double m = l2 < lesser ? l2 : lesser;
-    const double n0 = l0 - m;
-    const double n1 = l1 - m;
-    const double n2 = l2 - m;
-    const double w = 3.0 * m;
+    const auto [lesser, n0, n1, n2, w] = InPiece(l0, l1, l2);
     const double ww = w * w;
     // By n_0, n_1, n_2 and w.
     const double by0 =
