@@ -14,9 +14,9 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import meshes, vtkfiles
-from .arrays import MASK, points_of
+from .arrays import MASK, arrays_of, points_of
 from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress
-from .mapping import PointMap, run
+from .mapping import PointMap, add_array, run
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 
 TILE = 2048
@@ -292,20 +292,29 @@ class Warp:
         if c0 >= c1 or r0 >= r1:
             return nothing
         window = raster.window((c0, c1), (r0, r1))
-        data = raster.grid.part(c0, r0, c1 - c0, r1 - r0).to_vtk(window)
+        # At the raster's border, one more pixel of the same value, because pixels are areas and VTK's are points.
+        (left, top), (right, bottom) = [[c0 == 0, r0 == 0], [c1 == raster.grid.width, r1 == raster.grid.height]]
+        window = numpy.pad(window, ((top, bottom), (left, right), (0, 0)), "edge")
+        rows, columns = window.shape[:2]
+        first = raster.grid.at(numpy.array([c0 - left, r0 - top]))
+        data = replace(raster.grid, width=columns, height=rows, first=first).to_vtk(window)
+        # From 1 in the middle to 0 at the added pixels, for each direction: the area ends where it is a half.
+        inside = numpy.ones((2, rows, columns), numpy.float32)
+        inside[0, :, [side for side, added in ((0, left), (-1, right)) if added]] = 0
+        inside[1, [side for side, added in ((0, top), (-1, bottom)) if added]] = 0
+        add_array(data, "Inside", inside[:, ::-1].reshape(2, -1).T)
         if raster.nodata is not None:
             unknown = numpy.isnan(window) if numpy.isnan(raster.nodata) else window == raster.nodata
-            known = numpy_to_vtk((~unknown.any(axis=2)[::-1]).ravel().astype(float), deep=True)
-            known.SetName("Known")
-            data.GetPointData().AddArray(known)
+            add_array(data, "Known", (~unknown.any(axis=2)[::-1]).ravel().astype(float))
         self.filter.SetDataObject(data)
         self.filter.SetGridData(tile.to_vtk())
-        result = run(self.filter, self.pair.name).GetPointData()
-        pixels, mask = (vtk_to_numpy(result.GetArray(name)).reshape(*shape, -1)[::-1] for name in ("Pixels", MASK))
-        mask = mask[:, :, 0] != 0
+        arrays = arrays_of(run(self.filter, self.pair.name).GetPointData())
+        arrays = {name: values.reshape(*shape, -1)[::-1] for name, values in arrays.items()}
+        # Up to rounding.
+        mask = (arrays[MASK][:, :, 0] != 0) & (arrays["Inside"] > 0.5 - 1e-6).all(axis=2)
         if raster.nodata is not None:
-            mask &= vtk_to_numpy(result.GetArray("Known")).reshape(shape)[::-1] > 1 - 1e-9
-        return pixels, mask
+            mask &= arrays["Known"][:, :, 0] > 1 - 1e-9
+        return arrays["Pixels"], mask
 
     def warp(self, raster, grid, text="Warping"):
         """Pixels and mask of the whole grid."""
