@@ -71,6 +71,12 @@ public:
     return ContourChart(
       this->Geometry.GetShape(triangle), this->ContourViews[triangle], this->Center);
   }
+  /// Prefetches what GetContourChart reads beside the frame.
+  void PrefetchContourViews(TriangleIndex triangle) const
+  {
+    Prefetch(&this->ContourViews[triangle]);
+    Prefetch(&this->ContourViews[triangle][2].Height);
+  }
   SmoothChart GetSmoothChart(TriangleIndex triangle) const
   {
     return SmoothChart(this->Geometry.GetShape(triangle), this->Strips[triangle]);

@@ -45,6 +45,34 @@ void ForEachRun(const PointBlock& block, Use&& use, UseOther&& useOther)
   }
 }
 
+/// ForEachRun, which calls prefetch(i, triangle) for the first points in a triangle in advance, to
+/// hide memory latency.
+template <typename Prefetch, typename Use, typename UseOther>
+void ForEachRun(const PointBlock& block, Prefetch&& prefetch, Use&& use, UseOther&& useOther)
+{
+  int ahead = 0;
+  TriangleIndex last = -1;
+  const auto prefetchUpTo = [&](int end) {
+    for (; ahead < std::min(end, block.Count); ++ahead)
+    {
+      const TriangleIndex t = block.Triangles[ahead];
+      if (t != last && t >= 0)
+      {
+        prefetch(ahead, t);
+        last = t;
+      }
+    }
+  };
+  prefetchUpTo(PrefetchDistance);
+  ForEachRun(
+    block,
+    [&](int begin, int end, TriangleIndex t) {
+      prefetchUpTo(end + PrefetchDistance);
+      use(begin, end, t);
+    },
+    useOther);
+}
+
 /// Barycentric coordinates of the points of a run, for two corners: the apex of the frame in which
 /// the images are, and the corner before it.
 struct BlockCoordinates
@@ -266,12 +294,9 @@ int Homeomorphism::MapBlock(Domain from, PointBlock& block) const
       break;
     default:
     {
-      // Prefetch to hide memory latency.
       const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
       ForEachRun(
-        block, [&](int, int, TriangleIndex t) { target.PrefetchFrame(t); }, [](int) {});
-      ForEachRun(
-        block,
+        block, [&](int, TriangleIndex t) { target.PrefetchFrame(t); },
         [&](int begin, int end, TriangleIndex t) { this->MapLinearly(from, t, begin, end, block); },
         [](int) {});
     }
@@ -306,20 +331,16 @@ void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  // Prefetch to hide memory latency.
+  SmoothBatch batch;
   ForEachRun(
     block,
-    [&](int begin, int, TriangleIndex t) {
+    [&](int begin, TriangleIndex t) {
       const std::array<const double*, 3> l = this->ByCorner(from, t, block);
       const int corner = LeastCorner(l[0][begin], l[1][begin], l[2][begin]);
       Prefetch(&charts.GetSmoothStrips(t)[corner]);
       Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
       target.PrefetchFrame(t);
     },
-    [](int) {});
-  SmoothBatch batch;
-  ForEachRun(
-    block,
     [&](int begin, int end, TriangleIndex t) {
       SetSmoothBatch(batch, begin, end, this->ByCorner(from, t, block).data(),
         charts.GetSmoothStrips(t), otherCharts.GetSmoothStrips(t));
@@ -355,6 +376,11 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
   int count = 0;
   ForEachRun(
     block,
+    [&](int, TriangleIndex t) {
+      charts.PrefetchContourViews(t);
+      otherCharts.PrefetchContourViews(t);
+      target.PrefetchFrame(t);
+    },
     [&](int begin, int end, TriangleIndex t) {
       if (charts.GetSystemOf(t) != CoordinateSystem::Contour)
       {

@@ -33,9 +33,8 @@ struct LocationHint
   TriangleIndex Triangle = -1;
   /// How many points in a row were in one triangle lately.
   int RunLength = 1;
-  /// For how many more blocks points are taken to be so far from each other that the last one's
-  /// triangle is no help.
-  int ScatteredBlocks = 0;
+  /// Whether most points of the last block were in another triangle than the point before.
+  bool IsScattered = false;
 };
 
 /// Some points that are located and mapped together, which takes a fraction of the time. Not

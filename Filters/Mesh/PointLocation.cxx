@@ -247,6 +247,10 @@ SurfacePoint PointLocation::Find(
     PlaneRelation relation;
     found = this->Walk(
       { normalized[0], normalized[1] }, seed, -std::numeric_limits<double>::infinity(), relation);
+    if (found >= 0 && relation.IsInside())
+    {
+      return { found, { relation.InPlane, this->GetOffset(normalized) }, -1 };
+    }
   }
   if (found < 0)
   {
@@ -433,14 +437,20 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
     }
     return outside;
   }
-  if (hint.ScatteredBlocks > 0)
+  int moves = 0;
+  if (hint.IsScattered)
   {
-    --hint.ScatteredBlocks;
     this->FindScattered(block, normalized, tolerance, search);
+    for (int i = 0; i < block.Count; ++i)
+    {
+      const TriangleIndex found = block.Triangles[i];
+      moves += found != hint.Triangle ? 1 : 0;
+      hint.Triangle = found >= 0 ? found : hint.Triangle;
+    }
+    hint.IsScattered = 2 * moves > block.Count;
     return outside;
   }
   const double highest = this->GetHighest(tolerance);
-  int moves = 0;
   int run = 0;
   TriangleIndex last = hint.Triangle;
   TriangleIndex next = -1;
@@ -504,7 +514,7 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
     }
   }
   hint.Triangle = last;
-  hint.ScatteredBlocks = 2 * moves > block.Count ? 16 : 0;
+  hint.IsScattered = 2 * moves > block.Count;
   return outside;
 }
 
@@ -516,33 +526,40 @@ void PointLocation::FindScattered(PointBlock& block, const double normalized[3][
 {
   TriangleIndex triangles[PointBlock::Capacity];
   int walking[PointBlock::Capacity];
-  int count = 0;
   const auto prefetch = [this](TriangleIndex t) {
     this->Geometry.PrefetchFrame(t);
     this->Topology.PrefetchTwin(t);
   };
-  for (int i = 0; i < block.Count; ++i)
-  {
-    const Vector3 point{ normalized[0][i], normalized[1][i], normalized[2][i] };
-    triangles[i] = this->MayWalk(point, tolerance) ? this->GetSeed({ point[0], point[1] }) : -1;
-    if (triangles[i] >= 0)
+  // Walks begin some points ahead of the first steps.
+  int begun = 0;
+  const auto beginUpTo = [&](int end) {
+    for (; begun < std::min(end, block.Count); ++begun)
     {
-      prefetch(triangles[i]);
-      walking[count++] = i;
+      const Vector3 point{ normalized[0][begun], normalized[1][begun], normalized[2][begun] };
+      walking[begun] = begun;
+      triangles[begun] =
+        this->MayWalk(point, tolerance) ? this->GetSeed({ point[0], point[1] }) : -1;
+      if (triangles[begun] >= 0)
+      {
+        prefetch(triangles[begun]);
+      }
     }
-    else
-    {
-      search(i, -1);
-    }
-  }
+  };
+  int count = block.Count;
   constexpr int longest = 8;
   for (int step = 0; step < longest && count > 0; ++step)
   {
     int left = 0;
     for (int n = 0; n < count; ++n)
     {
+      beginUpTo(n + PrefetchDistance);
       const int i = walking[n];
       const TriangleIndex t = triangles[i];
+      if (t < 0)
+      {
+        search(i, -1);
+        continue;
+      }
       const PlaneFrame& frame = this->Geometry.GetPlaneFrame(t);
       const PlaneRelation relation(frame, { normalized[0][i], normalized[1][i] });
       if (relation.IsInside() && !this->IsOverlapping(t))

@@ -31,6 +31,10 @@ inline void Prefetch(const void* address)
 #endif
 }
 
+/// How many points ahead of their use memory is prefetched. Processors wait for a few dozen cache
+/// lines at a time; more prefetches at once take longer.
+constexpr int PrefetchDistance = 32;
+
 /// The same edge, seen from the neighboring triangle.
 struct Twin
 {
