@@ -14,7 +14,12 @@ namespace homeomorphism
 namespace
 {
 
-constexpr int Neighbors = 18;
+constexpr std::size_t Neighbors = 18;
+/// Monomials of a polynomial of degree two in two variables.
+constexpr int Monomials = 6;
+
+/// Landmarks with their squared distances.
+using Distances = std::vector<std::pair<double, int>>;
 
 /// Points in square cells, to find the nearest ones.
 class Cells
@@ -55,10 +60,10 @@ public:
     }
   }
 
-  /// The nearest other points with their squared distances, nearest first.
-  std::vector<std::pair<double, int>> Nearest(int point, std::size_t count) const
+  /// The nearest other points, nearest first; of equally near ones the lower number.
+  void Nearest(int point, std::size_t count, Distances& found) const
   {
-    std::vector<std::pair<double, int>> found;
+    found.clear();
     const Vector2 p = this->Points[point];
     const int cell = static_cast<int>(this->CellOf(p));
     const int column = cell % this->Columns;
@@ -97,7 +102,6 @@ public:
     }
     std::sort(found.begin(), found.end());
     found.resize(std::min(found.size(), count));
-    return found;
   }
 
 private:
@@ -118,28 +122,34 @@ private:
   std::vector<int> Members;
 };
 
-/// The monomials of a polynomial of degree two, the affine ones first.
-std::array<double, 6> Monomials(const Vector2& p)
+/// A neighbor in a fit: its position in the target and its monomials, the affine ones first.
+struct Neighbor
 {
-  return { 1.0, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y };
-}
+  std::array<double, Monomials> Values;
+  Vector2 To;
+  double Near;
+  double Weight;
+  double Error;
+};
 
-/// Value at the origin of the weighted least-squares polynomial with @a terms monomials.
-Vector2 FitAtOrigin(const std::vector<Vector2>& from, const std::vector<Vector2>& to,
-  const std::vector<double>& weights, int terms, std::array<Vector2, 6>& coefficients)
+/// The weighted least-squares polynomial with the first @a terms monomials.
+void Fit(const std::array<Neighbor, Neighbors>& neighbors, std::size_t count, int terms,
+  std::array<Vector2, Monomials>& coefficients)
 {
-  double a[6][6] = {};
+  // The upper triangle of the symmetric matrix of the normal equations.
+  double a[Monomials][Monomials] = {};
   coefficients = {};
-  for (std::size_t i = 0; i < from.size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const std::array<double, 6> m = Monomials(from[i]);
+    const Neighbor& n = neighbors[i];
     for (int r = 0; r < terms; ++r)
     {
-      for (int c = 0; c < terms; ++c)
+      const double weighted = n.Weight * n.Values[r];
+      for (int c = r; c < terms; ++c)
       {
-        a[r][c] += weights[i] * m[r] * m[c];
+        a[r][c] += weighted * n.Values[c];
       }
-      coefficients[r] = coefficients[r] + (weights[i] * m[r]) * to[i];
+      coefficients[r] = coefficients[r] + weighted * n.To;
     }
   }
   // A trace of preference for small coefficients decides where neighbors are on a line.
@@ -152,8 +162,8 @@ Vector2 FitAtOrigin(const std::vector<Vector2>& from, const std::vector<Vector2>
   {
     for (int r = k + 1; r < terms; ++r)
     {
-      const double factor = a[r][k] / a[k][k];
-      for (int c = k; c < terms; ++c)
+      const double factor = a[k][r] / a[k][k];
+      for (int c = r; c < terms; ++c)
       {
         a[r][c] -= factor * a[k][c];
       }
@@ -168,7 +178,6 @@ Vector2 FitAtOrigin(const std::vector<Vector2>& from, const std::vector<Vector2>
     }
     coefficients[k] = (1.0 / a[k][k]) * coefficients[k];
   }
-  return coefficients[0];
 }
 
 /// The residuals of landmarks among those that are trusted.
@@ -183,25 +192,27 @@ public:
   }
 
   /// The nearest trusted landmarks, nearest first.
-  std::vector<std::pair<double, int>> Nearest(int landmark, std::size_t count) const
+  void Nearest(int landmark, std::size_t count, Distances& nearest) const
   {
-    auto nearest = this->Near.Nearest(landmark, count + this->Rejected.size());
+    this->Near.Nearest(landmark, count + this->Rejected.size(), nearest);
     nearest.erase(std::remove_if(nearest.begin(), nearest.end(),
                     [this](const std::pair<double, int>& p) {
                       return std::count(this->Rejected.begin(), this->Rejected.end(), p.second);
                     }),
       nearest.end());
     nearest.resize(std::min(nearest.size(), count));
-    return nearest;
   }
 
   /// The trusted landmarks whose residual depends on a landmark.
   std::vector<int> DependingOn(int landmark) const
   {
     std::vector<int> result;
-    for (const auto& [square, other] : this->Nearest(landmark, 4 * Neighbors))
+    Distances others;
+    Distances nearest;
+    this->Nearest(landmark, 4 * Neighbors, others);
+    for (const auto& [square, other] : others)
     {
-      const auto nearest = this->Nearest(other, Neighbors);
+      this->Nearest(other, Neighbors, nearest);
       if (std::any_of(nearest.begin(), nearest.end(),
             [landmark](const std::pair<double, int>& p) { return p.second == landmark; }))
       {
@@ -211,52 +222,52 @@ public:
     return result;
   }
 
-  double Compute(int landmark) const
+  /// @param nearest room for neighbors, which many calls can share
+  double Compute(int landmark, Distances& nearest) const
   {
-    const auto nearest = this->Nearest(landmark, Neighbors);
+    this->Nearest(landmark, Neighbors, nearest);
+    const std::size_t count = nearest.size();
     const double radius = std::sqrt(nearest.back().first);
-    std::vector<Vector2> from;
-    std::vector<Vector2> to;
-    std::vector<double> near;
-    for (const auto& [square, neighbor] : nearest)
+    std::array<Neighbor, Neighbors> neighbors;
+    for (std::size_t i = 0; i < count; ++i)
     {
-      from.push_back(
-        (1.0 / radius) * (this->Landmarks[0][neighbor] - this->Landmarks[0][landmark]));
-      to.push_back(this->Landmarks[1][neighbor] - this->Landmarks[1][landmark]);
-      near.push_back(std::exp(-2.0 * square / (radius * radius)));
+      const auto& [square, id] = nearest[i];
+      const Vector2 p = (1.0 / radius) * (this->Landmarks[0][id] - this->Landmarks[0][landmark]);
+      Neighbor& n = neighbors[i];
+      n.Values = { 1.0, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y };
+      n.To = this->Landmarks[1][id] - this->Landmarks[1][landmark];
+      n.Near = std::exp(-2.0 * square / (radius * radius));
+      n.Weight = n.Near;
     }
-    std::vector<double> weights = near;
-    std::vector<double> errors;
-    std::array<Vector2, 6> coefficients;
-    Vector2 expected;
+    // The constant one is the value at the landmark.
+    std::array<Vector2, Monomials> coefficients;
+    std::array<double, Neighbors> sorted;
     for (int pass = 0; pass < 12; ++pass)
     {
-      expected = FitAtOrigin(from, to, weights, this->Terms, coefficients);
-      errors.clear();
-      for (std::size_t k = 0; k < from.size(); ++k)
+      Fit(neighbors, count, this->Terms, coefficients);
+      for (std::size_t i = 0; i < count; ++i)
       {
-        const std::array<double, 6> m = Monomials(from[k]);
-        Vector2 error = to[k];
+        Vector2 error = neighbors[i].To;
         for (int r = 0; r < this->Terms; ++r)
         {
-          error = error - m[r] * coefficients[r];
+          error = error - neighbors[i].Values[r] * coefficients[r];
         }
-        errors.push_back(std::hypot(error.x, error.y));
+        neighbors[i].Error = std::hypot(error.x, error.y);
+        sorted[i] = neighbors[i].Error;
       }
-      std::vector<double> sorted = errors;
-      std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-      const double scale = sorted[sorted.size() / 2];
-      if (!(scale > 0.0))
+      const auto median = sorted.begin() + count / 2;
+      std::nth_element(sorted.begin(), median, sorted.begin() + count);
+      if (!(*median > 0.0))
       {
         break;
       }
-      for (std::size_t k = 0; k < from.size(); ++k)
+      for (std::size_t i = 0; i < count; ++i)
       {
-        const double ratio = errors[k] / scale;
-        weights[k] = near[k] / (1.0 + 0.5 * ratio * ratio);
+        const double ratio = neighbors[i].Error / *median;
+        neighbors[i].Weight = neighbors[i].Near / (1.0 + 0.5 * ratio * ratio);
       }
     }
-    return std::hypot(expected.x, expected.y);
+    return std::hypot(coefficients[0].x, coefficients[0].y);
   }
 
   std::vector<int> Rejected;
@@ -267,7 +278,8 @@ private:
   int Terms;
 };
 
-/// The landmarks with the largest residuals above a limit that are not rejected, the worst first.
+/// The landmarks with the largest residuals above a limit that are not rejected, the worst first,
+/// of equal ones the lower number.
 std::vector<int> FindWorst(
   const std::vector<double>& residuals, double limit, const std::vector<int>& rejected, int count)
 {
@@ -279,8 +291,12 @@ std::vector<int> FindWorst(
       worst.push_back(i);
     }
   }
-  std::sort(worst.begin(), worst.end(), [&](int a, int b) { return residuals[a] > residuals[b]; });
-  worst.resize(std::min<std::size_t>(worst.size(), count));
+  const auto last =
+    worst.begin() + std::min<std::ptrdiff_t>(count, static_cast<std::ptrdiff_t>(worst.size()));
+  std::partial_sort(worst.begin(), last, worst.end(), [&](int a, int b) {
+    return residuals[a] > residuals[b] || (residuals[a] == residuals[b] && a < b);
+  });
+  worst.erase(last, worst.end());
   return worst;
 }
 
@@ -295,9 +311,10 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
     return residuals;
   }
   Residuals among(landmarks);
+  Distances nearest;
   for (int i = 0; i < n; ++i)
   {
-    residuals[i] = among.Compute(i);
+    residuals[i] = among.Compute(i, nearest);
   }
   std::vector<double> sorted = residuals;
   std::nth_element(sorted.begin(), sorted.begin() + 4 * n / 5, sorted.end());
@@ -317,7 +334,7 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
       std::vector<std::pair<int, double>> changed;
       for (const int other : depending)
       {
-        changed.emplace_back(other, among.Compute(other));
+        changed.emplace_back(other, among.Compute(other, nearest));
         gain += residuals[other] - changed.back().second;
       }
       among.Rejected.pop_back();
@@ -340,7 +357,7 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
   }
   for (const int rejected : among.Rejected)
   {
-    residuals[rejected] = among.Compute(rejected);
+    residuals[rejected] = among.Compute(rejected, nearest);
   }
   return residuals;
 }
