@@ -192,7 +192,8 @@ std::vector<std::vector<int>> Walks(const Rotations& rotations)
 
 } // namespace
 
-bool FillByDiagonals(const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles)
+bool FillByDiagonals(
+  const PolygonPair& polygons, const QualityMeasure& quality, CornerTriangles& triangles)
 {
   const int m = static_cast<int>(polygons[0].size());
   if (m < 3)
@@ -333,7 +334,8 @@ int CountCrossings(const std::array<CornerTriangles, 2>& triangulations, int cor
 }
 
 bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles, 2>& own,
-  PairQuality quality, std::array<std::vector<Vector2>, 2>& added, CornerTriangles& triangles)
+  const QualityMeasure& quality, std::array<std::vector<Vector2>, 2>& added,
+  CornerTriangles& triangles)
 {
   const int m = static_cast<int>(polygons[0].size());
   std::array<ChordTriangulation, 2> chords{ { ChordTriangulation(own[0], m),

@@ -26,7 +26,8 @@ using CornerTriangles = std::vector<std::array<int, 3>>;
 /// Klincsek 1980; Aronov, Seidel, Souvaine 1993). False if no pair of triangulations has the same
 /// diagonals. Takes m^3 steps at most. No diagonal's visibility has to be tested: triangles that
 /// are counterclockwise in both domains cover the inside of the polygons exactly once.
-bool FillByDiagonals(const PolygonPair& polygons, PairQuality quality, CornerTriangles& triangles);
+bool FillByDiagonals(
+  const PolygonPair& polygons, const QualityMeasure& quality, CornerTriangles& triangles);
 
 /// A point of each domain from which the whole polygon is visible; false if there is none.
 bool FindStarCenter(const PolygonPair& polygons, std::array<Vector2, 2>& center);
@@ -37,7 +38,8 @@ bool FindStarCenter(const PolygonPair& polygons, std::array<Vector2, 2>& center)
 /// for a cell.
 /// @param own the diagonals of each domain: a triangulation of its polygon
 bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles, 2>& own,
-  PairQuality quality, std::array<std::vector<Vector2>, 2>& added, CornerTriangles& triangles);
+  const QualityMeasure& quality, std::array<std::vector<Vector2>, 2>& added,
+  CornerTriangles& triangles);
 
 /// The number of crossings of diagonals of two triangulations of a polygon.
 int CountCrossings(const std::array<CornerTriangles, 2>& triangulations, int corners);

@@ -40,6 +40,8 @@ constexpr int ManyPoints = 200;
 /// so many that are also a fifth of all points.
 constexpr int Unrelated = 70;
 constexpr int UnrelatedFew = 20;
+/// An angle that is not too thin for any quality, in degrees.
+constexpr double Thin = 5.0;
 /// How many ids a problem lists.
 constexpr std::size_t ListedIds = 10;
 
@@ -241,10 +243,21 @@ public:
       return;
     }
     const int maximum = limit >= 0 ? limit : added + 100;
-    if (this->Options.Quality == PairQuality::NonObtuse)
+    if (this->Options.Quality == PairQuality::Concordance ||
+      this->Options.Quality == PairQuality::NonObtuse)
     {
-      optimization.AddPoints(90.0, added + (maximum - added) / 2);
-      mesh.SetQuality(PairQuality::NonObtuse);
+      const double thin = std::min(Thin, mesh.SmallestAngle());
+      if (this->Options.Quality == PairQuality::NonObtuse)
+      {
+        optimization.AddPoints(90.0, added + (maximum - added) / 2);
+      }
+      mesh.SetQuality({ this->Options.Quality, thin });
+      const std::size_t mark = mesh.Mark();
+      optimization.Flip();
+      if (mesh.SmallestAngle() < 0.5 * thin)
+      {
+        mesh.RollBack(mark);
+      }
     }
     if (this->Options.OptimizeAddedPoints || this->Options.TargetQuality > 0.0)
     {
@@ -791,8 +804,8 @@ private:
       ConstrainedTriangulation::BoxCorners + static_cast<int>(this->Order.size());
     // Angles first if obtuse ones are to be avoided then.
     auto mesh = std::make_unique<PairMesh>(points, triangles, fixed, firstAdded,
-      this->Options.Quality == PairQuality::NonObtuse ? PairQuality::MinimumAngle
-                                                      : this->Options.Quality);
+      this->Options.Quality == PairQuality::Distortion ? PairQuality::Distortion
+                                                       : PairQuality::MinimumAngle);
     JointOptimization(*mesh, this->KeepGoing(0.6)).RemovePoints(this->Options.OptimizeAddedPoints);
     return mesh;
   }

@@ -38,6 +38,9 @@ struct IsomorphicTriangulationOptions
   /// bounds, 5 percent larger, and their image by the affine map that fits best, or where that
   /// would have to be much larger the target's bounds.
   std::array<std::vector<Vector2>, 2> Frames;
+  /// With Concordance and NonObtuse, no angle gets smaller than half the smallest angle, or half of
+  /// 5 degrees if that is less, of the pair with the necessary points alone: such a pair is not
+  /// taken.
   PairQuality Quality = PairQuality::MinimumAngle;
   /// How many points may be added; -1: as many as necessary after several attempts, and up to 100
   /// for better triangles. Otherwise the first attempt that keeps to the limit is taken, unless

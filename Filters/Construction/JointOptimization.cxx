@@ -26,6 +26,10 @@ constexpr int MovedAtAll = 5000;
 constexpr int MergedAtAll = 20000;
 /// Points without gain after which adding more is given up.
 constexpr int IdlePoints = 7;
+/// The same for each further triangle, after the worst one could not be improved.
+constexpr int IdlePointsLater = 2;
+/// Points up to which each is tried elsewhere at the end.
+constexpr std::size_t TriedElsewhere = 20;
 
 /// Minimization with a limited memory of past steps (Nocedal, Wright, "Numerical Optimization",
 /// 2006, algorithm 7.4). @a evaluate returns the value, infinite where it must not go, and fills
@@ -206,6 +210,30 @@ std::vector<int> JointOptimization::FreeVerticesOf(const std::vector<int>& trian
   return vertices;
 }
 
+std::vector<int> JointOptimization::MovedWith(int vertex) const
+{
+  std::vector<int> vertices;
+  std::vector<int> next{ vertex };
+  std::vector<int> star;
+  while (next.size() > vertices.size() && next.size() <= MovedTogether)
+  {
+    vertices = next;
+    std::vector<int> triangles;
+    for (const int v : vertices)
+    {
+      this->Mesh.Star(v, star);
+      triangles.insert(triangles.end(), star.begin(), star.end());
+    }
+    next = this->FreeVerticesOf(triangles);
+  }
+  if (next.size() <= MovedTogether)
+  {
+    return next;
+  }
+  this->Mesh.Star(vertex, star);
+  return this->FreeVerticesOf(this->Mesh.Grow(this->Mesh.Grow(star)));
+}
+
 std::vector<int> JointOptimization::Neighborhood(int triangle, int rings) const
 {
   std::vector<int> triangles{ triangle };
@@ -256,7 +284,7 @@ void JointOptimization::SmoothDomain(
   {
     return;
   }
-  const PairQuality quality = this->Mesh.GetQuality();
+  const QualityMeasure quality = this->Mesh.GetQuality();
   std::vector<std::array<QualityTerm, 9>> terms(moving.size());
   std::vector<int> counts(moving.size());
   const auto evaluate = [&](const std::vector<double>& x, std::vector<double>& gradient) {
@@ -361,7 +389,7 @@ void JointOptimization::Smooth(const std::vector<int>& vertices, bool finish)
   }
   for (int d = 0; d < 2; ++d)
   {
-    if (this->Mesh.GetQuality() == PairQuality::NonObtuse)
+    if (this->Mesh.GetQuality().Kind == PairQuality::NonObtuse)
     {
       this->SmoothDomain(vertices, d, Goal::ObtuseExcess, 1.0, 15);
     }
@@ -653,13 +681,7 @@ bool JointOptimization::InsertNear(int worst)
     this->FlipAround(star);
     for (int i = 0; i < rounds; ++i)
     {
-      std::vector<int> vertices = this->Mesh.FreeVertices();
-      if (vertices.size() > MovedTogether)
-      {
-        this->Mesh.Star(vertex, star);
-        vertices = this->FreeVerticesOf(this->Mesh.Grow(this->Mesh.Grow(star)));
-      }
-      this->Round(vertices, rounds > 1 && i + 1 == rounds);
+      this->Round(this->MovedWith(vertex), rounds > 1 && i + 1 == rounds);
     }
     return true;
   };
@@ -798,35 +820,52 @@ bool JointOptimization::Exchange()
 
 void JointOptimization::AddPoints(double target, int maximum)
 {
-  this->Improve(3);
+  const PairQuality kind = this->Mesh.GetQuality().Kind;
+  // What counts is how many triangles reach the target, not the worst one alone.
+  const bool isShare = kind == PairQuality::Concordance || kind == PairQuality::NonObtuse;
+  const double least = isShare ? 0.5 * this->Mesh.GetQuality().Thin : 0.0;
   this->Mesh.Commit();
   PairMesh best = this->Mesh;
   double bestQuality = best.WorstQuality();
   int idle = 0;
   const auto keepBest = [&]() {
     const double quality = this->Mesh.WorstQuality();
-    if (quality > bestQuality + 1e-6)
+    if (quality > bestQuality + 1e-6 && this->Mesh.SmallestAngle() >= least)
     {
+      this->Mesh.Commit();
       best = this->Mesh;
-      best.Commit();
       bestQuality = quality;
       idle = 0;
     }
   };
-  while (bestQuality < target && this->Mesh.CountAdded() < maximum && idle < IdlePoints &&
-    this->KeepGoing())
+  this->Improve(3);
+  this->Mesh.Commit();
+  keepBest();
+  while (bestQuality < target && this->Mesh.CountAdded() < maximum && this->KeepGoing())
   {
-    if (!this->InsertNear(this->Mesh.Worst()))
-    {
-      break;
-    }
+    const bool inserted = this->InsertNear(this->Mesh.Worst());
     this->Mesh.Commit();
     ++idle;
     keepBest();
+    if (!inserted || idle >= IdlePoints)
+    {
+      if (!isShare)
+      {
+        break;
+      }
+      // Points do not help here: the other triangles are still worth it.
+      this->Mesh = best;
+      this->Mesh.Accept(this->Mesh.Worst());
+      best = this->Mesh;
+      bestQuality = best.WorstQuality();
+      idle = IdlePoints - IdlePointsLater;
+    }
   }
+  const bool tryElsewhere = this->Mesh.FreeVertices().size() <= TriedElsewhere;
   for (int i = 0; i < 2 * maximum && bestQuality < target && this->KeepGoing(); ++i)
   {
-    if (!this->Relocate() && !this->FlipAndMove() && !this->Exchange())
+    if (!(tryElsewhere && this->Relocate()) && !this->FlipAndMove() &&
+      !(tryElsewhere && this->Exchange()))
     {
       break;
     }

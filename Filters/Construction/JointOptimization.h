@@ -32,7 +32,9 @@ public:
   void Improve(int rounds);
 
   /// Adds points until the worst quality reaches @a target or there are @a maximum, and moves added
-  /// points to other places as long as that helps. Keeps the best mesh seen.
+  /// points to other places as long as that helps. Keeps the best mesh seen. With Concordance and
+  /// NonObtuse, of which each triangle has its share, goes on with the next worst triangle where
+  /// points do not help, and keeps no mesh that has an angle below half of QualityMeasure::Thin.
   void AddPoints(double target, int maximum);
 
   /// Halves the longest edges until no triangle of either domain, measured in shares of that
@@ -57,6 +59,9 @@ private:
   void Round(const std::vector<int>& vertices, bool finish);
   std::vector<int> Neighborhood(int triangle, int rings) const;
   std::vector<int> FreeVerticesOf(const std::vector<int>& triangles) const;
+  /// The free vertices whose best positions depend on a vertex: those that edges between free
+  /// vertices connect with it, or those near it if these are many.
+  std::vector<int> MovedWith(int vertex) const;
   bool InsertNear(int triangle);
   bool Relocate();
   bool FlipAndMove();

@@ -34,7 +34,7 @@ constexpr double ScoreSharpness = 0.5;
 
 PairMesh::PairMesh(const std::array<std::vector<Vector2>, 2>& points,
   const std::vector<std::array<int, 3>>& triangles, const std::vector<std::array<int, 2>>& fixed,
-  int firstAdded, PairQuality quality)
+  int firstAdded, const QualityMeasure& quality)
   : Points(points)
   , Triangles(triangles.size())
   , TriangleOf(points[0].size(), -1)
@@ -87,7 +87,7 @@ PairMesh::PairMesh(const std::array<std::vector<Vector2>, 2>& points,
   }
 }
 
-void PairMesh::SetQuality(PairQuality quality)
+void PairMesh::SetQuality(const QualityMeasure& quality)
 {
   this->Quality = quality;
   for (int t = 0; t < static_cast<int>(this->Triangles.size()); ++t)
@@ -477,18 +477,40 @@ bool PairMesh::Flip(int t, int k, double least, std::vector<int>& made)
   return true;
 }
 
-int PairMesh::Worst(const std::vector<char>& skip) const
+void PairMesh::Accept(int triangle)
+{
+  // Less a little, so that rounding does not count as getting worse.
+  Triangle& t = this->Triangles[triangle];
+  t.AcceptedQuality = t.Quality - 1e-9;
+}
+
+int PairMesh::Worst() const
 {
   int worst = -1;
   for (int t = 0; t < static_cast<int>(this->Triangles.size()); ++t)
   {
-    if (this->Triangles[t].Alive && (t >= static_cast<int>(skip.size()) || !skip[t]) &&
-      (worst < 0 || this->Triangles[t].Quality < this->Triangles[worst].Quality))
+    const Triangle& triangle = this->Triangles[t];
+    if (triangle.Alive && !triangle.IsAccepted() &&
+      (worst < 0 || triangle.Quality < this->Triangles[worst].Quality))
     {
       worst = t;
     }
   }
   return worst;
+}
+
+double PairMesh::SmallestAngle() const
+{
+  double smallest = 180.0;
+  for (int t = 0; t < static_cast<int>(this->Triangles.size()); ++t)
+  {
+    for (int d = 0; d < 2 && this->Triangles[t].Alive; ++d)
+    {
+      const auto angles = Angles(this->PointsOf(t, d));
+      smallest = std::min({ smallest, angles[0], angles[1], angles[2] });
+    }
+  }
+  return smallest;
 }
 
 double PairMesh::WorstQuality() const
@@ -503,7 +525,7 @@ double PairMesh::Score() const
   double sum = 0.0;
   for (const Triangle& t : this->Triangles)
   {
-    if (t.Quality - worst < 60.0)
+    if (t.Quality - worst < 60.0 && !t.IsAccepted())
     {
       sum += std::exp(-ScoreSharpness * (t.Quality - worst));
     }

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace homeomorphism
@@ -30,19 +31,23 @@ public:
     std::array<bool, 3> Fixed{ { false, false, false } };
     bool Alive = false;
     double Quality = 0.0;
+    /// Not counted among the worst while its quality is at least this.
+    double AcceptedQuality = std::numeric_limits<double>::infinity();
+
+    bool IsAccepted() const { return this->Quality >= this->AcceptedQuality; }
   };
 
   /// @param fixed the ends of fixed edges; those of the boundary are fixed anyway
   PairMesh(const std::array<std::vector<Vector2>, 2>& points,
     const std::vector<std::array<int, 3>>& triangles, const std::vector<std::array<int, 2>>& fixed,
-    int firstAdded, PairQuality quality);
+    int firstAdded, const QualityMeasure& quality);
 
   const std::vector<Triangle>& GetTriangles() const { return this->Triangles; }
   const std::vector<Vector2>& GetPoints(int domain) const { return this->Points[domain]; }
   int GetNumberOfPoints() const { return static_cast<int>(this->Points[0].size()); }
   int GetFirstAdded() const { return this->FirstAdded; }
-  PairQuality GetQuality() const { return this->Quality; }
-  void SetQuality(PairQuality quality);
+  const QualityMeasure& GetQuality() const { return this->Quality; }
+  void SetQuality(const QualityMeasure& quality);
   bool IsUsed(int vertex) const { return this->TriangleOf[vertex] >= 0; }
   /// Whether the vertex was added and has no fixed edge.
   bool IsFree(int vertex) const;
@@ -86,9 +91,13 @@ public:
   /// Forgets how to go back.
   void Commit() { this->Changes.clear(); }
 
-  /// The worst triangle that @a skip does not exclude, -1 if there is none.
-  int Worst(const std::vector<char>& skip = {}) const;
+  /// Takes a triangle as it is: it counts again only if it gets worse or is replaced.
+  void Accept(int triangle);
+  /// The worst triangle of those that are not accepted, -1 if there is none.
+  int Worst() const;
   double WorstQuality() const;
+  /// The smallest angle of all triangles of both domains, in degrees.
+  double SmallestAngle() const;
   /// A smooth lower bound of the worst quality, which also counts how many triangles are bad.
   double Score() const;
 
@@ -114,7 +123,7 @@ private:
   std::vector<int> FreeTriangles;
   std::vector<Change> Changes;
   int FirstAdded;
-  PairQuality Quality;
+  QualityMeasure Quality;
 };
 
 } // namespace homeomorphism

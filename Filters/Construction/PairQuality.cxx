@@ -15,11 +15,6 @@ namespace
 
 constexpr double Degrees = 57.295779513082320877;
 
-// An angle of 2.5 degrees counts as much as the limit of concordance: concordant triangles are not
-// to become needles.
-constexpr double NeedleOffset = 85.0;
-constexpr double NeedleFactor = 2.0;
-
 /// (|J|^2 / det J) / 2 of the affine map between two triangles: (s + 1 / s) / 2 for the ratio s of
 /// its singular values.
 double MeanDistortion(const TrianglePoints& source, const TrianglePoints& target)
@@ -59,7 +54,8 @@ double Distortion(const TrianglePoints& source, const TrianglePoints& target)
   return mean > 1.0 ? mean + std::sqrt((mean - 1.0) * (mean + 1.0)) : 1.0;
 }
 
-double QualityOf(PairQuality quality, const TrianglePoints& source, const TrianglePoints& target)
+double QualityOf(
+  const QualityMeasure& quality, const TrianglePoints& source, const TrianglePoints& target)
 {
   if (Orientation(source[0], source[1], source[2]) <= 0 ||
     Orientation(target[0], target[1], target[2]) <= 0)
@@ -85,8 +81,8 @@ double QualityOf(PairQuality quality, const TrianglePoints& source, const Triang
   return std::max(worst, 0.0);
 }
 
-int QualityTerms(PairQuality quality, const TrianglePoints& p, const TrianglePoints& other,
-  std::array<QualityTerm, 9>& terms)
+int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
+  const TrianglePoints& other, std::array<QualityTerm, 9>& terms)
 {
   const double doubleArea = Cross(p[1] - p[0], p[2] - p[0]);
   if (!(doubleArea > 0.0))
@@ -94,7 +90,7 @@ int QualityTerms(PairQuality quality, const TrianglePoints& p, const TrianglePoi
     return 0;
   }
   int count = 0;
-  if (quality == PairQuality::Distortion)
+  if (quality.Kind == PairQuality::Distortion)
   {
     // |J|^2 det is the cotangent-weighted sum of squared edges (Pinkall, Polthier 1993).
     double energy = 0.0;
@@ -128,51 +124,65 @@ int QualityTerms(PairQuality quality, const TrianglePoints& p, const TrianglePoi
     }
     return count;
   }
+  // Edges, and the angles between them: the largest one is what the two others leave.
+  TrianglePoints edges;
+  std::array<double, 3> squares;
+  int longest = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    edges[k] = p[PreviousCorner(k)] - p[NextCorner(k)];
+    squares[k] = Dot(edges[k], edges[k]);
+    longest = squares[k] > squares[longest] ? k : longest;
+  }
+  std::array<double, 3> angles;
+  angles[longest] = 180.0;
+  for (const int k : { NextCorner(longest), PreviousCorner(longest) })
+  {
+    angles[k] =
+      Degrees * std::atan2(doubleArea, -Dot(edges[NextCorner(k)], edges[PreviousCorner(k)]));
+    angles[longest] -= angles[k];
+  }
+  const bool isConcordance = quality.Kind == PairQuality::Concordance;
   for (int k = 0; k < 3; ++k)
   {
     const int next = NextCorner(k);
     const int previous = PreviousCorner(k);
-    const Vector2 u = p[next] - p[k];
-    const Vector2 v = p[previous] - p[k];
-    const double uu = Dot(u, u);
-    const double vv = Dot(v, v);
-    const double uv = Dot(u, v);
-    // The angle and its derivatives by the two other corners.
-    QualityTerm& angle = terms[count++];
-    angle.Value = Degrees * std::atan2(doubleArea, uv);
-    angle.Gradient[next] = (Degrees / uu) * Vector2{ u.y, -u.x };
-    angle.Gradient[previous] = (Degrees / vv) * Vector2{ -v.y, v.x };
-    if (quality == PairQuality::NonObtuse)
+    const Vector2& u = edges[previous];
+    const Vector2 v = -1.0 * edges[next];
+    const Vector2 byU = (Degrees / squares[previous]) * Vector2{ -u.y, u.x };
+    const Vector2 byV = (Degrees / squares[next]) * Vector2{ -v.y, v.x };
+    const auto add = [&](double value, const Vector2& byNext, const Vector2& byPrevious) {
+      QualityTerm& term = terms[count++];
+      term.Value = value;
+      term.Gradient[next] = byNext;
+      term.Gradient[previous] = byPrevious;
+      term.Gradient[k] = -1.0 * (byNext + byPrevious);
+    };
+    if (quality.Kind == PairQuality::MinimumAngle)
     {
-      angle.Value = 180.0 - angle.Value;
-      angle.Gradient[next] = -1.0 * angle.Gradient[next];
-      angle.Gradient[previous] = -1.0 * angle.Gradient[previous];
+      add(angles[k], -1.0 * byU, byV);
+      continue;
     }
-    else if (quality == PairQuality::Concordance)
+    if (angles[k] < 2.0 * quality.Thin)
     {
-      angle.Value = NeedleOffset + NeedleFactor * angle.Value;
-      angle.Gradient[next] = NeedleFactor * angle.Gradient[next];
-      angle.Gradient[previous] = NeedleFactor * angle.Gradient[previous];
+      const double ratio = std::max(angles[k], 0.0) / quality.Thin;
+      const double slope = 360.0 * ratio * ratio * ratio / quality.Thin;
+      add(90.0 * ratio * ratio * ratio * ratio, -slope * byU, slope * byV);
+    }
+    if (quality.Kind == PairQuality::NonObtuse)
+    {
+      add(180.0 - angles[k], byU, -1.0 * byV);
+    }
+    else if (isConcordance)
+    {
       // The centroid's foot is within an edge if the median makes an angle below 90 degrees with
-      // it.
+      // it. The median divides the corner's angle.
       const Vector2 median = u + v;
-      const double mm = Dot(median, median);
-      const Vector2 byMedian = (Degrees / mm) * Vector2{ -median.y, median.x };
-      for (int e = 0; e < 2; ++e)
-      {
-        const Vector2& edge = e == 0 ? u : v;
-        const double sign = e == 0 ? 1.0 : -1.0;
-        const double square = e == 0 ? uu : vv;
-        const Vector2 byEdge = (Degrees / square) * Vector2{ -edge.y, edge.x };
-        QualityTerm& foot = terms[count++];
-        foot.Value = 180.0 - Degrees * std::atan2(doubleArea, Dot(edge, median));
-        const Vector2 common = -sign * byMedian;
-        foot.Gradient[next] = e == 0 ? common + sign * byEdge : common;
-        foot.Gradient[previous] = e == 0 ? common : common + sign * byEdge;
-        foot.Gradient[k] = -1.0 * (foot.Gradient[next] + foot.Gradient[previous]);
-      }
+      const Vector2 byMedian = (Degrees / Dot(median, median)) * Vector2{ -median.y, median.x };
+      const double withU = Degrees * std::atan2(doubleArea, Dot(u, median));
+      add(180.0 - withU, byU - byMedian, -1.0 * byMedian);
+      add(180.0 - (angles[k] - withU), byMedian, byMedian - byV);
     }
-    angle.Gradient[k] = -1.0 * (angle.Gradient[next] + angle.Gradient[previous]);
   }
   return count;
 }

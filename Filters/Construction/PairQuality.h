@@ -27,6 +27,24 @@ enum class PairQuality
   NonObtuse
 };
 
+/// A quality with the angle, in degrees, that makes a triangle too thin for it.
+///
+/// For Concordance and NonObtuse, an angle of Thin degrees counts 90, as much as the limit between
+/// concordant and discordant or between acute and obtuse triangles, and smaller angles a count
+/// 90 (a / Thin)^4: a triangle is never made much thinner than that for the sake of its feet or its
+/// largest angle. The other two qualities do not use it.
+struct QualityMeasure
+{
+  QualityMeasure(PairQuality kind, double thin = 2.5)
+    : Kind(kind)
+    , Thin(thin)
+  {
+  }
+
+  PairQuality Kind;
+  double Thin;
+};
+
 using TrianglePoints = std::array<Vector2, 3>;
 
 /// The angles of a triangle in degrees; negative if it is clockwise.
@@ -38,9 +56,11 @@ double Distortion(const TrianglePoints& source, const TrianglePoints& target);
 
 /// The quality of a pair of triangles, the higher the better: the smallest angle in degrees; 180
 /// less the largest angle between an edge and the median at its end, above 90 if both are
-/// concordant; 60 for similar triangles; 180 less the largest angle, from 90 if none is obtuse. -1
-/// unless both triangles are counterclockwise, by exact orientation.
-double QualityOf(PairQuality quality, const TrianglePoints& source, const TrianglePoints& target);
+/// concordant; 60 for similar triangles; 180 less the largest angle, from 90 if none is obtuse. The
+/// second and the fourth are lower for thin triangles, see QualityMeasure. -1 unless both triangles
+/// are counterclockwise, by exact orientation.
+double QualityOf(
+  const QualityMeasure& quality, const TrianglePoints& source, const TrianglePoints& target);
 
 /// One term of a smooth lower bound of the quality.
 struct QualityTerm
@@ -53,8 +73,8 @@ struct QualityTerm
 /// The terms whose smallest is the quality of a triangle in one domain, with their derivatives by
 /// that triangle's corners. @a other is the triangle in the other domain (for Distortion). Returns
 /// the number of terms, 0 if the triangle is not counterclockwise.
-int QualityTerms(PairQuality quality, const TrianglePoints& triangle, const TrianglePoints& other,
-  std::array<QualityTerm, 9>& terms);
+int QualityTerms(const QualityMeasure& quality, const TrianglePoints& triangle,
+  const TrianglePoints& other, std::array<QualityTerm, 9>& terms);
 
 } // namespace homeomorphism
 

@@ -377,6 +377,30 @@ TEST(IsomorphicTriangulation, AddedPointsImproveAngles)
   }
 }
 
+TEST(IsomorphicTriangulation, OtherQualitiesKeepTheAngles)
+{
+  const FigurePair figure = Smooth(30, 5);
+  IsomorphicTriangulationOptions options;
+  options.MaximumNumberOfAddedPoints = 0;
+  const auto start = MakeIsomorphicTriangulation(figure, options);
+  const auto before = MeasurePair(start.Points, start.Triangles);
+  const double angle = std::min(before.MinimumAngle[0], before.MinimumAngle[1]);
+  for (const PairQuality quality : { PairQuality::Concordance, PairQuality::NonObtuse })
+  {
+    options.MaximumNumberOfAddedPoints = 6;
+    options.TargetQuality = 90.0;
+    options.Quality = quality;
+    const auto result = MakeIsomorphicTriangulation(figure, options);
+    EXPECT_EQ("", Check(figure, result));
+    const auto after = MeasurePair(result.Points, result.Triangles);
+    EXPECT_LE(0.5 * std::min(angle, 5.0), std::min(after.MinimumAngle[0], after.MinimumAngle[1]));
+    if (quality == PairQuality::Concordance)
+    {
+      EXPECT_GT(before.DiscordantShare, after.DiscordantShare);
+    }
+  }
+}
+
 TEST(LandmarkResiduals, WrongLandmarksComeFirst)
 {
   FigurePair figure = Smooth(60, 19);
@@ -386,6 +410,30 @@ TEST(LandmarkResiduals, WrongLandmarksComeFirst)
   std::vector<int> order = Range(0, 60);
   std::sort(order.begin(), order.end(), [&](int a, int b) { return residuals[a] > residuals[b]; });
   EXPECT_EQ((std::set<int>{ 7, 41 }), (std::set<int>{ order[0], order[1] }));
+}
+
+TEST(LandmarkResiduals, DoNotDependOnTheNumbering)
+{
+  // Two wrong landmarks that are mirror images of each other among landmarks on a grid: rejecting
+  // the first one or the second gains the same.
+  FigurePair figure;
+  for (int i = 0; i < 100; ++i)
+  {
+    const Vector2 p{ static_cast<double>(i % 10), static_cast<double>(i / 10) };
+    Add(figure, p, p);
+  }
+  figure.Points[1][44].x += 0.5;
+  figure.Points[1][45].x -= 0.5;
+  FigurePair renumbered = figure;
+  std::reverse(renumbered.Points[0].begin(), renumbered.Points[0].end());
+  std::reverse(renumbered.Points[1].begin(), renumbered.Points[1].end());
+  const auto residuals = LandmarkResiduals(figure.Points);
+  const auto others = LandmarkResiduals(renumbered.Points);
+  const std::vector<double> expected{ residuals[44], residuals[45] };
+  EXPECT_NEAR(0.5, expected[0], 1e-6);
+  EXPECT_NEAR(0.5, expected[1], 1e-6);
+  EXPECT_NEAR(expected[0], others[55], 1e-9);
+  EXPECT_NEAR(expected[1], others[54], 1e-9);
 }
 
 TEST(LandmarkResiduals, QuadraticMapsLeaveNone)

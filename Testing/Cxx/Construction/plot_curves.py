@@ -1,5 +1,5 @@
-# SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
-# SPDX-License-Identifier: BSD-3-Clause
+#SPDX - FileCopyrightText : Copyright(c) The Differentiable Homeomorphism authors
+#SPDX - License - Identifier : BSD - 3 - Clause
 """Draws the curves that StressPairs --curve measures: plot_curves.py FOLDER IMAGE."""
 
 import csv
@@ -11,8 +11,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-# Smallest angles of source and target with a number of added points: Surazhsky and Gotsman,
-# "High quality compatible triangulations" (2004).
+#Smallest angles of source and target with a number of added points : Surazhsky and Gotsman,
+#"High quality compatible triangulations"(2004).
 PUBLISHED = {"letters-U-S": (7, 17.1, 17.6), "outlines-37": (None, 15.9, 15.3)}
 QUALITIES = ("smallest angle", "concordance", "no obtuse angles")
 
