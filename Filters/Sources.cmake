@@ -33,6 +33,7 @@ set(cubic_sources
   Mesh/CubicMap.cxx
   Mesh/CubicTemplate.cxx
   Mesh/CubicTriangle.cxx
+  Mesh/LargeArray.cxx
   Mesh/PlanarPair.cxx
   Mesh/VertexGradient.cxx)
 set(cubic_headers
@@ -41,6 +42,7 @@ set(cubic_headers
   Mesh/CubicMapOptions.h
   Mesh/CubicTemplate.h
   Mesh/CubicTriangle.h
+  Mesh/LargeArray.h
   Mesh/PlanarPair.h
   Mesh/VertexGradient.h)
 
@@ -50,7 +52,6 @@ set(mesh_sources
   Mesh/ChartedTriangulation.cxx
   Mesh/CubicHomeomorphism.cxx
   Mesh/Homeomorphism.cxx
-  Mesh/LargeArray.cxx
   Mesh/MeshDiagnostic.cxx
   Mesh/MeshGeometry.cxx
   Mesh/MeshValidation.cxx
@@ -64,7 +65,6 @@ set(mesh_headers
   Mesh/ChartedTriangulation.h
   Mesh/CubicHomeomorphism.h
   Mesh/Homeomorphism.h
-  Mesh/LargeArray.h
   Mesh/MeshDiagnostic.h
   Mesh/MeshGeometry.h
   Mesh/MeshValidation.h

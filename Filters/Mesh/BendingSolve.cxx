@@ -128,16 +128,10 @@ public:
     , Options(options)
     , IsFree(isFree)
     , Parallel(parallelFor)
-    , Affine(this->Pair.Triangles.size())
+    , Fans(this->Pair)
     , IsCut(this->Pair.Triangles.size(), 0)
     , Failures(this->Pair.Triangles.size(), 0)
   {
-    this->Parallel(this->Pair.GetNumberOfTriangles(), [this](std::int64_t begin, std::int64_t end) {
-      for (int t = static_cast<int>(begin); t < end; ++t)
-      {
-        this->Affine[t] = this->Pair.GetAffine(t);
-      }
-    });
   }
 
   BendingSolution Run();
@@ -193,7 +187,7 @@ private:
   const BendingOptions& Options;
   const std::vector<std::uint8_t>& IsFree;
   const ParallelFor& Parallel;
-  std::vector<Matrix2> Affine;
+  const PointFans Fans;
   std::vector<std::uint8_t> IsCut;
   std::vector<int> Failures;
   std::map<int, BoundaryPoint> Boundary;
@@ -237,12 +231,11 @@ void Solver::FindBoundary()
       }
     }
   }
-  const PointFans fans(this->Pair);
   for (auto& entry : this->Boundary)
   {
     const int point = entry.first;
     BoundaryPoint& boundary = entry.second;
-    const PointFan fan = fans.Get(this->Pair, point);
+    const PointFan fan = this->Fans.Get(this->Pair, point);
     const int first = fan.Triangles.front();
     const int last = fan.Triangles.back();
     const int next = this->Pair.Triangles[first][NextCorner(this->Pair.GetCorner(first, point))];
@@ -278,8 +271,8 @@ void Solver::FindBoundary()
 BendingNode Solver::GetTemplateNode(int triangle, const TriangleCut& cut, int node) const
 {
   return { {},
-    this->Affine[triangle] +
-      this->Template.GetGradient(cut, this->Affine[triangle], triangle, node) };
+    this->Template.GetAffine(triangle) +
+      this->Template.GetGradient(cut, this->Template.GetAffine(triangle), triangle, node) };
 }
 
 //------------------------------------------------------------------------------
@@ -334,7 +327,7 @@ void Solver::Build()
       }
       else
       {
-        element.Reference = this->Affine[t].Determinant();
+        element.Reference = this->Template.GetAffine(t).Determinant();
         element.Enough = this->Options.CertificateMargin * element.Reference;
       }
       this->Elements.push_back(element);
@@ -388,7 +381,7 @@ void Solver::Build()
       }
       else
       {
-        const CubicElement own = this->Template.GetElement(cut, this->Affine[t], t, e);
+        const CubicElement own = this->Template.GetElement(cut, this->Template.GetAffine(t), t, e);
         const DeterminantCoefficients c = GetDeterminantCoefficients(own);
         element.Reference = *std::min_element(c.begin(), c.end());
         element.Enough = this->Options.CertificateMargin * element.Reference;
@@ -411,7 +404,7 @@ CubicElement Solver::GetElement(const Element& element, bool aim) const
 {
   const int t = element.Triangle;
   CubicElement result;
-  result.Affine = this->Affine[t];
+  result.Affine = this->Template.GetAffine(t);
   if (element.Number < 0)
   {
     result.Points = this->Pair.GetSourceCorners(t);
@@ -430,7 +423,7 @@ CubicElement Solver::GetElement(const Element& element, bool aim) const
     const Node& node = this->Nodes[element.Nodes[i]];
     const BendingNode& data = aim ? node.Aim : node.Now;
     result.Values[i] = data.Value;
-    result.Gradients[i] = data.Gradient - this->Affine[t];
+    result.Gradients[i] = data.Gradient - this->Template.GetAffine(t);
   }
   if (element.Number >= 0)
   {
@@ -461,7 +454,7 @@ NodeForms Solver::MakeEdgeForms(int number)
   const TriangleCut cut = this->Template.GetCut(t);
   const double length = cut.Lengths[k];
   const Vector2 along = cut.Along[k];
-  const Vector2 slope = this->Affine[t] * along;
+  const Vector2 slope = this->Template.GetAffine(t) * along;
   // The span on which the map along the edge is one cubic: from end to end, or from the edge point
   // of an end where the template stays.
   double start = 0.0;
@@ -590,7 +583,7 @@ void Solver::MakeForms()
 //------------------------------------------------------------------------------
 void Solver::GetVector(const Element& element, bool aim, std::array<Vector2, 9>& v) const
 {
-  const Matrix2& affine = this->Affine[element.Triangle];
+  const Matrix2& affine = this->Template.GetAffine(element.Triangle);
   for (int i = 0; i < 3; ++i)
   {
     const Node& node = this->Nodes[element.Nodes[i]];
@@ -618,7 +611,7 @@ void Solver::Assemble()
     BendingMatrix matrix = element.Bending;
     std::array<Vector2, 9> constants;
     const LinearForm* forms[9];
-    const Matrix2& affine = this->Affine[element.Triangle];
+    const Matrix2& affine = this->Template.GetAffine(element.Triangle);
     for (int i = 0; i < 3; ++i)
     {
       const NodeForms& node = this->Forms[element.Nodes[i]];
@@ -880,9 +873,15 @@ bool Solver::SolveWhole(BendingSolution& solution)
 {
   const int points = this->Pair.GetNumberOfPoints();
   const int triangles = this->Pair.GetNumberOfTriangles();
-  std::vector<Matrix2> gradients(static_cast<std::size_t>(points));
+  const auto count = static_cast<std::size_t>(points);
+  if (std::find(this->Fans.Touching.begin(), this->Fans.Touching.end(), 1) !=
+    this->Fans.Touching.end())
+  {
+    return false;
+  }
+  LargeArray<Matrix2> gradients(count);
   // The directions in which a derivative is unknown: both, one along a straight boundary, or none.
-  std::vector<std::uint8_t> isBoundary(static_cast<std::size_t>(points), 0);
+  std::vector<std::uint8_t> isBoundary(count, 0);
   for (int point = 0; point < points; ++point)
   {
     gradients[point] = this->Template.GetDerivative(point);
@@ -910,44 +909,38 @@ bool Solver::SolveWhole(BendingSolution& solution)
   const auto times = [](const Matrix2& m, const Block& b) {
     return Matrix2{ b[0] * m.ImageOfX + b[1] * m.ImageOfY, b[2] * m.ImageOfX + b[3] * m.ImageOfY };
   };
-  std::vector<std::int32_t> first(static_cast<std::size_t>(points) + 1, 0);
-  const PointFans fans(this->Pair);
-  const auto visitNeighbors = [&](int point, auto&& visit) {
-    visit(point);
-    int last = -1;
-    const bool closed = fans.ForEach(this->Pair, point, [&](int t, int c) {
-      visit(this->Pair.Triangles[t][NextCorner(c)]);
-      last = this->Pair.Triangles[t][PreviousCorner(c)];
-    });
-    if (!closed && last >= 0)
-    {
-      visit(last);
-    }
-  };
-  for (int point = 0; point < points; ++point)
+  // A point has as many neighbors as triangles, one more on the boundary, and itself.
+  std::vector<std::int32_t> first(count + 1, 0);
+  for (const std::array<std::int32_t, 3>& corners : this->Pair.Triangles)
   {
-    if (fans.Touching[point] != 0)
+    for (const std::int32_t point : corners)
     {
-      return false;
+      ++first[point + 1];
     }
-    int count = 0;
-    visitNeighbors(point, [&count](int) { ++count; });
-    first[point + 1] = first[point] + count;
   }
-  std::vector<std::int32_t> columns(static_cast<std::size_t>(first.back()));
-  std::vector<Block> blocks(columns.size(), Block{});
-  std::vector<Matrix2> residual(static_cast<std::size_t>(points), Matrix2{});
   for (int point = 0; point < points; ++point)
   {
-    int at = first[point];
-    visitNeighbors(point, [&](int neighbor) { columns[at++] = neighbor; });
+    const std::int32_t t = this->Fans.First[point];
+    const bool isOpen =
+      t >= 0 && this->Pair.Neighbors[t][PreviousCorner(this->Pair.GetCorner(t, point))] < 0;
+    first[point + 1] += first[point] + (isOpen ? 2 : 1);
+  }
+  // The point itself comes first; the others are entered as triangles have them.
+  constexpr std::int32_t none = -1;
+  LargeArray<std::int32_t> columns(static_cast<std::size_t>(first.back()), none);
+  LargeArray<Block> blocks(columns.size(), Block{});
+  LargeArray<Matrix2> residual(count, Matrix2{});
+  for (int point = 0; point < points; ++point)
+  {
+    columns[first[point]] = point;
   }
   const auto find = [&](int row, int column) -> Block& {
     int at = first[row];
-    while (columns[at] != column)
+    while (columns[at] != column && columns[at] != none)
     {
       ++at;
     }
+    columns[at] = column;
     return blocks[at];
   };
   double energy = 0.0;
@@ -958,7 +951,7 @@ bool Solver::SolveWhole(BendingSolution& solution)
     std::array<Matrix2, 3> own;
     for (int i = 0; i < 3; ++i)
     {
-      own[i] = gradients[corners[i]] - this->Affine[t];
+      own[i] = gradients[corners[i]] - this->Template.GetAffine(t);
     }
     for (int i = 0; i < 3; ++i)
     {
@@ -982,11 +975,11 @@ bool Solver::SolveWhole(BendingSolution& solution)
     }
   }
   // The inverses of the diagonal blocks precondition.
-  std::vector<Block> inverses(static_cast<std::size_t>(points));
+  LargeArray<Block> inverses(count, Block{});
   for (int point = 0; point < points; ++point)
   {
     const Block& b = blocks[first[point]];
-    if (fans.First[point] < 0)
+    if (this->Fans.First[point] < 0)
     {
       continue;
     }
@@ -1000,67 +993,72 @@ bool Solver::SolveWhole(BendingSolution& solution)
     const double s = 1.0 / (b[0] * b[3] - b[1] * b[2]);
     inverses[point] = { s * b[3], -s * b[1], -s * b[2], s * b[0] };
   }
-  // Both components at once, each with its own steps. Sums in a fixed order.
-  const auto dot = [&](const std::vector<Matrix2>& a, const std::vector<Matrix2>& b) {
-    Vector2 sum;
-    for (int point = 0; point < points; ++point)
-    {
-      sum.x +=
-        a[point].ImageOfX.x * b[point].ImageOfX.x + a[point].ImageOfY.x * b[point].ImageOfY.x;
-      sum.y +=
-        a[point].ImageOfX.y * b[point].ImageOfX.y + a[point].ImageOfY.y * b[point].ImageOfY.y;
-    }
-    return sum;
+  // Both components at once, each with its own steps. Sums in a fixed order, by blocks of points.
+  constexpr int blockSize = 1024;
+  std::vector<Vector2> sums(static_cast<std::size_t>((points + blockSize - 1) / blockSize));
+  const auto sumForAll = [&](auto&& body) {
+    this->Parallel(
+      static_cast<std::int64_t>(sums.size()), [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t block = begin; block < end; ++block)
+        {
+          Vector2 sum;
+          const int start = static_cast<int>(block) * blockSize;
+          for (int point = start; point < std::min(points, start + blockSize); ++point)
+          {
+            body(point, sum);
+          }
+          sums[static_cast<std::size_t>(block)] = sum;
+        }
+      });
+    return std::accumulate(sums.begin(), sums.end(), Vector2{});
+  };
+  const auto addProduct = [](Vector2& sum, const Matrix2& a, const Matrix2& b) {
+    sum.x += a.ImageOfX.x * b.ImageOfX.x + a.ImageOfY.x * b.ImageOfY.x;
+    sum.y += a.ImageOfX.y * b.ImageOfX.y + a.ImageOfY.y * b.ImageOfY.y;
   };
   const auto scaled = [](const Vector2& s, const Matrix2& m) {
     return Matrix2{ { s.x * m.ImageOfX.x, s.y * m.ImageOfX.y },
       { s.x * m.ImageOfY.x, s.y * m.ImageOfY.y } };
   };
-  std::vector<Matrix2> step(residual.size());
-  std::vector<Matrix2> image(residual.size());
-  std::vector<Matrix2> conditioned(residual.size());
-  const auto forAll = [&](auto&& body) {
-    this->Parallel(points, [&body](std::int64_t begin, std::int64_t end) {
-      for (int point = static_cast<int>(begin); point < end; ++point)
-      {
-        body(point);
-      }
-    });
-  };
-  forAll([&](int point) { conditioned[point] = times(residual[point], inverses[point]); });
-  step = conditioned;
-  Vector2 product = dot(residual, conditioned);
+  LargeArray<Matrix2> step(count);
+  LargeArray<Matrix2> image(count);
+  Vector2 product = sumForAll([&](int point, Vector2& sum) {
+    step[point] = times(residual[point], inverses[point]);
+    addProduct(sum, residual[point], step[point]);
+  });
   const Vector2 start = product;
   constexpr int mostSteps = 1000;
-  constexpr double enough = 1e-24;
+  // Of the energy that is still too much, which is a square: derivatives are off by its root.
+  constexpr double enough = 1e-20;
   for (int n = 0; n < mostSteps && (product.x > enough * start.x || product.y > enough * start.y);
        ++n)
   {
-    forAll([&](int point) {
-      Matrix2 sum{};
+    const Vector2 curvature = sumForAll([&](int point, Vector2& sum) {
+      Matrix2 total{};
       for (int at = first[point]; at < first[point + 1]; ++at)
       {
-        sum = sum + times(step[columns[at]], blocks[at]);
+        total = total + times(step[columns[at]], blocks[at]);
       }
-      image[point] = project(point, sum);
+      image[point] = project(point, total);
+      addProduct(sum, step[point], image[point]);
     });
-    const Vector2 curvature = dot(step, image);
     const Vector2 share{ curvature.x > 0.0 ? product.x / curvature.x : 0.0,
       curvature.y > 0.0 ? product.y / curvature.y : 0.0 };
-    forAll([&](int point) {
+    energy -= Dot(share, product);
+    const Vector2 next = sumForAll([&](int point, Vector2& sum) {
       gradients[point] = gradients[point] + scaled(share, step[point]);
       residual[point] = residual[point] - scaled(share, image[point]);
-      conditioned[point] = times(residual[point], inverses[point]);
+      addProduct(sum, residual[point], times(residual[point], inverses[point]));
     });
-    energy -= Dot(share, product);
-    const Vector2 next = dot(residual, conditioned);
     const Vector2 turn{ product.x > 0.0 ? next.x / product.x : 0.0,
       product.y > 0.0 ? next.y / product.y : 0.0 };
     product = next;
-    forAll([&](int point) { step[point] = conditioned[point] + scaled(turn, step[point]); });
+    sumForAll([&](int point, Vector2&) {
+      step[point] = times(residual[point], inverses[point]) + scaled(turn, step[point]);
+    });
   }
   solution.Cuts.assign(static_cast<std::size_t>(triangles), -1);
-  solution.Points.resize(static_cast<std::size_t>(points));
+  solution.Points.resize(count);
   for (int point = 0; point < points; ++point)
   {
     solution.Points[point] = { {}, gradients[point] };
@@ -1069,8 +1067,9 @@ bool Solver::SolveWhole(BendingSolution& solution)
   this->Parallel(triangles, [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {
-      const CubicElement element = solution.GetWhole(this->Pair, this->Affine[t], t);
-      const double least = this->Options.CertificateMargin * this->Affine[t].Determinant();
+      const CubicElement element = solution.GetWhole(this->Pair, this->Template.GetAffine(t), t);
+      const double least =
+        this->Options.CertificateMargin * this->Template.GetAffine(t).Determinant();
       failed[t] = !(LeastDeterminant(element, least, 4) >= least) ||
         (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
           !(GreatestDisplacement(element) <= this->Options.MaximumDeviation));

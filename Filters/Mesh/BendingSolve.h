@@ -8,6 +8,7 @@
 #define homeomorphism_BendingSolve_h
 
 #include "Mesh/CubicTemplate.h"
+#include "Mesh/LargeArray.h"
 
 #include <array>
 #include <cstdint>
@@ -56,7 +57,7 @@ struct BendingSolution
   /// Of each triangle, where its nodes are in CutNodes, or -1.
   std::vector<std::int32_t> Cuts;
   /// Of whole triangles, relative to corner 0; empty if all triangles are cut.
-  std::vector<CubicNet> Nets;
+  LargeArray<CubicNet> Nets;
   /// Nodes 3 to 14 of a TriangleCut.
   std::vector<std::array<BendingNode, 12>> CutNodes;
   BendingStatistics Statistics;

@@ -22,6 +22,20 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
   this->Numbers.assign(count, -1);
   // Parts that touch in a point may be mirrored independently: then the point is taken twice.
   std::array<std::vector<std::int32_t>, 2> pointNumbers;
+  std::int32_t greatest = -1;
+  for (TriangleIndex t = 0; t < count; ++t)
+  {
+    const Triangulation::Corners& corners = topology.GetCorners(t);
+    greatest = std::max({ greatest, corners[0], corners[1], corners[2] });
+  }
+  const auto points = static_cast<std::size_t>(greatest) + 1;
+  planar.Source.reserve(points);
+  planar.Target.reserve(points);
+  planar.Triangles.reserve(static_cast<std::size_t>(count));
+  this->Points.reserve(points);
+  this->Triangles.reserve(static_cast<std::size_t>(count));
+  this->Mirrored.reserve(static_cast<std::size_t>(count));
+  this->Reversed.reserve(static_cast<std::size_t>(count));
   for (TriangleIndex t = 0; t < count; ++t)
   {
     if (topology.IsMasked(t))
@@ -38,9 +52,9 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     std::vector<std::int32_t>& numbers = pointNumbers[mirrored ? 1 : 0];
     for (std::int32_t& corner : corners)
     {
-      if (static_cast<std::size_t>(corner) >= numbers.size())
+      if (numbers.empty())
       {
-        numbers.resize(static_cast<std::size_t>(corner) + 1, -1);
+        numbers.assign(points, -1);
       }
       std::int32_t& number = numbers[static_cast<std::size_t>(corner)];
       if (number < 0)

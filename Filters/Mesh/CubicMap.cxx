@@ -257,7 +257,7 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
   if (this->Bending && std::count(this->Bending->Cuts.begin(), this->Bending->Cuts.end(), -1) > 0)
   {
     const PlanarPair& fine = this->GetFine();
-    this->Bending->Nets.resize(fine.Triangles.size());
+    this->Bending->Nets = LargeArray<CubicNet>(fine.Triangles.size());
     parallelFor(fine.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
       for (int t = static_cast<int>(begin); t < end; ++t)
       {

@@ -252,12 +252,13 @@ CubicTemplate::CubicTemplate(
   const PlanarPair& pair, const CubicTemplateOptions& options, const ParallelFor& parallelFor)
   : Pair(pair)
   , Radii(pair.Source.size(), 0.0)
-  , Derivatives(pair.Source.size())
+  , Derivatives(pair.Source.size(), Matrix2{})
   , Kinds(pair.Source.size(), VertexKind::Differentiable)
   , Boundary(pair.Source.size(), 0)
   , Affines(pair.Triangles.size())
   , Heights(pair.Triangles.size())
-  , Certificates(pair.Triangles.size(), 0.0F)
+  , Middles(pair.Triangles.size())
+  , Certificates(pair.Triangles.size())
 {
   const PointFans fans(pair);
   const std::int64_t points = pair.GetNumberOfPoints();
@@ -275,11 +276,12 @@ CubicTemplate::CubicTemplate(
       this->Boundary[point] = closed ? 0 : 1;
     }
   });
-  std::vector<Bounds> bounds(pair.Triangles.size());
+  LargeArray<Bounds> bounds(pair.Triangles.size());
   parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {
       this->Affines[t] = pair.GetAffine(t);
+      bounds[t] = {};
       bounds[t].Determinant = this->Affines[t].Determinant();
     }
   });
@@ -346,15 +348,11 @@ CubicTemplate::CubicTemplate(
     SortUnique(next);
     changed = std::move(next);
   }
-  for (std::size_t t = 0; t < bounds.size(); ++t)
-  {
-    const std::array<float, 3>& corners = bounds[t].Corners;
-    this->Certificates[t] = std::min({ corners[0], corners[1], corners[2] });
-  }
-  this->Middles.resize(bounds.size());
   parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {
+      const std::array<float, 3>& corners = bounds[t].Corners;
+      this->Certificates[t] = std::min({ corners[0], corners[1], corners[2] });
       this->SetMiddle(t);
     }
   });
@@ -368,7 +366,7 @@ CubicTemplate::CubicTemplate(
 }
 
 //------------------------------------------------------------------------------
-void CubicTemplate::SetHeights(int triangle, double maximumDeviation, std::vector<Bounds>& bounds)
+void CubicTemplate::SetHeights(int triangle, double maximumDeviation, LargeArray<Bounds>& bounds)
 {
   const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(triangle);
   const std::array<std::int32_t, 3>& points = this->Pair.Triangles[triangle];
@@ -447,7 +445,7 @@ void CubicTemplate::SetMiddle(int triangle)
 }
 
 //------------------------------------------------------------------------------
-bool CubicTemplate::TakeMean(int point, const PointFans& fans, std::vector<Bounds>& bounds)
+bool CubicTemplate::TakeMean(int point, const PointFans& fans, LargeArray<Bounds>& bounds)
 {
   // The least bound that is taken without looking closer, and the greatest condition number of a
   // derivative with which rounding is certainly far below what is added for it.

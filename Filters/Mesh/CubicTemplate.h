@@ -8,6 +8,7 @@
 #ifndef homeomorphism_CubicTemplate_h
 #define homeomorphism_CubicTemplate_h
 
+#include "Mesh/LargeArray.h"
 #include "Mesh/PlanarPair.h"
 #include "Mesh/VertexGradient.h"
 
@@ -174,11 +175,11 @@ private:
     std::array<float, 3> Corners{};
   };
 
-  void SetHeights(int triangle, double maximumDeviation, std::vector<Bounds>& bounds);
+  void SetHeights(int triangle, double maximumDeviation, LargeArray<Bounds>& bounds);
   void SetMiddle(int triangle);
   /// Takes the mean derivative at an inner point if that certifies its corners, which is so where
   /// the derivatives of the triangles differ little.
-  bool TakeMean(int point, const PointFans& fans, std::vector<Bounds>& bounds);
+  bool TakeMean(int point, const PointFans& fans, LargeArray<Bounds>& bounds);
   /// Sets a point's derivative and kind. Returns what it needs if it is not differentiable.
   std::unique_ptr<Exception> FindDerivative(int point, const PointFans& fans);
   /// A bound of the distance from the piecewise linear map in the corners at a point.
@@ -187,16 +188,16 @@ private:
     const std::function<void(const CubicElement&, double factor)>& visit) const;
 
   const PlanarPair& Pair;
-  std::vector<double> Radii;
-  std::vector<Matrix2> Derivatives;
-  std::vector<VertexKind> Kinds;
+  LargeArray<double> Radii;
+  LargeArray<Matrix2> Derivatives;
+  LargeArray<VertexKind> Kinds;
   /// 1 on the boundary, 2 where it is straight.
-  std::vector<std::uint8_t> Boundary;
-  std::vector<Matrix2> Affines;
-  std::vector<std::array<double, 3>> Heights;
-  std::vector<MiddleBounds> Middles;
+  LargeArray<std::uint8_t> Boundary;
+  LargeArray<Matrix2> Affines;
+  LargeArray<std::array<double, 3>> Heights;
+  LargeArray<MiddleBounds> Middles;
   /// Of triangles that are certified by bounds, and 0.
-  std::vector<float> Certificates;
+  LargeArray<float> Certificates;
   /// Ascending by point.
   std::vector<Exception> Exceptions;
 };
