@@ -8,6 +8,7 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -1063,21 +1064,31 @@ bool Solver::SolveWhole(BendingSolution& solution)
   {
     solution.Points[point] = { {}, gradients[point] };
   }
-  std::vector<std::uint8_t> failed(static_cast<std::size_t>(triangles), 0);
+  solution.Nets = LargeArray<CubicNet>(static_cast<std::size_t>(triangles));
+  solution.Certificates.resize(static_cast<std::size_t>(triangles));
+  std::atomic<bool> isCertified{ true };
   this->Parallel(triangles, [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {
-      const CubicElement element = solution.GetWhole(this->Pair, this->Template.GetAffine(t), t);
-      const double least =
-        this->Options.CertificateMargin * this->Template.GetAffine(t).Determinant();
-      failed[t] = !(LeastDeterminant(element, least, 4) >= least) ||
+      const Matrix2& affine = this->Template.GetAffine(t);
+      const CubicElement element = solution.GetWhole(this->Pair, affine, t);
+      const double determinant = affine.Determinant();
+      const double enough = this->Options.CertificateMargin * determinant;
+      const double least = LeastDeterminant(element, enough, 4);
+      if (!(least >= enough) ||
         (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
-          !(GreatestDisplacement(element) <= this->Options.MaximumDeviation));
+          !(GreatestDisplacement(element) <= this->Options.MaximumDeviation)))
+      {
+        isCertified = false;
+        return;
+      }
+      solution.Nets[t] = CubicNet(element);
+      solution.Certificates[t] = least / determinant;
     }
   });
   solution.Statistics.Rounds = 1;
   solution.Statistics.Energy = energy;
-  return std::none_of(failed.begin(), failed.end(), [](std::uint8_t f) { return f != 0; });
+  return isCertified;
 }
 
 //------------------------------------------------------------------------------

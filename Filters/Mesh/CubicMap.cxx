@@ -254,7 +254,13 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
       this->Bending.reset();
     }
   }
-  if (this->Bending && std::count(this->Bending->Cuts.begin(), this->Bending->Cuts.end(), -1) > 0)
+  if (!this->Bending)
+  {
+    this->Template->FindMiddles(parallelFor);
+  }
+  else if (this->Bending->Nets.empty() &&
+    std::find(this->Bending->Cuts.begin(), this->Bending->Cuts.end(), -1) !=
+      this->Bending->Cuts.end())
   {
     const PlanarPair& fine = this->GetFine();
     this->Bending->Nets = LargeArray<CubicNet>(fine.Triangles.size());
@@ -275,7 +281,15 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
     coordinates = std::max(coordinates, MaxNorm(target));
   }
   this->ResidualTolerance = ResidualUlps * std::numeric_limits<double>::epsilon() * coordinates;
-  this->Certificates.assign(this->Pair.Triangles.size(), 0.0);
+  const bool isKnown = this->Bending && !this->Bending->Certificates.empty();
+  if (isKnown)
+  {
+    this->Certificates = std::move(this->Bending->Certificates);
+  }
+  else
+  {
+    this->Certificates.assign(this->Pair.Triangles.size(), 0.0);
+  }
   std::vector<std::int64_t> elements(this->Pair.Triangles.size(), 0);
   parallelFor(this->Pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
@@ -290,6 +304,12 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
       }
       if (!isPositive)
       {
+        this->Certificates[t] = 0.0;
+        continue;
+      }
+      if (isKnown)
+      {
+        elements[t] = 1;
         continue;
       }
       if (!this->Bending)

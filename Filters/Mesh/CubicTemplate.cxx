@@ -257,7 +257,6 @@ CubicTemplate::CubicTemplate(
   , Boundary(pair.Source.size(), 0)
   , Affines(pair.Triangles.size())
   , Heights(pair.Triangles.size())
-  , Middles(pair.Triangles.size())
   , Certificates(pair.Triangles.size())
 {
   const PointFans fans(pair);
@@ -353,7 +352,6 @@ CubicTemplate::CubicTemplate(
     {
       const std::array<float, 3>& corners = bounds[t].Corners;
       this->Certificates[t] = std::min({ corners[0], corners[1], corners[2] });
-      this->SetMiddle(t);
     }
   });
   for (std::unique_ptr<Exception>& exception : exceptions)
@@ -363,6 +361,18 @@ CubicTemplate::CubicTemplate(
       this->Exceptions.push_back(std::move(*exception));
     }
   }
+}
+
+//------------------------------------------------------------------------------
+void CubicTemplate::FindMiddles(const ParallelFor& parallelFor)
+{
+  this->Middles = LargeArray<MiddleBounds>(this->Pair.Triangles.size());
+  parallelFor(this->Pair.GetNumberOfTriangles(), [this](std::int64_t begin, std::int64_t end) {
+    for (int t = static_cast<int>(begin); t < end; ++t)
+    {
+      this->SetMiddle(t);
+    }
+  });
 }
 
 //------------------------------------------------------------------------------

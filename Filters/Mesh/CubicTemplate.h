@@ -129,6 +129,8 @@ public:
     std::array<double, 3> Least;
     std::array<double, 3> Greatest;
   };
+  /// Must have been called before GetMiddle.
+  void FindMiddles(const ParallelFor& parallelFor = SerialFor);
   const MiddleBounds& GetMiddle(int triangle) const { return this->Middles[triangle]; }
 
   /// The element, relative to the cut's GetOrigin(element) in the source and in the target. Not for
