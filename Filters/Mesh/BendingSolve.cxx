@@ -1073,9 +1073,9 @@ bool Solver::SolveWhole(BendingSolution& solution)
       const Matrix2& affine = this->Template.GetAffine(t);
       const CubicElement element = solution.GetWhole(this->Pair, affine, t);
       const double determinant = affine.Determinant();
-      const double enough = this->Options.CertificateMargin * determinant;
-      const double least = LeastDeterminant(element, enough, 4);
-      if (!(least >= enough) ||
+      const double margin = this->Options.CertificateMargin * determinant;
+      const double least = LeastDeterminant(element, margin, 4);
+      if (!(least >= margin) ||
         (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
           !(GreatestDisplacement(element) <= this->Options.MaximumDeviation)))
       {

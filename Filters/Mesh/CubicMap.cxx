@@ -589,18 +589,52 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
     {
       arrays.L[0][i] = 1.0;
       arrays.L[1][i] = arrays.L[2][i] = arrays.X[i] = arrays.Y[i] = 0.0;
-      arrays.Residual[i] = arrays.Move[i] = 0.0;
+      arrays.Residual[i] = arrays.Move[i] = arrays.SecondOrder[i] = 0.0;
       arrays.States[i] = CubicWalkers::Failed;
     }
   };
+  const auto enter = [&](int i, int triangle, const Vector2& point) {
+    // Newton's method mends the rounding.
+    const std::array<Vector2, 3> corners = pair.GetSourceCorners(triangle);
+    const double scale = 1.0 / Cross(corners[1], corners[2]);
+    const double first = scale * Cross(point, corners[2]);
+    const double second = scale * Cross(corners[1], point);
+    const int number = walkers.Numbers[i];
+    const Vector2 image =
+      Vector2{ batch.X[number], batch.Y[number] } - pair.Target[pair.Triangles[triangle][0]];
+    walkers.Triangles[i] = triangle;
+    arrays.L[0][i] = 1.0 - first - second;
+    arrays.L[1][i] = first;
+    arrays.L[2][i] = second;
+    arrays.X[i] = image.x;
+    arrays.Y[i] = image.y;
+    arrays.Move[i] = arrays.SecondOrder[i] = 0.0;
+    arrays.States[i] = CubicWalkers::OnTheWay;
+  };
   fill(walkers.Count);
-  ForEachRun(walkers.Triangles, walkers.Count,
-    [&](int begin, int end, int t) { StartByNet(this->Bending->Nets[t], begin, end, arrays); });
+  ForEachRun(walkers.Triangles, walkers.Count, [&](int begin, int end, int t) {
+    StartByNet(this->Bending->Nets[t], begin, end, arrays);
+    const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
+    for (int i = begin; i < end; ++i)
+    {
+      // Those that start outside do so in the triangle that has most of their neighbors in a row.
+      if (arrays.States[i] == CubicWalkers::Left)
+      {
+        int next = t;
+        Vector2 point = arrays.L[1][i] * corners[1] + arrays.L[2][i] * corners[2];
+        this->Walk(next, point);
+        if (this->IsWhole(next))
+        {
+          enter(i, next, point);
+        }
+      }
+    }
+  });
   for (int round = 0; walkers.Count > 0; ++round)
   {
     int left = 0;
     ForEachRun(walkers.Triangles, walkers.Count, [&](int begin, int end, int t) {
-      NewtonByNet(this->Bending->Nets[t], this->ResidualTolerance, begin, end, arrays);
+      WalkByNet(this->Bending->Nets[t], this->ResidualTolerance, begin, end, arrays);
       const Vector2 origin = pair.Source[pair.Triangles[t][0]];
       const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
       for (int i = begin; i < end; ++i)
@@ -622,20 +656,9 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
           continue;
         }
         // Those that go on take the places of earlier ones.
-        const Barycentric to = ToBarycentric(pair.GetSourceCorners(next), point);
-        const Vector2 image =
-          Vector2{ batch.X[number], batch.Y[number] } - pair.Target[pair.Triangles[next][0]];
-        walkers.Triangles[left] = next;
         walkers.Numbers[left] = number;
-        for (int k = 0; k < 3; ++k)
-        {
-          arrays.L[k][left] = to[k];
-        }
-        arrays.X[left] = image.x;
-        arrays.Y[left] = image.y;
         arrays.Residual[left] = arrays.Residual[i];
-        arrays.Move[left] = 0.0;
-        arrays.States[left] = CubicWalkers::OnTheWay;
+        enter(left, next, point);
         ++left;
       }
     });
@@ -672,7 +695,7 @@ void CubicMap::FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const
         arrays.X[first + i] = batch.X[begin + i] - image.x;
         arrays.Y[first + i] = batch.Y[begin + i] - image.y;
         arrays.Residual[first + i] = std::numeric_limits<double>::infinity();
-        arrays.Move[first + i] = 0.0;
+        arrays.Move[first + i] = arrays.SecondOrder[first + i] = 0.0;
       }
       walkers.Count += count;
       return;

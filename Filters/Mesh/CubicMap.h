@@ -130,7 +130,7 @@ private:
   int FindChild(int triangle, Barycentric& l) const;
   void MoveToChildren(CubicBatch& batch) const;
   struct Walkers;
-  /// Newton's method in whole triangles, as far as it goes; the rest is left to FindByWalking.
+  /// Chebyshev's method in whole triangles, as far as it goes; the rest is left to FindByWalking.
   void FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& prepared) const;
   /// Finds the preimage that is near a point relative to corner 0 of a triangle of the refined
   /// pair; both are changed.

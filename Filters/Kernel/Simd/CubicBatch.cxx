@@ -4,6 +4,7 @@
 #include "CubicBatch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace homeomorphism
@@ -166,15 +167,16 @@ void StartByNet(const CubicNet& net, int begin, int end, CubicWalkers& walkers)
   }
 }
 
-// One step of all that are on the way. Returns how many still are.
-HOMEOMORPHISM_FOR_WIDE_VECTORS
-static std::int64_t StepByNet(
-  const CubicNet& net, double tolerance, int begin, int stop, CubicWalkers& walkers)
+namespace
 {
-  const CubicNet::Component netX = net.GetX();
-  const CubicNet::Component netY = net.GetY();
+
+// One step of Chebyshev's method of a vector of walkers: Newton's, less what second derivatives
+// make of it.
+HOMEOMORPHISM_ALWAYS_INLINE void StepVector(const CubicNet::Component& netX,
+  const CubicNet::Component& netY, double tolerance, int begin, CubicWalkers& walkers)
+{
   HOMEOMORPHISM_SIMD
-  for (int i = begin; i < stop; ++i)
+  for (int i = begin; i < begin + WidestVector; ++i)
   {
     const double l0 = walkers.L[0][i];
     const double l1 = walkers.L[1][i];
@@ -195,16 +197,18 @@ static std::int64_t StepByNet(
     const auto end = [is0, is1, is2](double of0, double of1, double of2) {
       return Choose(is1, of0, is2, of1, is0, of2);
     };
-    const double u = start(l0, l1, l2) - least;
-    const double v = end(l0, l1, l2) - least;
-    const double w = 3.0 * least;
-    const double uu = u * u;
-    const double uv = u * v;
-    const double vv = v * v;
-    const double uw = u * w;
-    const double vw = v * w;
-    const double ww = w * w;
-    const auto derive = [&](const CubicNet::Component& b, double& byU, double& byV, double& byW) {
+    const double atU = start(l0, l1, l2) - least;
+    const double atV = end(l0, l1, l2) - least;
+    const double atW = 3.0 * least;
+    // The derivatives by u, v and w: quadratic forms.
+    const auto derive = [&](const CubicNet::Component& b, double u, double v, double w, double& byU,
+                          double& byV, double& byW) {
+      const double uu = u * u;
+      const double uv = u * v;
+      const double vv = v * v;
+      const double uw = u * w;
+      const double vw = v * w;
+      const double ww = w * w;
       const double next = start(b.Next[0], b.Next[1], b.Next[2]);
       const double previous = end(b.Previous[0], b.Previous[1], b.Previous[2]);
       const double middle = opposite(b.Middle[0], b.Middle[1], b.Middle[2]);
@@ -225,18 +229,46 @@ static std::int64_t StepByNet(
     double yU;
     double yV;
     double yW;
-    derive(netX, xU, xV, xW);
-    derive(netY, yU, yV, yW);
+    derive(netX, atU, atV, atW, xU, xV, xW);
+    derive(netY, atU, atV, atW, yU, yV, yW);
     constexpr double third = 1.0 / 3.0;
-    const double residualX = walkers.X[i] - third * (u * xU + v * xV + w * xW);
-    const double residualY = walkers.Y[i] - third * (u * yU + v * yV + w * yW);
+    const double residualX = walkers.X[i] - third * (atU * xU + atV * xV + atW * xW);
+    const double residualY = walkers.Y[i] - third * (atU * yU + atV * yV + atW * yW);
     const double firstX = xV - xU;
     const double firstY = yV - yU;
     const double secondX = xW - xU;
     const double secondY = yW - yU;
     const double scale = 1.0 / (firstX * secondY - firstY * secondX);
-    const double moveV = scale * (residualX * secondY - residualY * secondX);
-    const double moveW = scale * (firstX * residualY - firstY * residualX);
+    const double newtonV = scale * (residualX * secondY - residualY * secondX);
+    const double newtonW = scale * (firstX * residualY - firstY * residualX);
+    const double newtonU = -newtonV - newtonW;
+    const auto greatest = [](double p, double q, double r) {
+      const double absP = std::abs(p);
+      const double absQ = std::abs(q);
+      const double absR = std::abs(r);
+      const double greater = absQ > absP ? absQ : absP;
+      return absR > greater ? absR : greater;
+    };
+    const auto measure = [&](double byV, double byW) {
+      return greatest(third * byW, third * byW - byV - byW, third * byW + byV);
+    };
+    const double length = measure(newtonV, newtonW);
+    // Of second order in the move d, f misses by the sum of l_c times its derivative by l_c at d,
+    // and of third order by f at d.
+    derive(netX, newtonU, newtonV, newtonW, xU, xV, xW);
+    derive(netY, newtonU, newtonV, newtonW, yU, yV, yW);
+    const double missX = atU * xU + atV * xV + atW * xW;
+    const double missY = atU * yU + atV * yV + atW * yW;
+    const double cubeX = third * (newtonU * xU + newtonV * xV + newtonW * xW);
+    const double cubeY = third * (newtonU * yU + newtonV * yV + newtonW * yW);
+    const double turnV = scale * (missX * secondY - missY * secondX);
+    const double turnW = scale * (firstX * missY - firstY * missX);
+    const double turn = measure(turnV, turnW);
+    const bool isSmall = turn <= 0.5 * length;
+    const double moveV = newtonV - (isSmall ? turnV : 0.0);
+    const double moveW = newtonW - (isSmall ? turnW : 0.0);
+    const double secondOrder = greatest(missX, missY, 0.0);
+    const double thirdOrder = 2.0 * secondOrder * turn + greatest(cubeX, cubeY, 0.0) * length;
     const double moveLeast = third * moveW;
     const double moveStart = moveLeast - moveV - moveW;
     const double moveEnd = moveLeast + moveV;
@@ -246,22 +278,25 @@ static std::int64_t StepByNet(
     const double absX = std::abs(residualX);
     const double absY = std::abs(residualY);
     const double now = absX > absY ? absX : absY;
-    const double absLeast = std::abs(moveLeast);
-    const double absStart = std::abs(moveStart);
-    const double absEnd = std::abs(moveEnd);
-    const double greater = absStart > absLeast ? absStart : absLeast;
-    const double length = absEnd > greater ? absEnd : greater;
     const std::int64_t state = walkers.States[i];
     const double lastResidual = walkers.Residual[i];
     const double lastMove = walkers.Move[i];
     const bool isActive = state == CubicWalkers::OnTheWay;
     const bool isWorse = !(now < lastResidual);
     const bool isThere = now <= 0.5 * tolerance;
-    // Within one element, the error of a step is about a constant times the square of its length,
-    // and so is the error of the next. That of the last step may be small by chance, if second
-    // derivatives change their sign along it: the next step must be short beside the element, too.
-    const bool isLast = (now * length * length <= 0.05 * tolerance * lastMove * lastMove) &
+    // Within one piece, little is left but terms of third order. They may be small by chance: the
+    // step must be short beside the element, too.
+    const bool isInPiece =
+      (atU - moveV - moveW >= 0.0) & (atV + moveV >= 0.0) & (atW + moveW >= 0.0);
+    const bool isLastInPiece = isInPiece & isSmall & (thirdOrder <= 0.05 * tolerance * length) &
+      (2.0 * MostBending * MostBending * now * length * length <= tolerance);
+    // Elsewhere second derivatives jump, and the error is a constant times the square of the
+    // length, about that of the last step.
+    const double known = walkers.SecondOrder[i];
+    const double missed = now > known ? now : known;
+    const bool isLastAcross = (missed * length * length <= 0.05 * tolerance * lastMove * lastMove) &
       (MostBending * now * length <= tolerance) & (lastMove > 0.0);
+    const bool isLast = isLastInPiece | isLastAcross;
     const double to0 = l0 + move0;
     const double to1 = l1 + move1;
     const double to2 = l2 + move2;
@@ -273,6 +308,7 @@ static std::int64_t StepByNet(
     walkers.L[2][i] = moves ? to2 : l2;
     walkers.Residual[i] = isActive & !isWorse ? now : lastResidual;
     walkers.Move[i] = moves ? length : lastMove;
+    walkers.SecondOrder[i] = moves ? secondOrder : known;
     const std::int64_t next = isOut ? std::int64_t(CubicWalkers::Left)
       : isLast                      ? std::int64_t(CubicWalkers::Found)
                                     : std::int64_t(CubicWalkers::OnTheWay);
@@ -281,25 +317,47 @@ static std::int64_t StepByNet(
                                          : next;
     walkers.States[i] = isActive ? outcome : state;
   }
-  std::int64_t onTheWay = 0;
-  for (int i = begin; i < stop; ++i)
-  {
-    onTheWay += walkers.States[i] == CubicWalkers::OnTheWay ? 1 : 0;
-  }
-  return onTheWay;
 }
 
-void NewtonByNet(const CubicNet& net, double tolerance, int begin, int end, CubicWalkers& walkers)
+} // anonymous namespace
+
+// One step of all that are on the way, vector by vector. Returns whether any still is.
+HOMEOMORPHISM_FOR_WIDE_VECTORS
+static bool StepByNet(
+  const CubicNet& net, double tolerance, int begin, int stop, CubicWalkers& walkers)
+{
+  const auto isAnyOnTheWay = [&walkers](int at) {
+    bool isAny = false;
+    for (int i = at; i < at + WidestVector; ++i)
+    {
+      isAny |= walkers.States[i] == CubicWalkers::OnTheWay;
+    }
+    return isAny;
+  };
+  bool isAny = false;
+  for (int at = begin; at < stop; at += WidestVector)
+  {
+    if (!isAnyOnTheWay(at))
+    {
+      continue;
+    }
+    StepVector(net.GetX(), net.GetY(), tolerance, at, walkers);
+    isAny |= isAnyOnTheWay(at);
+  }
+  return isAny;
+}
+
+void WalkByNet(const CubicNet& net, double tolerance, int begin, int end, CubicWalkers& walkers)
 {
   // Those after the last are not on the way for now.
   const int stop = begin + InWholeVectors(end - begin);
   std::int64_t states[WidestVector];
   std::copy(walkers.States + end, walkers.States + stop, states);
   std::fill(walkers.States + end, walkers.States + stop, CubicWalkers::Failed);
-  std::int64_t onTheWay = 1;
-  for (int step = 0; step < MostSteps && onTheWay > 0; ++step)
+  bool isAny = true;
+  for (int step = 0; step < MostSteps && isAny; ++step)
   {
-    onTheWay = StepByNet(net, tolerance, begin, stop, walkers);
+    isAny = StepByNet(net, tolerance, begin, stop, walkers);
   }
   std::copy(states, states + (stop - end), walkers.States + end);
 }

@@ -51,6 +51,8 @@ struct CubicWalkers
   /// long the last step was, 0 for none yet.
   double Residual[Size];
   double Move[Size];
+  /// By how much the last step would have missed without its part of second order, 0 for none yet.
+  double SecondOrder[Size];
   std::int64_t States[Size];
 };
 
@@ -58,10 +60,10 @@ struct CubicWalkers
 /// linear preimage to those of the inverse's cubic Hermite interpolant, unless it is far away.
 void StartByNet(const CubicNet& net, int begin, int end, CubicWalkers& walkers);
 
-/// Newton's method for walkers @a begin to @a end - 1, which are on the way in a net's element,
-/// until none is. Finds preimages whose images differ by at most @a tolerance. What becomes of a
-/// walker does not depend on others.
-void NewtonByNet(const CubicNet& net, double tolerance, int begin, int end, CubicWalkers& walkers);
+/// Chebyshev's method, which is Newton's with second derivatives, for walkers @a begin to @a end -
+/// 1, which are on the way in a net's element, until none is. Finds preimages whose images differ
+/// by at most @a tolerance. What becomes of a walker does not depend on others.
+void WalkByNet(const CubicNet& net, double tolerance, int begin, int end, CubicWalkers& walkers);
 
 } // namespace homeomorphism
 
