@@ -13,6 +13,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from vtkhomeomorphism import Homeomorphism, vtkJacobianContinuity, vtkTriangularCoordinates
 from vtkhomeomorphism.arrays import configure, make_mesh, points_of, update
+from vtkhomeomorphism.meshes import lists_of
 
 INK = "#212329"
 SYSTEMS = ("linear", "contour", "smooth")
@@ -79,8 +80,7 @@ def right_angle(axes, corner, first, second, size, color, width):
 
 def edges_of(triangles):
     """Each edge once, and how many triangles it has."""
-    triangles = numpy.asarray(triangles)
-    edges = numpy.sort(numpy.vstack([triangles[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
+    edges = numpy.sort(numpy.vstack([numpy.take(triangles, [k, (k + 1) % 3], axis=1) for k in range(3)]), axis=1)
     return numpy.unique(edges, axis=0, return_counts=True)
 
 
@@ -101,14 +101,13 @@ def close_up(axes, page, box, center, half_width, half_height):
 def curves_of(data, values=None):
     """The polylines of a data set, arrays of points, or of other values at the points."""
     values = points_of(data)[:, :2] if values is None else values
-    ids, offsets = (vtk_to_numpy(a) for a in (data.GetLines().GetConnectivityArray(), data.GetLines().GetOffsetsArray()))
-    return numpy.split(values[ids], offsets[1:-1])
+    return [values[ids] for ids in lists_of(data.GetLines())]
 
 
 class Coordinates:
     """The triangular coordinates of a triangulation: their lines by type and triangle, and concordant triangles."""
 
-    def __init__(self, points, triangles, system="contour", contours=1, rings=1, center="centroid", data=None):
+    def __init__(self, points, triangles, system="contour", contours=1, rings=1, center="centroid"):
         self.filter = vtkTriangularCoordinates()
         self.filter.SetInputData(make_mesh(numpy.asarray(points, float), numpy.asarray(triangles)))
         configure(self.filter, system, center=center, discordant_by_linear=True)
@@ -116,9 +115,7 @@ class Coordinates:
         self.filter.SetNumberOfRings(rings)
         self.filter.SetLineResolution(64)
         update(self.filter)
-        cells = self.filter.GetTriangulation().GetCellData()
-        self.concordant = vtk_to_numpy(cells.GetArray("Concordant")) != 0
-        self.used = vtk_to_numpy(cells.GetArray("UsedCoordinateSystem"))
+        self.concordant = vtk_to_numpy(self.filter.GetTriangulation().GetCellData().GetArray("Concordant")) != 0
         lines = self.filter.GetLines()
         self.types = vtk_to_numpy(lines.GetCellData().GetArray("LineType"))
         self.triangles = vtk_to_numpy(lines.GetCellData().GetArray("TriangleId"))
@@ -148,12 +145,10 @@ def map_between(source, target, triangles, system):
 def cross(points, triangles, start, end):
     """Where a segment crosses a triangulation: arrays of points on edges in order along it, one for each piece that is
     inside."""
-    points, start, end = numpy.asarray(points, float), numpy.asarray(start, float), numpy.asarray(end, float)
     edges, counts = edges_of(triangles)
-    along = end - start
+    along = numpy.subtract(end, start)
     a, b = points[edges[:, 0]], points[edges[:, 1]]
-    side = lambda p: along[0] * (p - start)[:, 1] - along[1] * (p - start)[:, 0]
-    p, q = side(a), side(b)
+    p, q = (along[0] * y - along[1] * x for x, y in ((a - start).T, (b - start).T))
     hit = numpy.flatnonzero((p > 0) != (q > 0))
     where = a[hit] + (p[hit] / (p[hit] - q[hit]))[:, None] * (b[hit] - a[hit])
     t = (where - start) @ along / (along @ along)

@@ -6,16 +6,15 @@ import numpy
 from drawing import Page, close_up, cross, dot, draw_edges, fill, label, map_between, stroke
 
 LINE = "#c71f33"
-TRIANGLES = numpy.array([(0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 6, 5), (2, 3, 6), (4, 5, 7), (5, 8, 7), (5, 6, 8), (6, 9, 8), (3, 9, 6)])
-SOURCE = numpy.array([(0.0, 0.1), (1.0, -0.1), (2.1, 0.0), (3.2, 0.2), (0.35, 1.1), (1.5, 0.55), (2.6, 1.0), (0.8, 2.05), (2.0, 2.0), (3.15, 1.95)])
-TARGET = numpy.array([(0.0, 0.3), (0.85, -0.1), (2.3, 0.1), (3.2, -0.05), (0.15, 1.45), (1.25, 0.55), (2.5, 0.8), (1.15, 1.75), (1.95, 2.2), (3.2, 1.7)])
-
-
-def bends(before, after):
-    """Angles of bends in degrees."""
-    return numpy.degrees(numpy.abs(numpy.arctan2(numpy.cross(before, after), (before * after).sum(axis=1))))
-
-
+TRIANGLES = numpy.array([(0, 1, 4), (1, 5, 4), (1, 2, 5), (2, 6, 5), (2, 3, 6), (4, 5, 7), (5, 8, 7), (5, 6, 8),
+                         (6, 9, 8), (3, 9, 6)])
+SOURCE = numpy.array([(0.0, 0.1), (1.0, -0.1), (2.1, 0.0), (3.2, 0.2), (0.35, 1.1), (1.5, 0.55), (2.6, 1.0),
+                      (0.8, 2.05), (2.0, 2.0), (3.15, 1.95)])
+TARGET = numpy.array([(0.0, 0.3), (0.85, -0.1), (2.3, 0.1), (3.2, -0.05), (0.15, 1.45), (1.25, 0.55), (2.5, 0.8),
+                      (1.15, 1.75), (1.95, 2.2), (3.2, 1.7)])
+# Angles in degrees.
+bends = lambda before, after: numpy.degrees(
+    numpy.abs(numpy.arctan2(numpy.cross(before, after), (before * after).sum(axis=1))))
 line = cross(SOURCE, TRIANGLES, (-0.5, 0.35), (3.6, 1.75))[0]
 along = line[-1] - line[0]
 linear = map_between(SOURCE, TARGET, TRIANGLES, "linear")(line)
@@ -28,7 +27,8 @@ directions = [smooth_map.jacobian(line[1:-1] + step * along) @ along for step in
 print(f"Smooth: largest bend at an edge {bends(*directions).max():.6g} degrees")
 
 page = Page(1240, 610)
-panels = (("A straight line", SOURCE, line, line[sharpest], []), ("Linear", TARGET, linear, linear[sharpest], linear[1:-1]),
+panels = (("A straight line", SOURCE, line, line[sharpest], []),
+          ("Linear", TARGET, linear, linear[sharpest], linear[1:-1]),
           ("Smooth", TARGET, smooth, linear[sharpest], smooth_map(line[1:-1])))
 for k, (title, mesh, curve, center, rings) in enumerate(panels):
     page.label(210 + 410 * k, 584, title, 22)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A discordant triangle: not all feet of the centroid are on the edges. Those of the incenter are; Smooth needs none."""
+"""A discordant triangle: not all feet of the centroid are on the edges. The incenter's are; Smooth needs none."""
 
 import numpy
-from drawing import CENTER, CONTOUR, INK, RING, SYSTEMS, Coordinates, Page, dot, draw_edges, fill, label, right_angle, \
+from drawing import CENTER, CONTOUR, INK, RING, Coordinates, Page, dot, draw_edges, fill, label, right_angle, \
     stroke, strokes
 
 CORNERS, TRIANGLES, OUTSIDE = numpy.array([(0.0, 0.0), (1.0, 0.0), (-1.6, 1.7)]), [(0, 1, 2)], "#d11429"
@@ -32,15 +32,15 @@ def draw_feet(axes):
 
 assert not Coordinates(CORNERS, TRIANGLES).concordant.any()
 page = Page(1240, 330)
-for k, (title, system, start) in enumerate((("From the centroid: discordant", None, ""), ("From the incenter", "contour", "incenter"),
-                                            ("Smooth", "smooth", "centroid"))):
+panels = (("From the centroid: discordant", None, ""), ("From the incenter", "contour", "incenter"),
+          ("Smooth", "smooth", "centroid"))
+for k, (title, system, start) in enumerate(panels):
     axes = page.panel(10 + 410 * k, 8, 400, 270, (-1.66, -0.09, 2.72, 1.86))
     page.label(210 + 410 * k, 304, title, 20)
     if system is None:
         draw_feet(axes)
         continue
     coordinates = Coordinates(CORNERS, TRIANGLES, system, 6, 5, start)
-    assert coordinates.used[0] == SYSTEMS.index(system)
     strokes(axes, coordinates.lines("RING_LINE"), RING, 1.0)
     strokes(axes, coordinates.lines("CONTOUR_LINE"), CONTOUR, 1.1)
     draw_edges(axes, CORNERS, TRIANGLES, INK, 2.6)

@@ -19,12 +19,8 @@ COUNT = 100000
 random = numpy.random.default_rng(2001)
 x = random.integers(int(LEFT * UNIT), int(RIGHT * UNIT), COUNT)
 y = random.integers(1, int(TOP * UNIT), COUNT) * random.choice([-1, 1], COUNT)
-
-
-def outside_circles(x):
-    return ((x - UNIT) * (x - 2 * UNIT) + y * y > 0) & ((x - UNIT) * (2 * x - UNIT) + 2 * y * y > 0)
-
-
+outside_circles = lambda x: (
+    ((x - UNIT) * (x - 2 * UNIT) + y * y > 0) & ((x - UNIT) * (2 * x - UNIT) + 2 * y * y > 0))
 expected = (x > -UNIT) & (x < 2 * UNIT) & outside_circles(x) & outside_circles(UNIT - x)
 # At integers, as a row.
 points = numpy.zeros((COUNT, 3, 2))
@@ -38,7 +34,8 @@ axes = page.panel(45, 40, 1125, 900, (LEFT, -TOP, RIGHT - LEFT, 2 * TOP))
 columns = lambda a, b: [[(a, -TOP), (b, -TOP), (b, TOP), (a, TOP)]]
 fill(axes, columns(LEFT, RIGHT), "#feecdd")
 fill(axes, columns(-1, 2), "#e2edf9")
-circles = ((1.5, 0.5, "3/2", "1/2"), (0.75, 0.25, "3/4", "1/4"), (0.25, 0.25, "1/4", "1/4"), (-0.5, 0.5, "−1/2", "1/2"))
+circles = ((1.5, 0.5, "3/2", "1/2"), (0.75, 0.25, "3/4", "1/4"), (0.25, 0.25, "1/4", "1/4"),
+           (-0.5, 0.5, "−1/2", "1/2"))
 for center, radius, _, _ in circles:
     axes.add_patch(Circle((center, 0), radius, facecolor="#feecdd", edgecolor="none", zorder=1.5))
 for inside, color in ((True, "#3878ba"), (False, "#d66b1f")):
@@ -55,7 +52,8 @@ for center, radius, center_text, radius_text in circles:
     label(axes, (center, -0.4 * radius), f"radius {radius_text}", 14, bbox=box)
     dot(axes, (center, 0), 3.0, INK)
 for height in (1.1, -1.1):
-    label(axes, (0.5, height), "$ABC$ concordant", 24, color="#1a528f", bbox={"facecolor": "#e2edf9", "edgecolor": "none"})
+    label(axes, (0.5, height), "$ABC$ concordant", 24, color="#1a528f",
+          bbox={"facecolor": "#e2edf9", "edgecolor": "none"})
 for place in (-1.25, 2.25):
     label(axes, (place, 0.75), "discordant", 18, color="#a84a0d", bbox={"facecolor": "#feecdd", "edgecolor": "none"})
 for corner, name, offset in ((0, "A", 9), (1, "B", -9)):

@@ -1,9 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The jump of the Jacobian across the edges of a pair of meshes, in the four systems: of two drawn faces, and with
---photographs after the folder of two photographs (Debian's package gtkmorph-example)."""
-
-import sys
+"""The jump of the Jacobian across the edges of a pair of meshes of two drawn faces, in the four systems."""
 
 import numpy
 from drawing import INK, SYSTEMS, Coordinates, Page, curves_of, draw_edges, edges_of, fill, map_between, \
@@ -11,7 +8,6 @@ from drawing import INK, SYSTEMS, Coordinates, Page, curves_of, draw_edges, edge
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.tri import Triangulation
-from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 COLORS = LinearSegmentedColormap.from_list(
@@ -41,7 +37,7 @@ def turn(points):
 def curve(points, closed):
     """A smooth curve through points (Catmull and Rom's)."""
     points = numpy.array(points)
-    around = numpy.vstack((points[-1:], points, points[:2])) if closed else numpy.vstack((points[:1], points, points[-1:]))
+    around = numpy.vstack((points[-1:], points, points[:2]) if closed else (points[:1], points, points[-1:]))
     t = numpy.arange(24)[:, None] / 24
     weights = 0.5 * numpy.hstack((-t + 2 * t**2 - t**3, 2 - 5 * t**2 + 3 * t**3, t + 4 * t**2 - 3 * t**3, -t**2 + t**3))
     pieces = [weights @ around[i : i + 4] for i in range(len(around) - 3)]
@@ -81,59 +77,39 @@ def view_of(points):
     return (*(low - margin), *(high - low + 2 * margin))
 
 
-def draw(name, meshes, triangles, draw_side):
-    page = Page(1552, 505)
-    page.label(103, 481, "Source and target", 19)
-    for side, points in enumerate(meshes):
-        axes = page.panel(8, 8 if side else 236, 190, 222, view_of(points))
-        draw_side(axes, side)
-        draw_edges(axes, points, triangles, (0.25, 0.35, 0.55, 0.75), 0.8)
-    edges, counts = edges_of(triangles)
-    discordant = sum(~(Coordinates(meshes[0], triangles).concordant & Coordinates(meshes[1], triangles).concordant))
-    print(f"{'':8} {'triangles':>10} {'discordant':>10} {'least jump':>14} {'largest jump':>14}")
-    for k, system in enumerate((*SYSTEMS, "cubic")):
-        continuity = measure_continuity(*meshes, triangles, system)
-        lines, cells = continuity.GetOutput(0), continuity.GetOutput(1)
-        of_edges, of_triangles = (vtk_to_numpy(d.GetCellData().GetArray("JacobianJump")) for d in (lines, cells))
-        largest = continuity.GetLargestJump()
-        print(f"{system.capitalize():8} {len(triangles):10} {discordant if system == 'contour' else 0:10} "
-              f"{of_edges.min():14.2g} {largest:14.2g}")
-        colors = lambda jumps: COLORS(NORM(numpy.clip(numpy.nan_to_num(jumps), 1e-12, 1)))
-        left = 212 + 312 * k
-        axes = page.panel(left, 36, 304, 424, view_of(meshes[0]))
-        fill(axes, meshes[0][triangles], colors(of_triangles))
-        # Colored edges between gray ones, thinner where there are many.
-        width = 1.0 if len(triangles) > 200 else 2.0
-        draw_edges(axes, meshes[0], triangles, "#9e999e", 1.7 * width)
-        strokes(axes, [curve[[0, -1]] for curve in curves_of(lines)], colors(of_edges), width)
-        strokes(axes, meshes[0][edges[counts == 1]], INK, 2.0)
-        page.label(left + 152, 481, system.capitalize(), 22)
-        digits, power = f"{largest:.1e}".split("e")
-        text = f"{largest:.2f}" if largest >= 0.01 else f"${digits} \\times 10^{{{int(power)}}}$"
-        page.label(left + 152, 16, "largest jump " + text, 16)
-    bar = page.figure.add_axes([1475 / 1552, 60 / 505, 16 / 1552, 380 / 505])
-    page.figure.colorbar(ScalarMappable(NORM, COLORS), cax=bar, ticks=10.0 ** numpy.arange(-12, 1, 3))
-    bar.minorticks_off()
-    page.save(name)
-
-
-if "--photographs" in sys.argv:
-    from vtkhomeomorphism import xmorph
-
-    files = [f"/usr/share/xmorph/example/AD/image{k}.png" for k in (1, 2)]
-    photographs = [Image.open(name).convert("RGB") for name in files]
-    grids = []
-    for name, photograph in zip(files, photographs):
-        grid = xmorph.read(name + ".mesh")
-        grid = grid / xmorph.extent(grid)
-        grids.append(numpy.stack((grid[..., 0], 1 - grid[..., 1]), axis=-1) * (numpy.array(photograph.size) - 1))
-    draw("figure-8-faces.png", [g.reshape(-1, 2) for g in grids], xmorph.triangulate(*grids), lambda axes, side: axes.imshow(
-        photographs[side], aspect="auto", zorder=0,
-        extent=(-0.5, photographs[side].width - 0.5, -0.5, photographs[side].height - 0.5)))
-else:
-    rows = numpy.vstack((MIDDLE, BESIDE, BESIDE * [-1, 1, -1, 1]))
-    faces = [rows[:, :2], turn(rows[:, :2] + rows[:, 2:])]
-    cells = Triangulation(*faces[0].T).triangles
-    smooth = map_between(*faces, cells, "smooth")
-    draw("figure-8-jump-on-mesh.png", faces, cells,
-         lambda axes, side: draw_face(axes, faces[side], cells, smooth if side else lambda points: points))
+rows = numpy.vstack((MIDDLE, BESIDE, BESIDE * [-1, 1, -1, 1]))
+faces = [rows[:, :2], turn(rows[:, :2] + rows[:, 2:])]
+cells = Triangulation(*faces[0].T).triangles
+smooth = map_between(*faces, cells, "smooth")
+page = Page(1552, 505)
+page.label(103, 481, "Source and target", 19)
+for side, points in enumerate(faces):
+    axes = page.panel(8, 8 if side else 236, 190, 222, view_of(points))
+    draw_face(axes, points, cells, smooth if side else lambda points: points)
+    draw_edges(axes, points, cells, (0.25, 0.35, 0.55, 0.75), 0.8)
+edges, counts = edges_of(cells)
+discordant = sum(~(Coordinates(faces[0], cells).concordant & Coordinates(faces[1], cells).concordant))
+print(f"{'':8} {'triangles':>10} {'discordant':>10} {'least jump':>14} {'largest jump':>14}")
+for k, system in enumerate((*SYSTEMS, "cubic")):
+    continuity = measure_continuity(*faces, cells, system)
+    lines, triangles = continuity.GetOutput(0), continuity.GetOutput(1)
+    of_edges, of_triangles = (vtk_to_numpy(d.GetCellData().GetArray("JacobianJump")) for d in (lines, triangles))
+    largest = continuity.GetLargestJump()
+    print(f"{system.capitalize():8} {len(cells):10} {discordant if system == 'contour' else 0:10} "
+          f"{of_edges.min():14.2g} {largest:14.2g}")
+    colors = lambda jumps: COLORS(NORM(numpy.clip(numpy.nan_to_num(jumps), 1e-12, 1)))
+    left = 212 + 312 * k
+    axes = page.panel(left, 36, 304, 424, view_of(faces[0]))
+    fill(axes, faces[0][cells], colors(of_triangles))
+    # Colored edges between gray ones.
+    draw_edges(axes, faces[0], cells, "#9e999e", 3.4)
+    strokes(axes, [curve[[0, -1]] for curve in curves_of(lines)], colors(of_edges), 2.0)
+    strokes(axes, faces[0][edges[counts == 1]], INK, 2.0)
+    page.label(left + 152, 481, system.capitalize(), 22)
+    digits, power = f"{largest:.1e}".split("e")
+    text = f"{largest:.2f}" if largest >= 0.01 else f"${digits} \\times 10^{{{int(power)}}}$"
+    page.label(left + 152, 16, "largest jump " + text, 16)
+bar = page.figure.add_axes([1475 / 1552, 60 / 505, 16 / 1552, 380 / 505])
+page.figure.colorbar(ScalarMappable(NORM, COLORS), cax=bar, ticks=10.0 ** numpy.arange(-12, 1, 3))
+bar.minorticks_off()
+page.save("figure-8-jump-on-mesh.png")

@@ -21,5 +21,6 @@ from .vtkFiltersHomeomorphism import (
 __version__ = "1.0.0"
 __all__ = [
     "Homeomorphism", "isomorphic_triangulation", "vtkDifferentiableHomeomorphism", "vtkHomeomorphismTransform",
-    "vtkIsomorphicTriangulation", "vtkJacobianContinuity", "vtkResampleThroughHomeomorphism", "vtkTriangularCoordinates",
+    "vtkIsomorphicTriangulation", "vtkJacobianContinuity", "vtkResampleThroughHomeomorphism",
+    "vtkTriangularCoordinates",
 ]

@@ -10,15 +10,15 @@ import click
 
 from . import __version__, options
 from .commands import check, convert, coordinates, figure, map, morph, refine, triangulate, warp
-from .files import FILE, USAGE, Failure, quote
+from .files import FILE, USAGE, discard_standard_output, quote
 from .vtkfiles import capture_messages
 
 
 @click.group(
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100, "show_default": True},
     epilog="""
     A pair of meshes is one file with both meshes (a PROJ triangulation file, or a mesh with the target's positions as a
-    point array) or two files, SOURCE and TARGET. Mesh formats: .json .vtp .vtk .vtu .obj .off .ply .stl, xmorph's .mesh.
+    point array) or two files, SOURCE and TARGET. Formats: .json .vtp .vtk .vtu .obj .off .ply .stl, xmorph's .mesh.
     A file of landmarks also defines a pair: .csv (source x, y, target x, y), QGIS .points, IIIF georeference
     annotations, BigWarp. The name - stands for standard input or output.
 
@@ -44,7 +44,7 @@ def dhm():
 
 
 for module in (check, convert, coordinates, figure, map, morph, refine, triangulate, warp):
-    dhm.add_command(module.command)
+    dhm.add_command(options.quiet(module.command))
 
 
 def main():
@@ -61,16 +61,16 @@ def main():
         dhm.main(prog_name="dhm", standalone_mode=False)
         sys.stdout.flush()
         return 0
-    except Failure as failure:
-        message, status = str(failure), failure.status
-    except click.ClickException as error:
-        command = error.ctx.command_path if getattr(error, "ctx", None) else "dhm"
+    except click.UsageError as error:
+        command = error.ctx.command_path if error.ctx else "dhm"
         message, status = f"{error.format_message().rstrip('.')}. See {command} --help.", USAGE
+    except click.ClickException as failure:
+        message, status = str(failure), failure.exit_code
     except MemoryError:
         message, status = "There is not enough memory.", FILE
     except OSError as error:
         # Standard output is full or closed by its reader.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        discard_standard_output()
         message, status = f"Cannot write to standard output: {error.strerror or quote(error)}.", FILE
     print("dhm: " + message, file=sys.stderr)
     return status

@@ -50,6 +50,7 @@ def configure(
     cubic_bending: str = "least",
     maximum_deviation: Optional[float] = None,
     fairness_refinement: int = 0,
+    mask_invalid: bool = False,
 ):
     """Sets the options of the map, those of Homeomorphism, in a filter of the module."""
     if maximum_deviation is not None and not maximum_deviation > 0:
@@ -59,9 +60,9 @@ def configure(
     algorithm.SetDiscordantTriangles(algorithm.USE_LINEAR if discordant_by_linear else algorithm.REFUSE)
     algorithm.SetTolerance(tolerance)
     algorithm.SetCubicBending(choose(BENDINGS, cubic_bending, "cubic_bending"))
-    if maximum_deviation is not None:
-        algorithm.SetMaximumDeviation(maximum_deviation)
+    algorithm.SetMaximumDeviation(math.inf if maximum_deviation is None else maximum_deviation)
     algorithm.SetFairnessRefinement(fairness_refinement)
+    algorithm.SetMaskInvalidTriangles(mask_invalid)
 
 
 def as_points(points, what: str = "points") -> Tuple[vtkPoints, int]:
@@ -94,10 +95,10 @@ def as_cells(polygons) -> vtkCellArray:
     return cells
 
 
-def make_mesh(points, polygons=()) -> vtkPolyData:
+def make_mesh(points, polygons=(), what: str = "points") -> vtkPolyData:
     """A mesh of points of shape (n, 2) or (n, 3), and polygons."""
     mesh = vtkPolyData()
-    mesh.SetPoints(as_points(points)[0])
+    mesh.SetPoints(as_points(points, what)[0])
     mesh.SetPolys(polygons if isinstance(polygons, vtkCellArray) else as_cells(polygons))
     return mesh
 
@@ -108,39 +109,35 @@ def points_of(data) -> numpy.ndarray:
     return numpy.empty((0, 3)) if points is None else numpy.asarray(vtk_to_numpy(points.GetData()), numpy.float64)
 
 
+def add_array(data, name: str, values):
+    """Adds a point array, which shares the memory of contiguous values."""
+    array = numpy_to_vtk(numpy.ascontiguousarray(values))
+    array.SetName(name)
+    data.GetPointData().AddArray(array)
+
+
 def arrays_of(attributes) -> dict:
     """Numeric arrays of point or cell data by name, without vtkGhostType."""
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
     return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName() != "vtkGhostType"}
 
 
-def _as_triangles(triangles, points: int) -> vtkCellArray:
-    array = numpy.asarray(triangles)
-    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
-        raise ValueError(f"triangles must be integers with the shape (m, 3), not {array.dtype} with {array.shape}")
-    if array.size and (array.min() < 0 or array.max() >= points):
-        raise ValueError(f"triangles must have point numbers from 0 to {points - 1}; "
-                         f"they go from {array.min()} to {array.max()}")
-    return as_cells(array)
-
-
 def update(algorithm):
     """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them."""
-    errors = []
+    own, others = [], []
 
-    def collect(caller, event, text=""):
+    def collect(caller, event, text):
         # Without VTK's prefix, the position in the C++ source.
-        errors.append(text.split("): ", 1)[-1].strip())
+        (own if caller is algorithm else others).append(text.split("): ", 1)[-1].strip())
 
     collect.CallDataType = "string0"
-    # Skip the executive's message that the algorithm failed.
-    observers = ((algorithm, collect), (algorithm.GetExecutive(), lambda *_: None))
-    tags = [(sender, sender.AddObserver("ErrorEvent", observer)) for sender, observer in observers]
+    tags = [(sender, sender.AddObserver("ErrorEvent", collect)) for sender in (algorithm, algorithm.GetExecutive())]
     algorithm.Update()
     for sender, tag in tags:
         sender.RemoveObserver(tag)
-    if errors:
-        raise ValueError("\n".join(errors))
+    if own or others:
+        # The executive also says that the algorithm failed.
+        raise ValueError("\n".join(own or others))
     return algorithm.GetOutputDataObject(0)
 
 
@@ -150,8 +147,8 @@ class Homeomorphism:
     Parameters
     ----------
     source, target : array of shape (n, 2) or (n, 3)
-        Points of the two triangulations, in the plane or on surfaces in 3-space. In the plane, z is the distance from it
-        and is preserved.
+        Points of the two triangulations, in the plane or on surfaces in 3-space. In the plane, z is the distance
+        from it and is preserved.
     triangles : array of int of shape (m, 3)
         Point ids of the triangles, the same in both.
     system : {"smooth", "linear", "contour", "cubic"}
@@ -161,8 +158,7 @@ class Homeomorphism:
     discordant_by_linear : bool
         Map discordant triangles by the Linear system instead of raising an error (Contour only).
     tolerance : float
-        Greatest distance of a mapped point from the domain, relative to the diagonal of the domain. 0 allows for rounding
-        only.
+        Greatest distance of a mapped point from the domain, relative to the domain's diagonal. 0: rounding only.
     cubic_bending : {"least", "local"}
         Of the Cubic system: the map that bends least, or one in closed form.
     maximum_deviation : float, optional
@@ -170,25 +166,21 @@ class Homeomorphism:
         target's units.
     fairness_refinement : int
         Of the Cubic system with least bending: how often triangles are cut into four first.
+    mask_invalid : bool
+        Leave out invalid triangles instead of raising an error.
 
     Points outside the domain become NaN. Invalid meshes raise ValueError with a message that lists the triangles. An
     object must not be used by several threads at a time; each call is itself parallel.
     """
 
     def __init__(self, source, target, triangles, system: str = "smooth", **options):
-        self._meshes, self._dimensions = [], []
-        for points, what in ((source, "source"), (target, "target")):
-            # A copy, so that validated points cannot change.
-            vtk_points, dimension = as_points(numpy.array(points), what)
-            self._dimensions.append(dimension)
-            self._meshes.append(vtkPolyData())
-            self._meshes[-1].SetPoints(vtk_points)
-        sizes = [mesh.GetNumberOfPoints() for mesh in self._meshes]
-        if sizes[0] != sizes[1]:
-            raise ValueError(f"source has {sizes[0]} points, target {sizes[1]}: they must correspond one to one")
-        cells = _as_triangles(triangles, sizes[0])
-        for mesh in self._meshes:
-            mesh.SetPolys(cells)
+        cells = numpy.asarray(triangles)
+        if cells.ndim != 2 or cells.shape[1] != 3 or cells.dtype.kind not in "iu":
+            raise ValueError(f"triangles must be integers with the shape (m, 3), not {cells.dtype} with {cells.shape}")
+        # A copy, so that validated points cannot change.
+        self._meshes = [make_mesh(numpy.array(points), cells, what)
+                        for points, what in ((source, "source"), (target, "target"))]
+        self._dimensions = [numpy.shape(points)[1] for points in (source, target)]
         self._system, self._options = system, options
         self._filter = self._set_up(vtkDifferentiableHomeomorphism())
         self._filter.TransformActiveAttributesOff()
@@ -199,8 +191,8 @@ class Homeomorphism:
 
     @classmethod
     def from_landmarks(cls, source, target, system: str = "smooth", **options):
-        """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made for them. Options of
-        `isomorphic_triangulation` and of this class are understood."""
+        """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made for them, with
+        the options of `isomorphic_triangulation` and of this class."""
         from .isomorphic import isomorphic_triangulation
 
         own = {name: options.pop(name) for name in list(options) if name in inspect.signature(configure).parameters}
@@ -223,12 +215,10 @@ class Homeomorphism:
         self.__init__(*state[0], **state[1])
 
     def _run(self, points, inverse: bool):
-        """The filter's output, the mask, and the dimensions of points and images."""
-        vtk_points, dimension = as_points(points)
-        data = vtkPolyData()
-        data.SetPoints(vtk_points)
-        self._filter.SetDataObject(data)
+        """The filter's output, and the dimensions of points and images."""
+        self._filter.SetDataObject(make_mesh(points))
         self._filter.SetInverse(inverse)
+        dimension = numpy.shape(points)[1]
         return update(self._filter), dimension, self._dimensions[0 if inverse else 1] if dimension == 2 else dimension
 
     def _map(self, points, inverse: bool) -> numpy.ndarray:
@@ -246,9 +236,9 @@ class Homeomorphism:
         return self._map(points, True)
 
     def jacobian(self, points, inverse: bool = False) -> numpy.ndarray:
-        """The derivative of the map at points of the source's domain, or of the inverse at points of the target's: float64
-        of shape (n, k, d) for points of d coordinates whose images have k. Element [i, j, l] is the partial derivative of
-        coordinate j of the image of point i with respect to coordinate l. NaN outside."""
+        """The derivative of the map at points of the source's domain, or of the inverse at points of the target's:
+        float64 of shape (n, k, d) for points of d coordinates whose images have k. Element [i, j, l] is the partial
+        derivative of coordinate j of the image of point i with respect to coordinate l. NaN outside."""
         self._filter.ComputeJacobianOn()
         try:
             output, columns, rows = self._run(points, inverse)
@@ -258,8 +248,8 @@ class Homeomorphism:
         return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :columns])
 
     def coordinates(self, points):
-        """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0 outside), p and c
-        (NaN outside); four arrays of shape (n,)."""
+        """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0 outside), p and
+        c (NaN outside); four arrays of shape (n,)."""
         algorithm = self._set_up(vtkTriangularCoordinates())
         algorithm.GenerateLinesOff()
         algorithm.SetDataObject(make_mesh(points))
@@ -267,15 +257,15 @@ class Homeomorphism:
         return tuple(arrays[name].copy() for name in ("TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter"))
 
     def continuity(self, samples: int = 5):
-        """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict of arrays
-        with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`, `EdgeTriangles`, ...; see
+        """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict of
+        arrays with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`, `EdgeTriangles`, ...; see
         vtkJacobianContinuity)."""
         algorithm = self._set_up(vtkJacobianContinuity())
         algorithm.SetSamplesPerEdge(samples)
         return {name: array.copy() for name, array in arrays_of(update(algorithm).GetCellData()).items()}
 
-    def warp_image(self, image, shape: Optional[Tuple[int, int]] = None, *, spacing: float = 1.0, background: float = 0.0,
-                   inverse: bool = False) -> numpy.ndarray:
+    def warp_image(self, image, shape: Optional[Tuple[int, int]] = None, *, spacing: float = 1.0,
+                   background: float = 0.0, inverse: bool = False) -> numpy.ndarray:
         """Warps an image of the source's domain to the target's: samples it at the exact preimages of the pixels, with
         linear interpolation.
 
@@ -284,23 +274,23 @@ class Homeomorphism:
         image : array of shape (rows, columns) or (rows, columns, channels)
             Pixel [row, column] is the point (column, row) times `spacing` of the source's plane.
         shape : (rows, columns)
-            Shape of the result; that of the image by default. Its pixels are points of the target's plane in the same way.
+            Shape of the result; that of the image by default. Its pixels are points of the target's plane likewise.
         background : float
             Value of pixels outside.
         inverse : bool
             The image covers the target's domain instead, and the result the source's.
 
-        Returns an array of the type of the image. Integers are rounded, and values of a mask of at least 0.5 become True.
+        Returns an array of the image's type. Integers are rounded, and values of a mask of at least 0.5 become True.
         """
         array = numpy.asarray(image)
-        if array.ndim not in (2, 3):
-            raise ValueError(f"image must have the shape (rows, columns) or (rows, columns, channels), not {array.shape}")
         if array.dtype.kind not in "biuf":
-            raise TypeError(f"image must be an array of real numbers, not of {array.dtype}; warp the parts of complex ones")
-        rows, columns, channels = array.reshape(*array.shape[:2], -1).shape if array.size else array.shape + (0,)
+            raise TypeError(f"image must be an array of real numbers, not of {array.dtype}; warp complex ones in parts")
+        if array.ndim not in (2, 3) or not array.size:
+            raise ValueError(f"image must have the shape (rows, columns[, channels]), not {array.shape}")
+        rows, columns, channels = numpy.atleast_3d(array).shape
         out_rows, out_columns = map(operator.index, shape or array.shape[:2])
-        if min(array.size, out_rows, out_columns) < 1:
-            raise ValueError(f"there are no pixels in {array.shape}, or in the shape {shape}")
+        if min(out_rows, out_columns) < 1:
+            raise ValueError(f"there are no pixels in the shape {shape}")
         if not (spacing > 0 and math.isfinite(spacing)):
             raise ValueError(f"spacing must be a number greater than 0, not {spacing}")
         if max(out_rows, out_columns) > numpy.iinfo(numpy.int32).max:
@@ -309,13 +299,10 @@ class Homeomorphism:
         numpy.empty((out_rows, out_columns, channels + 4))
         # VTK has integers, float32 and float64.
         known = array.dtype.kind in "iu" or array.dtype in (numpy.float32, numpy.float64)
-        pixels = numpy.ascontiguousarray(array if known else array.astype(numpy.float64)).reshape(-1, channels)
-        values = numpy_to_vtk(pixels)
-        values.SetName("Values")
         vtk_image = vtkImageData()
         vtk_image.SetDimensions(columns, rows, 1)
         vtk_image.SetSpacing(spacing, spacing, 1.0)
-        vtk_image.GetPointData().SetScalars(values)
+        add_array(vtk_image, "Values", (array if known else array.astype(numpy.float64)).reshape(-1, channels))
         algorithm = self._set_up(vtkResampleThroughHomeomorphism())
         algorithm.SetDataObject(vtk_image)
         algorithm.SetInverse(inverse)

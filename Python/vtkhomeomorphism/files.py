@@ -3,6 +3,7 @@
 """Input and output files, including standard input and output. Outputs are written completely or not at all."""
 
 import contextlib
+import functools
 import importlib
 import os
 import shutil
@@ -10,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 import uuid
+
+import click
 
 REFUSED, USAGE, FILE = 1, 2, 3
 """Exit statuses: the data are refused, the command line is wrong, a file cannot be read or written."""
@@ -21,12 +24,12 @@ VECTORS = ("gpkg", "geojson", "shp", "fgb")
 _quiet = False
 
 
-class Failure(Exception):
+class Failure(click.ClickException):
     """Ends a command with a message and an exit status."""
 
     def __init__(self, message, status=REFUSED):
         super().__init__(message)
-        self.status = status
+        self.exit_code = status
 
 
 def set_quiet(quiet):
@@ -64,6 +67,11 @@ def count(number, noun, plural=None):
     return f"{number} {noun if number == 1 else plural or noun + 's'}"
 
 
+def join(items):
+    """The first ten items as text."""
+    return ", ".join(map(str, items[:10])) + (", ..." if len(items) > 10 else "")
+
+
 def format_of(name):
     """The extension of a file name, in lower case and without the dot."""
     return os.path.splitext(name)[1][1:].lower()
@@ -85,8 +93,8 @@ def import_extra(module, purpose):
 
 @contextlib.contextmanager
 def scratch_folder(parent=None):
-    """A temporary folder. Another process removes it at the end of this context, or when this process ends in any way: no
-    signal can come too early or too late for it."""
+    """A temporary folder. Another process removes it at the end of this context, or when this process ends in any
+    way: no signal can come too early or too late for it."""
     folder = os.path.join(parent or tempfile.gettempdir(), f".dhm-unfinished-{uuid.uuid4().hex}")
     remove = "import shutil, sys; sys.stdin.read(); shutil.rmtree(sys.argv[1], True)"
     with subprocess.Popen([sys.executable, "-ISc", remove, folder], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
@@ -101,10 +109,9 @@ class Input:
     def __init__(self, name, standard_format=""):
         if not name:
             raise Failure("The name of an input file is empty.", USAGE)
-        self.standard = name == "-"
+        self.standard, self.path = name == "-", name
         self.name = "standard input" if self.standard else name
         self.format = standard_format if self.standard else format_of(name)
-        self.path = name
 
     def __enter__(self):
         self._stack = contextlib.ExitStack()
@@ -133,8 +140,7 @@ class Input:
 
 
 class Output:
-    """A file to write, as a context: `path` is a temporary file that takes the output's name when the context ends without
-    an exception, together with the files beside it. `-` is standard output."""
+    """A file to write; `-` is standard output."""
 
     def __init__(self, name, standard_format="", force=False, formats=(), what="data"):
         self.standard, self.force = name == "-", force
@@ -144,8 +150,8 @@ class Output:
         if not name:
             raise Failure("The name of the output is empty.", USAGE)
         if self.format not in formats:
-            found = f"has the extension .{self.format}" if self.format else "has no extension"
-            raise Failure(f"Cannot write {what} to {self.name}: the name {found}; the formats are {dotted(formats)}.", USAGE)
+            found = f"extension .{self.format}" if self.format else "no extension"
+            raise Failure(f"Cannot write {what} to {self.name}, which has {found}; use {dotted(formats)}.", USAGE)
         if os.path.isdir(name):
             raise Failure(f"Cannot write {name}: it is a folder.", FILE)
         self.target = name if self.special else os.path.realpath(name)
@@ -166,45 +172,41 @@ class Output:
             yield
         except OSError as error:
             if self.standard:
-                # Python flushes what is left when it closes standard output, and would end with another status.
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+                discard_standard_output()
             raise Failure(f"Cannot write {self.name}: {error.strerror or quote(error)}.", FILE) from None
 
-    def __enter__(self):
-        self._stack = contextlib.ExitStack()
-        self._stack.enter_context(self._named_failures())
-        folder = self._stack.enter_context(scratch_folder(self.folder))
-        self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
-        self._stack.push(self._commit)
-        return self
-
-    def __exit__(self, *exception):
-        return self._stack.__exit__(*exception)
-
-    def _commit(self, kind, exception, traceback):
-        if kind is not None:
-            return
-        folder, main = os.path.split(self.path)
-        os.stat(self.path)
-        for name in os.listdir(folder):
-            # Some libraries do not tell that a disk is full: then there is no room for more.
-            with open(os.path.join(folder, name), "r+b") as file:
-                size = file.seek(0, os.SEEK_END)
-                file.write(bytes(1 << 16))
-                file.flush()
-                file.truncate(size)
-        if self.special:
-            with open(self.path, "rb") as file, contextlib.ExitStack() as stack:
-                goal = sys.stdout.buffer if self.standard else stack.enter_context(open(self.target, "wb"))
-                shutil.copyfileobj(file, goal)
-                goal.flush()
-            return
-        # Files beside the output come first, so that it exists only if it is complete.
-        for name in sorted(os.listdir(folder), key=lambda name: name == main):
-            goal = os.path.join(self.folder, name)
-            self._require_new(goal)
-            os.replace(os.path.join(folder, name), goal)
+    @contextlib.contextmanager
+    def writing(self):
+        """A context in which `path` is a temporary file. If it ends without an exception, the file takes the output's
+        name, together with files beside it."""
+        with self._named_failures(), scratch_folder(self.folder) as folder:
+            self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
+            yield
+            # Files beside the output come first, so that it exists only if it is complete.
+            paths = sorted(map(functools.partial(os.path.join, folder), os.listdir(folder)), key=self.path.__eq__)
+            for path in paths:
+                # Some libraries do not tell that a disk is full: then there is no room for more.
+                with open(path, "r+b") as file:
+                    size = file.seek(0, os.SEEK_END)
+                    file.write(bytes(1 << 16))
+                    file.flush()
+                    file.truncate(size)
+            if self.special:
+                with open(self.path, "rb") as file, contextlib.ExitStack() as stack:
+                    goal = sys.stdout.buffer if self.standard else stack.enter_context(open(self.target, "wb"))
+                    shutil.copyfileobj(file, goal)
+                    goal.flush()
+                return
+            for path in paths:
+                goal = os.path.join(self.folder, os.path.basename(path))
+                self._require_new(goal)
+                os.replace(path, goal)
 
     def write_bytes(self, data):
         with open(self.path, "wb") as file:
             file.write(data)
+
+
+def discard_standard_output():
+    """Python flushes what is left when it closes standard output, and would end with another status."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -3,42 +3,37 @@
 """Images by Pillow and rasters by rasterio: read in windows and warped in tiles, so that only parts of large GeoTIFF
 files are in memory."""
 
-import io
 import logging
 import math
 import warnings
 from dataclasses import dataclass, field, replace
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from . import meshes, vtkfiles
-from .arrays import MASK, arrays_of, points_of
+from . import meshes
+from .arrays import MASK, add_array, arrays_of, points_of
 from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress
-from .mapping import PointMap, add_array, run
+from .mapping import PointMap, run, set_up
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 
 TILE = 2048
-MOST_PIXELS = 2**31
-"""Of images that are read as a whole."""
 PILLOW_FORMATS = {"jpg": "JPEG", "jpeg": "JPEG", "png": "PNG", "bmp": "BMP", "webp": "WEBP"}
 OPAQUE = ("jpg", "jpeg", "ppm", "pgm", "pnm", "bmp")
-WRITE = PICTURES + ("vti",)
 
 
 @dataclass
 class Grid:
-    """The position of pixels: that of (column, row) has its center at first + steps @ (column, row). By default, the center
-    of the lower left pixel is (0, 0), and y points upwards."""
+    """The position of pixels: that of (column, row) has its center at first + steps @ (column, row). By default, the
+    center of the lower left pixel is (0, 0), and y points upwards."""
 
     width: int
     height: int
     first: numpy.ndarray = None
     steps: numpy.ndarray = field(default_factory=lambda: numpy.diag([1.0, -1.0]))
     crs: object = None
-    placed: bool = False
-    """Whether the file is georeferenced."""
+    placed: bool = False  # whether the file is georeferenced
 
     def __post_init__(self):
         if self.first is None:
@@ -47,6 +42,16 @@ class Grid:
     def at(self, pixels):
         """The points of pixels (column, row)."""
         return self.first + pixels @ self.steps.T
+
+    def pixels(self, points):
+        """The pixels (column, row) of points, as real numbers."""
+        return (points - self.first) @ numpy.linalg.inv(self.steps).T
+
+    def outline(self):
+        """The points of the pixels along the border, all around."""
+        x, y = numpy.arange(self.width), numpy.arange(self.height)
+        sides = (x, 0), (self.width - 1, y), (x[::-1], self.height - 1), (0, y[::-1])
+        return self.at(numpy.vstack([numpy.column_stack(numpy.broadcast_arrays(*side)) for side in sides]))
 
     @property
     def bounds(self):
@@ -60,17 +65,10 @@ class Grid:
 
     def hanging(self):
         """The same pixels with the upper left corner at (0, 0), as QGIS shows images that are not georeferenced."""
-        return Grid(self.width, self.height, numpy.array([0.5, -0.5]))
+        return self if self.placed else Grid(*self.size, numpy.array([0.5, -0.5]))
 
     def part(self, column, row, width, height):
-        width, height = min(width, self.width - column), min(height, self.height - row)
         return replace(self, width=width, height=height, first=self.at(numpy.array([column, row])))
-
-    def sides(self):
-        """The points of the pixels of the four sides, of shape (n, 2) each."""
-        x, y = numpy.arange(self.width), numpy.arange(self.height)
-        pixels = ((x, 0), (x, self.height - 1), (0, y), (self.width - 1, y))
-        return [self.at(numpy.column_stack(numpy.broadcast_arrays(*side))) for side in pixels]
 
     def to_vtk(self, values=None):
         """An image, with values of shape (height, width, components), whose first row is the lowest."""
@@ -134,10 +132,8 @@ class GdalRaster(Raster):
 
 def read(input):
     """The image in a file. Raises Failure."""
-    if input.format in ("vti", "vtk"):
-        return _read_vtk(input)
     if input.format not in PICTURES:
-        raise Failure(f"Cannot read {input.name} as an image: the formats are {dotted(WRITE)}.", USAGE)
+        raise Failure(f"Cannot read {input.name} as an image: the formats are {dotted(PICTURES)}.", USAGE)
     try:
         if input.format not in ("tif", "tiff"):
             return _read_picture(input)
@@ -152,29 +148,12 @@ def read(input):
         input.fail_by(error)
 
 
-def _read_vtk(input):
-    image = vtkfiles.read(input)
-    if not isinstance(image, vtkImageData) or image.GetPointData().GetScalars() is None:
-        input.fail(f"it holds a {image.GetClassName()}, not an image with pixels.")
-    width, height, layers = image.GetDimensions()
-    if layers != 1:
-        raise Failure(f"{input.name} has {layers} layers, an image has one.")
-    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1]
-    corners = [numpy.array(image.GetPoint(i)[:2]) for i in ((height - 1) * width, (height - 1) * width + width - 1, 0)]
-    steps = numpy.diag(image.GetSpacing()[:2]) * [1, -1]
-    for axis, count in enumerate((width, height)):
-        if count > 1:
-            steps[:, axis] = (corners[1 + axis] - corners[0]) / (count - 1)
-    return Raster(pixels, Grid(width, height, corners[0], steps))
-
-
 def _read_picture(input):
     from PIL import Image
 
-    Image.MAX_IMAGE_PIXELS = None
+    # Larger ones by half are refused.
+    Image.MAX_IMAGE_PIXELS = 2**31
     with Image.open(input.path, formats=[PILLOW_FORMATS.get(input.format, "PPM")]) as image:
-        if image.width * image.height > MOST_PIXELS:
-            input.fail(f"an image of {image.width} x {image.height} pixels is too large for .{input.format}.")
         if "16B" in str(image.tile) and image.mode not in ("I", "I;16"):
             # Pillow would reduce 16 bits to 8.
             return Raster(GdalRaster(input).all())
@@ -187,18 +166,17 @@ def _read_picture(input):
 
 def read_background(text, format):
     """A color as three numbers from 0 to 1, or None: transparent."""
+    from PIL import ImageColor
+
     text = text or ("white" if format in OPAQUE else "transparent")
     if text == "transparent":
         if format in OPAQUE:
             raise Failure(f"A .{format} image cannot be transparent: use another --background, or write a .png.", USAGE)
         return None
     try:
-        digits = bytes.fromhex({"white": "#ffffff", "black": "#000000"}.get(text, text).removeprefix("#"))
+        return [value / 255 for value in ImageColor.getrgb(text)[:3]]
     except ValueError:
-        digits = b""
-    if len(digits) != 3:
-        raise Failure(f'"{text}" is an invalid color: transparent, white, black, or #rrggbb, such as #ff8000.', USAGE)
-    return [digit / 255 for digit in digits]
+        raise Failure(f'"{text}" is an invalid color: transparent, a name such as white, or #rrggbb.', USAGE) from None
 
 
 def require_overlap(grid, name, mesh, mesh_name):
@@ -221,14 +199,14 @@ class Warp:
         pair.require_flat()
         self.pair, self.inverse = replace(pair, shift=None), inverse
         self.map = PointMap(self.pair, settings, inverse)
-        self.filter = settings.set_up(vtkResampleThroughHomeomorphism(), pair)
+        self.filter = set_up(vtkResampleThroughHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
         self.filter.BlankOutsideOff()
         # The boundary of the domain, in small pieces, in the image and in the result. Masked triangles have their own.
         triangles = meshes.triangles_of(pair.source)
         edges = numpy.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, counts = numpy.unique(edges, axis=0, return_counts=True)
-        ends = points_of(pair.meshes[inverse])[edges if settings.mask_invalid else edges[counts == 1], :2]
+        ends = points_of(pair.meshes[inverse])[edges if settings.get("mask_invalid") else edges[counts == 1], :2]
         t = numpy.linspace(0, 1, 2 + 8192 // len(ends))[:, None, None]
         rim = (1 - t) * ends[:, 0] + t * ends[:, 1]
         self.rims = [rim, self._map(rim.reshape(-1, 2), True).reshape(rim.shape)]
@@ -238,18 +216,17 @@ class Warp:
         return self.map.map_points(points)[0]
 
     def image_of(self, grid, forward):
-        """Points around the image (or the preimage) of a grid's rectangle, and the largest distance of neighbors; None if it
-        is not within the domain. The image is as large as that of its boundary: the rectangle's, and the part of the
-        domain's that is inside."""
-        sides = grid.sides()
-        found = numpy.split(self._map(numpy.vstack(sides), forward), numpy.cumsum([len(side) for side in sides])[:3])
+        """Points around the image (or the preimage) of a grid's rectangle, and the largest distance of neighbors; None
+        if it is not within the domain. The image is as large as that of its boundary: the rectangle's, and the part of
+        the domain's that is inside."""
+        line = self._map(grid.outline(), forward)
         here, there = self.rims if forward else self.rims[::-1]
-        pixels = (here - grid.first) @ numpy.linalg.inv(grid.steps).T
+        pixels = grid.pixels(here)
         inside = ((pixels >= -0.5) & (pixels <= numpy.array(grid.size) - 0.5)).all(axis=2)
-        points = numpy.vstack(found + [there[inside]])
+        points = numpy.vstack((line, there[inside]))
         if numpy.isnan(points).all():
             return None
-        steps = [numpy.diff(line, axis=0).reshape(-1, 2) for line in found + [there]] + [numpy.zeros((1, 2))]
+        steps = [numpy.diff(points, axis=0).reshape(-1, 2) for points in (line, there)] + [numpy.zeros((1, 2))]
         return points[numpy.isfinite(points[:, 0])], numpy.nanmax(numpy.abs(numpy.vstack(steps)), axis=0)
 
     def fit_grid(self, raster, size=None, resolution=0.0, crs=None):
@@ -277,32 +254,24 @@ class Warp:
         """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
         tiles = [(c, r) for r in range(0, grid.height, TILE) for c in range(0, grid.width, TILE)]
         for column, row in progress(tiles, text) if text else tiles:
-            yield (column, row, *self.warp_tile(raster, grid.part(column, row, TILE, TILE)))
+            tile = grid.part(column, row, min(TILE, grid.width - column), min(TILE, grid.height - row))
+            yield (column, row, *self.warp_tile(raster, tile))
 
     def warp_tile(self, raster, tile):
         shape = (tile.height, tile.width)
-        nothing = numpy.zeros((*shape, raster.bands), raster.dtype), numpy.zeros(shape, bool)
-        found = self.image_of(tile, False)
-        if found is None:
-            return nothing
-        to_pixels = numpy.linalg.inv(raster.grid.steps).T
-        pixels, margin = (found[0] - raster.grid.first) @ to_pixels, found[1] @ numpy.abs(to_pixels) + 2
-        ends = numpy.array([pixels.min(axis=0) - margin, pixels.max(axis=0) + margin + 1])
-        (c0, r0), (c1, r1) = numpy.clip(numpy.floor(ends), 0, raster.grid.size).astype(int).tolist()
-        if c0 >= c1 or r0 >= r1:
-            return nothing
-        window = raster.window((c0, c1), (r0, r1))
+        begin, end = self._find_window(raster.grid, tile)
+        if (begin >= end).any():
+            return numpy.zeros((*shape, raster.bands), raster.dtype), numpy.zeros(shape, bool)
         # At the raster's border, one more pixel of the same value, because pixels are areas and VTK's are points.
-        (left, top), (right, bottom) = [[c0 == 0, r0 == 0], [c1 == raster.grid.width, r1 == raster.grid.height]]
-        window = numpy.pad(window, ((top, bottom), (left, right), (0, 0)), "edge")
+        added = numpy.array([begin == 0, end == raster.grid.size]).astype(int)
+        window = raster.window(*numpy.array([begin, end]).T.tolist())
+        window = numpy.pad(window, (*added.T[::-1], (0, 0)), "edge")
         rows, columns = window.shape[:2]
-        first = raster.grid.at(numpy.array([c0 - left, r0 - top]))
-        data = replace(raster.grid, width=columns, height=rows, first=first).to_vtk(window)
-        # From 1 in the middle to 0 at the added pixels, for each direction: the area ends where it is a half.
-        inside = numpy.ones((2, rows, columns), numpy.float32)
-        inside[0, :, [side for side, added in ((0, left), (-1, right)) if added]] = 0
-        inside[1, [side for side, added in ((0, top), (-1, bottom)) if added]] = 0
-        add_array(data, "Inside", inside[:, ::-1].reshape(2, -1).T)
+        data = raster.grid.part(*(begin - added[0]), columns, rows).to_vtk(window)
+        if added.any():
+            # In each direction, from 1 in the middle to 0 at added pixels, and rounded: the area ends at a half.
+            x, y = (numpy.pad(numpy.ones(n - sum(pad), numpy.uint8), pad) for n, pad in zip((columns, rows), added.T))
+            add_array(data, "Inside", numpy.stack(numpy.meshgrid(x, y[::-1]), axis=2).reshape(-1, 2))
         if raster.nodata is not None:
             unknown = numpy.isnan(window) if numpy.isnan(raster.nodata) else window == raster.nodata
             add_array(data, "Known", (~unknown.any(axis=2)[::-1]).ravel().astype(float))
@@ -310,11 +279,19 @@ class Warp:
         self.filter.SetGridData(tile.to_vtk())
         arrays = arrays_of(run(self.filter, self.pair.name).GetPointData())
         arrays = {name: values.reshape(*shape, -1)[::-1] for name, values in arrays.items()}
-        # Up to rounding.
-        mask = (arrays[MASK][:, :, 0] != 0) & (arrays["Inside"] > 0.5 - 1e-6).all(axis=2)
+        mask = (arrays[MASK] != 0).all(axis=2) & arrays.get("Inside", numpy.ones(1)).all(axis=-1)
         if raster.nodata is not None:
             mask &= arrays["Known"][:, :, 0] > 1 - 1e-9
         return arrays["Pixels"], mask
+
+    def _find_window(self, grid, tile):
+        """The first pixel (column, row) that a tile needs of a raster, and the end."""
+        found = self.image_of(tile, False)
+        if found is None:
+            return numpy.zeros((2, 2), int)
+        pixels, margin = grid.pixels(found[0]), found[1] @ numpy.abs(numpy.linalg.inv(grid.steps)).T + 2
+        ends = numpy.array([pixels.min(axis=0) - margin, pixels.max(axis=0) + margin + 1])
+        return numpy.clip(numpy.floor(ends), 0, grid.size).astype(int)
 
     def warp(self, raster, grid, text="Warping"):
         """Pixels and mask of the whole grid."""
@@ -347,21 +324,16 @@ def finish(pixels, mask, has_alpha, background, nodata=None):
 def write(pixels, output, grid):
     """Writes an array of shape (rows, columns, bands) as an image."""
     bands, kind, format = pixels.shape[2], pixels.dtype, output.format
-    deep = kind == numpy.uint16 and format == "png"
-    if format == "vti":
-        vtkfiles.write(grid.to_vtk(pixels), output)
-    elif deep or format in ("tif", "tiff"):
+    if format in ("tif", "tiff") or kind == numpy.uint16 and format == "png":
         _write_raster(output, grid, bands, kind, bands in (2, 4), None, [(0, 0, pixels)])
-    elif bands > (3 if format in OPAQUE else 4) or not (kind == numpy.uint8 or deep) or bands == 2 and format in OPAQUE:
-        raise Failure(f"A .{format} image cannot hold {bands} bands of {kind}: write a .tif or .vti.")
+    elif bands > (3 if format in OPAQUE else 4) or kind != numpy.uint8 or bands == 2 and format in OPAQUE:
+        raise Failure(f"A .{format} image cannot hold {bands} bands of {kind}: write a .tif.")
     else:
         from PIL import Image
 
-        options = {"quality": 95} if format in ("jpg", "jpeg") else {"compress_level": 3} if format == "png" else {}
-        # Written here, because Pillow does not notice full disks.
-        buffer = io.BytesIO()
-        Image.fromarray(pixels[:, :, 0] if bands == 1 else pixels).save(buffer, PILLOW_FORMATS.get(format, "PPM"), **options)
-        output.write_bytes(buffer.getbuffer())
+        options = {"jpg": {"quality": 95}, "jpeg": {"quality": 95}, "png": {"compress_level": 3}}.get(format, {})
+        image = Image.fromarray(pixels[:, :, 0] if bands == 1 else pixels)
+        image.save(output.path, PILLOW_FORMATS.get(format, "PPM"), **options)
 
 
 def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
@@ -370,19 +342,19 @@ def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
     warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
     x, y = grid.at(numpy.array([-0.5, -0.5]))
     place = {"crs": grid.crs, "transform": rasterio.Affine(*grid.steps[0], x, *grid.steps[1], y)} if grid.placed else {}
-    file = rasterio.open(
-        output.path, "w", driver="PNG" if output.format == "png" else "GTiff", width=grid.width, height=grid.height,
-        count=bands, dtype=dtype, nodata=nodata, tiled=True, blockxsize=512, blockysize=512, compress="deflate", zlevel=1,
-        BIGTIFF="IF_SAFER", num_threads="ALL_CPUS", **place,
-    )
-    if bands - has_alpha in (1, 3):
-        colors = ["gray"] if bands < 3 else ["red", "green", "blue"]
-        file.colorinterp = [rasterio.enums.ColorInterp[name] for name in colors + ["alpha"] * has_alpha]
-    for column, row, pixels in tiles:
-        window = rasterio.windows.Window(column, row, *pixels.shape[1::-1])
-        file.write(numpy.moveaxis(pixels, 2, 0), window=window)
+    profile = {"driver": "PNG" if output.format == "png" else "GTiff", "width": grid.width, "height": grid.height,
+               "count": bands, "dtype": dtype, "nodata": nodata, "tiled": True, "blockxsize": 512, "blockysize": 512,
+               "compress": "deflate", "zlevel": 1, "BIGTIFF": "IF_SAFER", "num_threads": "ALL_CPUS", **place}
     try:
-        file.close()
+        with rasterio.open(output.path, "w", **profile) as file:
+            if bands - has_alpha in (1, 3):
+                colors = ["gray"] if bands < 3 else ["red", "green", "blue"]
+                file.colorinterp = [rasterio.enums.ColorInterp[name] for name in colors + ["alpha"] * has_alpha]
+            for column, row, pixels in tiles:
+                window = rasterio.windows.Window(column, row, *pixels.shape[1::-1])
+                file.write(numpy.moveaxis(pixels, 2, 0), window=window)
+    except rasterio.errors.CRSError:
+        raise Failure(f"The coordinate reference system {grid.crs} is not known (--crs).", USAGE) from None
     except rasterio.errors.RasterioError as error:
         raise Failure(f"Cannot write {output.name}: {error}", FILE) from None
 

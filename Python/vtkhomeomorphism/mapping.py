@@ -3,48 +3,35 @@
 """Use of the filters by the commands: settings, errors, and the additions of PROJ's triangulation files to the map
 (heights, points outside, the distance from the piecewise linear map on the ground)."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkPointSet
 
-from .arrays import MASK, arrays_of, configure, make_mesh, points_of, update
+from . import report
+from .arrays import MASK, add_array, arrays_of, as_points, configure, make_mesh, points_of, update
 from .files import Failure, inform
 from .vtkfiles import take_messages
 from .vtkFiltersHomeomorphism import vtkDifferentiableHomeomorphism
 
 
-@dataclass
-class Settings:
-    """The options of the map."""
+def choose_system(settings, pair, default="smooth"):
+    """The options of the map with a system: for triangulation files Linear, which is their official meaning, otherwise
+    the default. Informs of a system that was not asked for."""
+    if settings["system"]:
+        return settings
+    system, why = ("linear", ", the official meaning of a triangulation file") if pair.shift else (default, "")
+    inform(f"The coordinate system is {system}{why} (--system).")
+    return {**settings, "system": system}
 
-    system: str = ""
-    """A key of SYSTEMS. If empty, the default of the command and the pair."""
-    mask_invalid: bool = False
-    options: dict = field(default_factory=dict)
-    """Further options of arrays.configure."""
 
-    def choose(self, pair, default="smooth"):
-        """The settings with a system: for triangulation files Linear, which is their official meaning, otherwise the
-        default, but Smooth where Cubic is the default of a surface. Informs of a system that the user did not choose."""
-        if self.system:
-            return self
-        system, why = default, ""
-        if pair.shift:
-            system, why = "linear", ", the official meaning of a triangulation file"
-        elif default == "cubic" and not pair.is_planar():
-            system, why = "smooth", ", because cubic maps meshes in a plane only"
-        inform(f"The coordinate system is {system}{why} (--system).")
-        return replace(self, system=system)
-
-    def set_up(self, algorithm, pair=None):
-        """The filter, with the options of the map, and the pair if it takes one."""
-        configure(algorithm, self.system or "smooth", **self.options)
-        algorithm.SetMaskInvalidTriangles(self.mask_invalid)
-        if pair:
-            algorithm.SetSourceData(pair.source)
-            algorithm.SetTargetData(pair.target)
-        return algorithm
+def set_up(algorithm, settings, pair=None):
+    """The filter, with the options of the map, and the pair if it takes one."""
+    configure(algorithm, **{**settings, "system": settings["system"] or "smooth"})
+    if pair:
+        algorithm.SetSourceData(pair.source)
+        algorithm.SetTargetData(pair.target)
+    return algorithm
 
 
 def run(algorithm, name):
@@ -55,72 +42,75 @@ def run(algorithm, name):
     except ValueError as error:
         raise Failure(f"{name}: {error}") from None
     warnings = take_messages()
-    if algorithm.GetErrorCode() != 0:
-        raise Failure(f"{name}: {warnings}")
     if warnings:
         inform(f"{name}: {warnings}")
     return result
 
 
-def add_array(data, name, values):
-    """Adds a point array."""
-    array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    data.GetPointData().AddArray(array)
-
-
 class PointMap:
     """The map of a pair, for points and data."""
 
+    moves = True  # whether points move
+
     def __init__(self, pair, settings, inverse=False):
         self.pair, self.settings, self.inverse, self.outside = pair, settings, inverse, 0
-        self.filter = settings.set_up(vtkDifferentiableHomeomorphism(), pair)
+        self.filter = set_up(vtkDifferentiableHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
         self.filter.SetOutputPointsPrecision(self.filter.DOUBLE_PRECISION)
 
     def map_data(self, data):
-        """A data object with moved points, whose point arrays include the mask and others requested of the filter."""
-        self.filter.SetDataObject(data)
+        """A data object with moved points, whose point arrays include the mask and others requested of the filter. For
+        a triangulation file, the third coordinate is a height, and points mapped by its fallback strategy have 1 in the
+        array Fallback."""
+        shift = self.pair.shift if isinstance(data, vtkPointSet) else None
+        requested = self.filter.GetComputeTriangleId()
+        if shift:
+            points = points_of(data)
+            flat = data.NewInstance()
+            flat.ShallowCopy(data)
+            flat.SetPoints(as_points(points[:, :2])[0])
+        self.filter.SetComputeTriangleId(requested or shift is not None)
+        self.filter.SetDataObject(flat if shift else data)
         try:
             result = run(self.filter, self.pair.name)
         except Failure:
-            from . import report
-
             # All kinds of defects; the filter reports the first only.
             report.require_map(self.pair)
             raise
+        self.filter.SetComputeTriangleId(requested)
         self.outside = self.filter.GetNumberOfOutsidePoints()
+        if shift:
+            self._complete(result, points)
+            if not requested:
+                result.GetPointData().RemoveArray("TriangleId")
         return result
 
-    def map_points(self, points):
-        """Images of points of shape (n, 2) or (n, 3), NaN outside, and arrays with one element per point by name:
-        vtkValidPointMask, those requested of the filter, and `Fallback` for a file with a fallback strategy. For a
-        triangulation file, the third coordinate is a height."""
-        shift, with_ids = self.pair.shift, self.filter.GetComputeTriangleId()
-        self.filter.SetComputeTriangleId(with_ids or shift is not None)
-        result = self.map_data(make_mesh(points[:, :2] if shift else points))
-        self.filter.SetComputeTriangleId(with_ids)
-        arrays = arrays_of(result.GetPointData())
-        images = points_of(result)[:, : points.shape[1]].copy()
-        images[arrays[MASK] == 0] = numpy.nan
-        if shift:
-            cells = arrays["TriangleId"] if with_ids else arrays.pop("TriangleId")
-            outside = shift.complete(points, images, cells.astype(numpy.int64), self.inverse)
-            if outside is not None:
-                arrays["Fallback"] = outside
-            if self.settings.system != "linear" and len(points):
-                self._report_deviation(points, images)
-        return images, arrays
-
-    def _report_deviation(self, points, images):
-        """Informs of the largest distance from Linear, the official meaning of a triangulation file, in meters if
-        the coordinate reference system is known."""
-        linear = PointMap(self.pair, replace(self.settings, system="linear"), self.inverse).map_points(points[:, :2])[0]
-        distances, unit = ground_distances(images[:, :2], linear, self.pair.shift.crs(self.inverse))
+    def _complete(self, result, points):
+        """Adds what a triangulation file has besides, and informs of the largest distance from Linear, its official
+        meaning, in meters if the coordinate reference system is known."""
+        shift, images = self.pair.shift, points_of(result).copy()
+        cells = arrays_of(result.GetPointData())["TriangleId"].astype(numpy.int64)
+        fallback = shift.complete(points, images, cells, self.inverse)
+        result.SetPoints(as_points(images)[0])
+        if fallback is not None:
+            add_array(result, "Fallback", fallback)
+        if self.settings["system"] == "linear" or not len(points):
+            return
+        linear = PointMap(replace(self.pair, shift=None), {**self.settings, "system": "linear"}, self.inverse)
+        official = linear.map_points(points[:, :2])[0]
+        distances, unit = ground_distances(images[:, :2], official, self.pair.crs(self.inverse)[1])
         if numpy.isfinite(distances).any():
             worst = numpy.nanargmax(distances)
-            inform(f"{self.settings.system.capitalize()} is farthest from Linear, the official meaning of "
+            inform(f"{self.settings['system'].capitalize()} is farthest from Linear, the official meaning of "
                    f"{self.pair.names[0]}, at point {worst}: {distances[worst]:.4g} {unit}.")
+
+    def map_points(self, points):
+        """Images of points of shape (n, 2) or (n, 3), NaN outside, and the arrays of map_data by name."""
+        result = self.map_data(make_mesh(points))
+        arrays = arrays_of(result.GetPointData())
+        images = points_of(result)[:, : points.shape[1]].copy()
+        images[(arrays[MASK] == 0) & (arrays.get("Fallback", 0) == 0)] = numpy.nan
+        return images, arrays
 
 
 def ground_distances(a, b, crs):

@@ -18,8 +18,7 @@ from .files import USAGE, Failure, dotted, import_extra, inform, quote
 
 MESHIO = ("off", "ply", "msh", "inp", "nas", "bdf", "xdmf", "med")
 READ = ("vtp", "vtk", "vtu", "obj", "stl") + MESHIO
-FLAT_WRITE = ("obj", "off", "ply")
-"""Formats that hold points and polygons only."""
+FLAT_WRITE = ("obj", "off", "ply")  # formats that hold points and polygons only
 WRITE = ("vtp", "vtk") + FLAT_WRITE
 
 
@@ -77,6 +76,7 @@ def _quiet_meshio(purpose):
 
 
 def _read_meshio(input):
+    """Points and polygons."""
     try:
         with _quiet_meshio(f"Reading {input.name}") as meshio, open(input.path, "rb") as file:
             if input.format != "ply":
@@ -88,40 +88,44 @@ def _read_meshio(input):
                 counts = [int(n) for n in re.findall(rb"element (?:vertex|face) (\d+)", data[:10000])]
                 if counts != [len(mesh.points), sum(len(block.data) for block in mesh.cells)]:
                     raise ValueError("points or faces are missing")
+            if mesh.points.shape[1:] != (3,) and (input.format == "ply" or mesh.points.shape[1:] != (2,)):
+                raise ValueError("its points do not have the coordinates x, y and z one after the other")
     except Failure:
         raise
     except Exception as error:
         input.fail_by(error)
-    if mesh.points.ndim != 2 or mesh.points.shape[1] not in (2, 3) or input.format == "ply" and mesh.points.shape[1] != 3:
-        input.fail("its points do not have the coordinates x, y and z one after the other.")
     return mesh.points, [polygon for block in mesh.cells if block.type in ("triangle", "quad", "polygon")
                          for polygon in numpy.asarray(block.data).tolist()]
+
+
+def read_data(input):
+    """The data object in a file of one of VTK's formats, or the mesh in another."""
+    if input.format in vtkfiles.FORMATS:
+        return vtkfiles.read(input)
+    points, polygons = _read_obj(input)[:2] if input.format == "obj" else _read_meshio(input)
+    for cell, polygon in enumerate(polygons):
+        if not 0 <= min(polygon) <= max(polygon) < len(points):
+            input.fail(f"cell {cell} has the points {quote(polygon)}, but there are {len(points)}, counted from 0.")
+    return make_mesh(points, polygons)
 
 
 def read(input):
     """The mesh in a file, vtkPolyData. Raises Failure."""
     if input.format not in READ:
         raise Failure(f"Cannot read {input.name} as a mesh: the formats are {dotted(('json', 'mesh') + READ)}.", USAGE)
-    if input.format == "obj" or input.format in MESHIO:
-        points, polygons = _read_obj(input)[:2] if input.format == "obj" else _read_meshio(input)
-        for cell, polygon in enumerate(polygons):
-            if not 0 <= min(polygon) <= max(polygon) < len(points):
-                input.fail(f"cell {cell} has the points {quote(polygon)}, but there are {len(points)}, counted from 0.")
-        mesh = make_mesh(points, polygons)
-    else:
-        mesh = vtkfiles.read(input)
+    mesh = read_data(input)
     if isinstance(mesh, vtkUnstructuredGrid):
-        mesh = _to_polygons(mesh, input)
+        grid, polygons = mesh, numpy.isin(vtk_to_numpy(mesh.GetCellTypesArray()), (5, 7, 9))
+        if not polygons.all():
+            input.fail(f"cell {polygons.argmin()} is not a polygon: a mesh consists of triangles only.")
+        mesh = make_mesh(points_of(grid), grid.GetCells())
+        mesh.GetPointData().ShallowCopy(grid.GetPointData())
+        mesh.GetCellData().ShallowCopy(grid.GetCellData())
     if not isinstance(mesh, vtkPolyData):
         input.fail(f"it holds a {mesh.GetClassName()}, not a mesh of triangles.")
     if mesh.GetNumberOfPolys() == 0 and mesh.GetNumberOfStrips() == 0:
         input.fail("it has no triangles.")
     return mesh
-
-
-def read_data(input):
-    """The data object in a file."""
-    return vtkfiles.read(input) if input.format in vtkfiles.FORMATS else read(input)
 
 
 def read_uv(input):
@@ -134,19 +138,9 @@ def read_uv(input):
     positions[corners] = texture[uv]
     seams = corners[(positions[corners] != texture[uv]).any(axis=1)]
     if len(seams):
-        input.fail(f"point {seams[0]} has several texture coordinates: the texture has a seam there. Cut the mesh along "
-                   "its seams first.")
+        input.fail(f"point {seams[0]} has several texture coordinates: the texture has a seam there. Cut the mesh "
+                   "along its seams first.")
     return make_mesh(positions, polygons)
-
-
-def _to_polygons(grid, input):
-    wrong = ~numpy.isin(vtk_to_numpy(grid.GetCellTypesArray()), (5, 7, 9))
-    if wrong.any():
-        input.fail(f"cell {wrong.argmax()} is not a polygon: a mesh consists of triangles only.")
-    mesh = make_mesh(points_of(grid), grid.GetCells())
-    mesh.GetPointData().ShallowCopy(grid.GetPointData())
-    mesh.GetCellData().ShallowCopy(grid.GetCellData())
-    return mesh
 
 
 def write(mesh, output):

@@ -10,11 +10,10 @@ from types import SimpleNamespace
 import click
 
 from . import pair
-from .arrays import BENDINGS, SYSTEMS
+from .arrays import BENDINGS, CENTERS, SYSTEMS
 from .files import PICTURES, USAGE, VECTORS, Failure, Input, Output, format_of, set_quiet
 from .images import read
 from .landmarks import is_landmark_file
-from .mapping import Settings
 
 
 class Number(click.FloatRange):
@@ -33,10 +32,9 @@ class Size(click.ParamType):
     name = "size"
 
     def convert(self, value, param, context):
-        size = tuple(map(int, value.split("x"))) if re.fullmatch(r"\d{1,6}x\d{1,6}", value) else ()
-        if not size or not all(1 <= n <= 100000 for n in size):
-            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, each from 1 to 100000, such as 640x480", param, context)
-        return size
+        if not re.fullmatch(r"[1-9]\d{0,4}x[1-9]\d{0,4}", value):
+            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, each from 1 to 99999, such as 640x480", param, context)
+        return tuple(map(int, value.split("x")))
 
 
 POSITIVE = Number(min=0, min_open=True)
@@ -47,15 +45,18 @@ def add(*options):
     return lambda command: functools.reduce(lambda result, option: option(result), reversed(options), command)
 
 
-def replacing(convert, names, new):
-    """A decorator: the command takes, instead of the options with some names, what `convert` makes of them."""
+def replacing(new, convert, *options):
+    """A decorator that adds options; instead of them, the command takes what `convert` makes of them."""
 
     def decorate(command):
         @functools.wraps(command)
         def wrapped(**given):
-            return command(**{new: convert(*(given.pop(name) for name in names))}, **given)
+            return command(**{new: convert(**{name: given.pop(name) for name in names})}, **given)
 
-        return wrapped
+        known = len(getattr(command, "__click_params__", ()))
+        result = add(*options)(wrapped)
+        names = [parameter.name for parameter in result.__click_params__[known:]]
+        return result
 
     return decorate
 
@@ -64,19 +65,18 @@ quiet = click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Pr
                      callback=lambda context, param, value: set_quiet(value))
 force = click.option("-f", "--force", is_flag=True, help="Replace existing files.")
 inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the target's domain to the source's.")
-mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles instead of refusing the pair.")
+mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles, do not refuse the pair.")
 format_option = click.option("--input-format", default="", metavar="EXTENSION",
-                             help="Format of standard input (-); default: json for a pair, csv for data, png for an image.")
+                             help="Format of standard input (-); default: json (pairs), csv (data), png (images).")
 
 
 def output(help, default, formats, what):
     """The options --output, --force and --output-format; the command takes `output`, an Output."""
-    return add(
+    return replacing(
+        "output", lambda output, force, output_format: Output(output, output_format, force, formats, what),
         click.option("-o", "--output", required=True, metavar="FILE", help=help), force,
-        click.option("--output-format", default=default, metavar="EXTENSION", show_default=True,
+        click.option("--output-format", default=default, metavar="EXTENSION",
                      help="Format of standard output (-)."),
-        replacing(lambda name, force, format: Output(name, format, force, formats, what),
-                  ("output", "force", "output_format"), "output"),
     )
 
 
@@ -85,23 +85,25 @@ def pair_files(names):
     files of the pair, the other file if there is one, and the options."""
     others = int(names.startswith("SOURCE [TARGET] "))
 
-    def read_inputs(files, target_array, target_uv, format, working_size, scan, without):
+    def read_inputs(files, scan, **given):
         if others and len(files) == 2 and format_of(files[0]) in PICTURES + VECTORS and is_landmark_file(files[1]):
             files = files[::-1]
         if not 1 + others <= len(files) <= 2 + others:
             raise click.UsageError(f"The files are {names}; found {len(files)}")
         if files.count("-") > 1:
             raise Failure("Only one of the files can come from standard input.", USAGE)
-        inputs = SimpleNamespace(
-            pair=files[: len(files) - others], other="".join(files[len(files) - others :]), names=names, crs=None,
-            target_array=target_array, target_uv=target_uv, format=format, working_size=working_size, scan=scan,
-            without=without)
-        inputs.grids = lambda marks: scan_grids(inputs)
+        end = len(files) - others
+        inputs = SimpleNamespace(pair=files[:end], other="".join(files[end:]), names=names, crs=None,
+                                 grids=[None, None], format=given.pop("input_format"), **given)
+        for side, name in enumerate(scan[:2]):
+            with Input(name) as file:
+                inputs.grids[side] = read(file).grid
         return inputs
 
-    return add(
+    return replacing(
+        "inputs", read_inputs,
         click.argument("files", nargs=-1, metavar=names),
-        click.option("--target-array", default="Target", metavar="NAME", show_default=True,
+        click.option("--target-array", default="Target", metavar="NAME",
                      help="Point array with the target's positions if one file has both meshes."),
         click.option("--target-uv", is_flag=True,
                      help="Use the texture coordinates of an OBJ file (vt, without seams) as the target."),
@@ -109,61 +111,44 @@ def pair_files(names):
                      help="For xmorph meshes that do not fill their images: the size of xmorph's working image "
                           "(resulting_size in its session file)."),
         click.option("--scan", default=(), multiple=True, metavar="FILE",
-                     help="For landmarks in an image's pixels: the image; its rectangle is the source's domain. A second "
-                          "--scan is the target's image."),
+                     help="For landmarks in an image's pixels: the image; its rectangle is the source's domain. A "
+                          "second --scan is the target's image."),
         click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
         format_option,
-        replacing(read_inputs, ("files", "target_array", "target_uv", "input_format", "working_size", "scan", "without"),
-                  "inputs"),
     )
 
 
-def scan_grids(inputs):
-    """The pixel grids of the images of --scan; None for an image that is not given."""
-    grids = [None, None]
-    for side, name in enumerate(inputs.scan[:2]):
-        with Input(name) as file:
-            grids[side] = read(file).grid
-    return grids
-
-
 def read_pair(inputs):
-    """The pair of the inputs of a command. Reports missing or misplaced files."""
+    """The pair of the inputs of a command. Says what the files were taken for if they are of the wrong kinds."""
     try:
         return pair.read(inputs.pair, inputs)
     except Failure as failure:
-        if failure.status != USAGE or not inputs.other:
+        if failure.exit_code != USAGE or not inputs.other:
             raise
         hint = f"(The files are {inputs.names}: {inputs.other} was taken for {inputs.names.split()[-1]}.)"
         raise Failure(f"{failure} {hint}", USAGE) from None
 
 
 def map_settings(default):
-    """Options of the map; the command takes `settings`."""
-
-    def make(system, bending, max_deviation, fairness, incenter, discordant, tolerance, mask_invalid):
-        return Settings(system or "", mask_invalid, {
-            "center": "incenter" if incenter else "centroid", "discordant_by_linear": discordant, "tolerance": tolerance,
-            "cubic_bending": bending, "maximum_deviation": max_deviation, "fairness_refinement": fairness})
-
-    return add(
+    """Options of the map; the command takes `settings`, those of arrays.configure."""
+    return replacing(
+        "settings", dict,
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
                      help="Coordinate system: linear (piecewise), contour (the published construction), smooth (twice "
-                          "continuously differentiable except at vertices) or cubic (continuously differentiable at vertices "
-                          f"too; planar meshes). Default: {default}."),
-        click.option("--bending", type=click.Choice(list(BENDINGS)), default="least", show_default=True,
+                          "continuously differentiable except at vertices) or cubic (continuously differentiable at "
+                          f"vertices too; planar meshes). Default: {default}."),
+        click.option("--bending", "cubic_bending", type=click.Choice(list(BENDINGS)), default="least",
                      help="Cubic: least bending, or a local map that depends on nearby vertices only."),
-        click.option("--max-deviation", type=POSITIVE, metavar="DISTANCE",
+        click.option("--max-deviation", "maximum_deviation", type=POSITIVE, metavar="DISTANCE",
                      help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
-        click.option("--fairness", type=click.IntRange(0, 4), default=0, metavar="LEVELS", show_default=True,
+        click.option("--fairness", "fairness_refinement", type=click.IntRange(0, 4), default=0, metavar="LEVELS",
                      help="Cubic: number of times that triangles are divided into four, for less bending."),
-        click.option("--incenter", is_flag=True, help="Contour: start the contours at the incenter."),
-        click.option("--linear-where-discordant", is_flag=True,
+        click.option("--center", type=click.Choice(list(CENTERS)), default="centroid",
+                     help="Contour: where the contours start."),
+        click.option("--linear-where-discordant", "discordant_by_linear", is_flag=True,
                      help="Contour: map discordant triangles by Linear instead of refusing the pair."),
         click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
                      help="Map points outside the domain, up to this distance, like the nearest point of the domain; "
-                          "relative to the diagonal of the domain (default: rounding only)."),
+                          "relative to the diagonal of the domain. 0: rounding only."),
         mask_option,
-        replacing(make, ("system", "bending", "max_deviation", "fairness", "incenter", "linear_where_discordant",
-                         "tolerance", "mask_invalid"), "settings"),
     )

@@ -10,25 +10,21 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import meshes
 from .arrays import SYSTEMS, make_mesh, points_of
-from .files import Failure, count as number
+from .files import Failure, count, join
 from .vtkFiltersHomeomorphism import vtkTriangulationPairReport
 from .vtkfiles import take_messages
 
 ADVICE = {
-    "UseSameMesh": "give the same mesh twice, with different coordinates",
-    "SplitMeshes": "split the meshes",
     "Triangulate": "ParaView's Triangulate makes triangles of them",
     "ReadAgain": "the file is corrupt",
-    "UseSourceCells": "give the target the source's cells",
     "RepairOrMask": "repair them, or leave them out with --mask-invalid",
     "CutOpen": "cut the surface open along edges, in both meshes alike",
     "MovePointsOrMask": "move points, or leave them out with --mask-invalid",
     "UseOtherSystem": "use another --system, or --linear-where-discordant",
-    "UseSmoothSystem": "use --system smooth",
-    "RefineLess": "use less --fairness-refinement, or --cubic-bending local",
+    "RefineLess": "use less --fairness, or --bending local",
     "FlattenOrUseTolerance": "project the mesh onto its plane, or use --tolerance",
 }
-"""What to do, by the remedies of the table of defects."""
+"""What to do, by the remedies of the table of defects whose names do not say it."""
 
 
 def in_words(name, separator=" "):
@@ -39,17 +35,15 @@ def in_words(name, separator=" "):
 class Report:
     """The filter's report on a pair."""
 
-    def __init__(self, pair, maps=False, continuity=False):
-        self.pair = pair
+    def __init__(self, pair, measure=False):
         self.filter = vtkTriangulationPairReport()
         self.filter.SetSourceData(pair.source)
         self.filter.SetTargetData(pair.target)
-        self.filter.SetMeasureMaps(maps)
-        self.filter.SetMeasureContinuity(continuity)
+        self.filter.SetMeasureMaps(measure)
+        self.filter.SetMeasureContinuity(measure)
         self.filter.Update()
         take_messages()
-        self.valid = bool(self.filter.GetValid())
-        self.measured = bool(self["Measured"])
+        self.valid, self.measured = bool(self["Valid"]), bool(self["Measured"])
 
     def __getitem__(self, column):
         return self.filter.GetStatistic(column)
@@ -61,39 +55,37 @@ class Report:
 
     def problems(self):
         """The defects, a dict for each kind and mesh, with all cell ids and a message."""
-        table = self.filter.GetDefects()
+        table, result = self.filter.GetDefects(), []
         ids = table.GetFieldData().GetAbstractArray("Ids")
-        result = []
         for i in range(table.GetNumberOfRows()):
-            kind, domain, remedy, outcome, count, first = (
-                table.GetValueByName(i, name).ToString() for name in ("Kind", "Domain", "Remedy", "Outcome", "Count", "FirstId")
-            )
-            cells = [int(ids.GetValue(k)) for k in range(int(first), int(first) + int(count))] if ids else []
+            row = {name: table.GetValueByName(i, name).ToString()
+                   for name in ("Kind", "Domain", "Remedy", "Outcome", "Count", "FirstId")}
+            if row["Outcome"] == "accepted":
+                continue
+            kind, domain, first = row["Kind"], row["Domain"], int(row["FirstId"])
+            cells = [int(ids.GetValue(k)) for k in range(first, first + int(row["Count"]))] if ids else []
+            which = f" ({count(len(cells), 'cell')}: {join(cells)})" if cells else ""
             where = f"in the {domain}: " if domain in ("source", "target") else ""
-            which = f" ({number(len(cells), 'cell')}: {', '.join(map(str, cells[:10]))}{', ...' if len(cells) > 10 else ''})"
-            message = f"{where}{in_words(kind)}{which if cells else ''}: {ADVICE.get(remedy, in_words(remedy))}"
-            if outcome != "accepted":
-                result.append({"kind": kind, "mesh": domain, "count": len(cells), "cells": cells, "message": message})
+            message = f"{where}{in_words(kind)}{which}: {ADVICE.get(row['Remedy'], in_words(row['Remedy']))}"
+            result.append({"kind": kind, "mesh": domain, "count": len(cells), "cells": cells, "message": message})
         return result
 
     def statistics(self):
-        """The filter's statistics for JSON: a dict, with one each of the source, the target and the systems, in it.
+        """The filter's statistics for JSON: a dict, with one each of the source, the target and the systems in it.
         Values that occur in a cell are dicts with value and cell; what was not measured is left out."""
-        table = self.filter.GetStatistics()
-        values = {table.GetColumnName(i): self[table.GetColumnName(i)] for i in range(table.GetNumberOfColumns())}
-        values = {name: value for name, value in values.items() if numpy.isfinite(value) and value != -1}
-        groups = {"Source": "source", "Target": "target", **{name.capitalize(): name for name in SYSTEMS}}
-        result = {}
-        for name, value in values.items():
-            if name.endswith("Cell") and name[:-4] in values:
+        table, result = self.filter.GetStatistics(), {name: {} for name in ("source", "target", *SYSTEMS)}
+        kinds = {"vtkIntArray": bool, "vtkIdTypeArray": int}
+        columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
+        values = {column.GetName(): column.GetVariantValue(0).ToDouble() for column in columns}
+        for column in columns:
+            name = column.GetName()
+            if not numpy.isfinite(values[name]) or values[name] == -1 or name.endswith("Cell") and name[:-4] in values:
                 continue
-            group = next((g for g in groups if name.startswith(g) and name != g), "")
-            member = int(value) if value.is_integer() else value
-            member = bool(value) if table.GetColumnByName(name).IsA("vtkIntArray") else member
+            group = next((g for g in result if name.lower().startswith(g) and name.lower() != g), "")
+            value = kinds.get(column.GetClassName(), float)(values[name])
             if name + "Cell" in values:
-                member = {"value": value, "cell": int(values[name + "Cell"])}
-            into = result.setdefault(groups[group], {}) if group else result
-            into[in_words(name[len(group) :], "_")] = member
+                value = {"value": value, "cell": int(values[name + "Cell"])}
+            (result[group] if group else result)[in_words(name[len(group) :], "_")] = value
         return result
 
 

@@ -6,8 +6,6 @@ import csv
 import re
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkStringArray
 
 from .files import USAGE, Failure, import_extra, quote
 
@@ -67,8 +65,8 @@ class Table:
         texts = [self.first[column] for column in self.columns]
         if self.names is None and all(_number(text) is None for text in texts) and not self._has_decimal_commas(0):
             if not columns:
-                input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x and y: "
-                           "name them (--columns).")
+                input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x "
+                           "and y: name them (--columns).")
             self.names = self.first
         if self.names is not None:
             self.frame = self.frame.iloc[1:].reset_index(drop=True)
@@ -167,25 +165,6 @@ class Table:
                 place = self.names.index(own) if own in self.names else place
                 self.names = self.names[:place] + [own] + self.names[place + 1 :]
             self.frame[place] = list(map(repr, column.tolist()))
-
-    def add_columns_to(self, data):
-        """Adds the columns that are not coordinates to the point arrays of a data set, as numbers if all values are."""
-        arrays = data.GetPointData()
-        for column in self.frame.columns.difference(self.columns):
-            name = self.names[column] if self.names else ""
-            name = name if name.strip() else f"Column{column + 1}"
-            while arrays.HasArray(name):
-                name += f"_{column + 1}"
-            texts = self.frame[column].tolist()
-            values = [_number(text) if text.strip() else numpy.nan for text in texts]
-            if None not in values:
-                array = numpy_to_vtk(numpy.array(values), deep=True)
-            else:
-                array = vtkStringArray()
-                for text in texts:
-                    array.InsertNextValue(text)
-            array.SetName(name)
-            arrays.AddArray(array)
 
     def write(self, output):
         """Writes the table with its original separator."""

@@ -12,25 +12,18 @@ import numpy
 
 from .files import quote
 
-DEEPEST = 100
-"""The depth to which arrays and objects may be nested."""
+DEEPEST = 100  # the depth to which arrays and objects may be nested
 
 STRATEGIES = ("none", "nearest_side", "nearest_centroid")
 CORNERS = ["idx_vertex1", "idx_vertex2", "idx_vertex3"]
-
-
-class Invalid(ValueError):
-    """A defect of a file."""
 
 
 @dataclass
 class Shift:
     """The contents of a triangulation file."""
 
-    source: numpy.ndarray
-    """Vertices in the source, of shape (n, 2)."""
-    target: numpy.ndarray
-    """The same in the target; the source's own of a file that shifts heights only."""
+    source: numpy.ndarray  # vertices in the source, of shape (n, 2)
+    target: numpy.ndarray  # the same in the target; the source's own of a file that shifts heights only
     triangles: numpy.ndarray
     heights: dict = field(default_factory=dict)
     """The heights in the file's own columns: offset_z, or source_z and target_z."""
@@ -78,8 +71,8 @@ class Shift:
         return result
 
     def complete(self, points, images, cells, inverse=False):
-        """Adds to the images of points, in triangles (-1: outside), what PROJ does besides: heights are shifted, and points
-        outside mapped by the fallback strategy. Returns a mask of these if there is a strategy."""
+        """Changes the images of points, of shape (n, 3), in triangles (-1: outside), as PROJ does: shifts heights, and
+        maps points outside by the fallback strategy. Returns a mask of these if there is a strategy."""
         flat, fallback = points[:, :2], None
         if self.fallback != "none":
             outside = numpy.flatnonzero((cells < 0) & numpy.isfinite(flat).all(axis=1))
@@ -91,22 +84,17 @@ class Shift:
         inside = cells >= 0
         if not self.horizontal:
             images[inside, :2] = flat[inside]
-        if points.shape[1] == 3:
-            images[:, 2] = numpy.where(inside, points[:, 2], numpy.nan)
-            if self.offsets is not None:
-                # By the position in the source, in both directions.
-                change = self.interpolate(self.offsets, (images if inverse else points)[inside, :2], cells[inside])
-                images[inside, 2] += -change if inverse else change
+        images[:, 2] = points[:, 2]
+        if self.offsets is not None:
+            # By the position in the source, in both directions.
+            change = self.interpolate(self.offsets, (images if inverse else points)[inside, :2], cells[inside])
+            images[inside, 2] += -change if inverse else change
         return fallback
-
-    def crs(self, inverse=False, output=True):
-        """The coordinate reference system of the domain that is mapped to (or from), or None."""
-        return self.metadata.get("output_crs" if output != inverse else "input_crs") or None
 
 
 def _expect(condition, message):
     if not condition:
-        raise Invalid(message)
+        raise ValueError(message)
 
 
 def _take_columns(document, member, names):
@@ -118,30 +106,29 @@ def _take_columns(document, member, names):
         _expect(name in columns, f'"{member}_columns" has no column "{name}".')
     chosen = [columns.index(name) for name in names]
     for i, row in enumerate(rows):
-        if not (isinstance(row, list) and len(row) == len(columns) and all(type(row[k]) in (int, float) for k in chosen)):
-            raise Invalid(f"{member}[{i}]: expected {len(columns)} values with numbers as {', '.join(names)}, "
-                          f"found {quote(row)}.")
+        if not (isinstance(row, list) and len(row) == len(columns) and {type(row[k]) for k in chosen} <= {int, float}):
+            raise ValueError(f"{member}[{i}]: expected {len(columns)} values with numbers as {', '.join(names)}, "
+                             f"found {quote(row)}.")
     try:
         return numpy.array([[row[k] for k in chosen] for row in rows], float).reshape(-1, len(names))
     except OverflowError:
-        raise Invalid(f'"{member}": a number is too large.') from None
+        raise ValueError(f'"{member}": a number is too large.') from None
 
 
 def read(path):
-    """Reads a file of format 1.x. Raises Invalid, naming the line or the member."""
+    """Reads a file of format 1.x. Raises ValueError, naming the line or the member."""
     with open(path, encoding="utf-8-sig", errors="replace") as file:
         text = file.read()
     # Brackets outside of strings. What Python's parser accepts depends on its version.
     signs = numpy.frombuffer(re.sub(r'"(?:[^"\\]|\\.)*"', "", text).encode(), numpy.uint8)
     steps = numpy.isin(signs, list(b"[{")).astype(int) - numpy.isin(signs, list(b"]}"))
-    if numpy.cumsum(steps).max(initial=0) > DEEPEST:
-        raise Invalid("arrays are nested too deep: this is not a triangulation file.")
+    _expect(numpy.cumsum(steps).max(initial=0) <= DEEPEST, "its arrays are nested too deep for a triangulation file.")
     try:
         document = json.loads(text)
     except json.JSONDecodeError as error:
-        raise Invalid(f"line {error.lineno}, column {error.colno}: {error.msg}.") from None
+        raise ValueError(f"line {error.lineno}, column {error.colno}: {error.msg}.") from None
     except ValueError as error:
-        raise Invalid(f"{quote(error)}.") from None
+        raise ValueError(f"{quote(error)}.") from None
     document = document if isinstance(document, dict) else {}
     fallback = document.get("fallback_strategy", "none")
     components = document.get("transformed_components")
@@ -157,7 +144,8 @@ def read(path):
     horizontal, vertical = (name in components for name in ("horizontal", "vertical"))
     names = ["source_x", "source_y"] + ["target_x", "target_y"] * horizontal
     if vertical:
-        names += ["offset_z"] if '"offset_z"' in json.dumps(document.get("vertices_columns")) else ["source_z", "target_z"]
+        has_offset = '"offset_z"' in json.dumps(document.get("vertices_columns"))
+        names += ["offset_z"] if has_offset else ["source_z", "target_z"]
     rows = document.get("triangles")
     values = _take_columns(document, "vertices", names)
     triangles = _take_columns(document, "triangles", CORNERS)
@@ -166,10 +154,9 @@ def read(path):
     first = wrong.argmax()
     _expect(not wrong.any(), f"triangles[{first}]: expected vertex numbers from 0 to {len(values) - 1}, "
             f"found {quote(rows[first])}.")
-    return Shift(
-        values[:, :2], values[:, 2:4] if horizontal else values[:, :2], triangles.astype(numpy.int64),
-        dict(zip(names[4 if horizontal else 2 :], values[:, 4 if horizontal else 2 :].T)), horizontal, fallback, document,
-    )
+    end = 4 if horizontal else 2
+    return Shift(values[:, :2], values[:, end - 2 : end], triangles.astype(numpy.int64),
+                 dict(zip(names[end:], values[:, end:].T)), horizontal, fallback, document)
 
 
 def text_of(shift):

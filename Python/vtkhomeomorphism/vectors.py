@@ -9,29 +9,22 @@ import io
 
 import numpy
 
-from .files import FILE, Failure, import_extra, quote_message
+from .files import FILE, USAGE, Failure, import_extra, inform, quote_message
 
 DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "shp": "ESRI Shapefile", "fgb": "FlatGeobuf"}
-MARK = "outside"
-"""The column of features that are not within the domain; their geometries are empty."""
-
-
-def _read(path):
-    import geopandas
-
-    try:
-        names = geopandas.list_layers(path)["name"]
-    except AttributeError:
-        # Before geopandas 1.0.
-        names = importlib.import_module("fiona").listlayers(path)
-    return {name: geopandas.read_file(path, layer=name) for name in names}
+MARK = "outside"  # the column of features that are not within the domain; their geometries are empty
 
 
 def read(input):
     """The layers of a file by name, GeoDataFrames."""
-    import_extra("geopandas", f"Reading {input.name}")
+    geopandas = import_extra("geopandas", f"Reading {input.name}")
     try:
-        return _read(input.path)
+        if hasattr(geopandas, "list_layers"):
+            names = geopandas.list_layers(input.path)["name"]
+        else:
+            # Before geopandas 1.0.
+            names = importlib.import_module("fiona").listlayers(input.path)
+        return {name: geopandas.read_file(input.path, layer=name) for name in names}
     except Exception as error:
         input.fail_by(error)
 
@@ -46,14 +39,10 @@ def write(layers, output):
             for name, layer in layers.items():
                 options = {"layer": name} if output.format == "gpkg" else {}
                 layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
-        # Read again, because GDAL does not tell when a disk is full at the end.
-        complete = list(map(len, _read(output.path).values())) == list(map(len, layers.values()))
     except OSError:
         raise
     except Exception as error:
         raise Failure(f"Cannot write {output.name}: {quote_message(error, output)}", FILE) from None
-    if not complete:
-        raise Failure(f"Cannot write {output.name}: features are missing in what was written.", FILE)
 
 
 def divide(points, step):
@@ -63,9 +52,10 @@ def divide(points, step):
     return numpy.column_stack([numpy.interp(numpy.arange(ends[-1] + 1), ends, column) for column in points.T])
 
 
-def map_layers(layers, map_points, densify=0.0):
+def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None):
     """The layers with each vertex mapped, once for all of them: `map_points` takes an array of shape (n, 3) and returns
-    images, NaN outside. Returns the layers, and the number of features that are not entirely inside the domain."""
+    images, NaN outside. Their coordinate reference system becomes `target_crs`; with None it stays, with "" there is
+    none. Returns the layers, and the number of features that are not entirely inside the domain."""
     from shapely.ops import transform
 
     collected, begin = [], 0
@@ -89,13 +79,22 @@ def map_layers(layers, map_points, densify=0.0):
 
     divided = {name: [s if s is None or s.is_empty else transform(collect, s) for s in layer.geometry]
                for name, layer in layers.items()}
-    images = map_points(numpy.vstack(collected) if collected else numpy.empty((0, 3)))
+    images = map_points(numpy.vstack([numpy.empty((0, 3)), *collected]))
     lost = numpy.isnan(images[:, :2]).any(axis=1)
     images[lost] = 0.0
     result, outside = {}, 0
     for name, layer in layers.items():
+        if source_crs and layer.crs and layer.crs != source_crs:
+            inform(f"Layer {name}: its coordinate reference system is {layer.crs.to_string()}, but the map is from "
+                   f"{source_crs}.")
         shapes, marks = zip(*map(map_shape, divided[name])) if divided[name] else ((), ())
         result[name] = layer.set_geometry(list(shapes), crs=layer.crs)
+        if target_crs is not None:
+            result[name].crs = None
+            try:
+                result[name].crs = target_crs or None
+            except Exception as error:
+                raise Failure(f"The coordinate reference system {target_crs} is not known: {error}", USAGE) from None
         if any(marks):
             result[name][MARK] = numpy.array(marks, int)
             outside += sum(marks)

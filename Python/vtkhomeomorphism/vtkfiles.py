@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's readers and writers. Run as `python -m vtkhomeomorphism.vtkfiles FILE FORMAT` it reads a file and reports
-success: damaged files crash some of VTK's readers or block them for minutes, so a child process tries first."""
+"""VTK's readers and writers. Run as `python -m vtkhomeomorphism.vtkfiles FILE FORMAT SECONDS` it reads a file and
+reports success: damaged files crash some of VTK's readers or block them for minutes, so a child process tries first."""
 
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
 
@@ -20,8 +22,7 @@ from vtkmodules.vtkIOGeometry import vtkSTLReader
 from .files import FILE, USAGE, Failure, quote
 
 FORMATS = ("vtp", "vtu", "vts", "vtr", "vti", "vtm", "vtmb", "vtpd", "vtpc", "vtk", "stl")
-SECONDS, SECONDS_A_MEGABYTE = 10, 2
-"""How long reading may take."""
+SECONDS, SECONDS_A_MEGABYTE = 10, 2  # of processor time for reading
 
 def capture_messages():
     """Keeps VTK's errors and warnings from standard error."""
@@ -47,7 +48,6 @@ def _read(path, format):
             getattr(reader, f"ReadAll{kind}On")()
     elif format == "stl":
         reader = vtkSTLReader()
-        reader.MergingOff()
     else:
         reader = xml.vtkXMLGenericDataObjectReader()
     reader.SetFileName(path)
@@ -65,21 +65,21 @@ def leaves_of(data):
 
 
 def _find_bad_cell(data):
-    """A defect of the point ids of cells. VTK's readers do not check them, and invalid ids would be read out of bounds."""
+    """A defect of the point ids of cells, which VTK's readers do not check. They would be read out of bounds."""
+    kinds = {vtkPolyData: ("Verts", "Lines", "Polys", "Strips"), vtkUnstructuredGrid: ("Cells",)}
     for leaf in leaves_of(data):
         first, last = 0, leaf.GetNumberOfPoints() - 1
-        names = ("Verts", "Lines", "Polys", "Strips") if isinstance(leaf, vtkPolyData) else ("Cells",)
-        for name in names if isinstance(leaf, (vtkPolyData, vtkUnstructuredGrid)) else ():
+        for name in kinds.get(type(leaf), ()):
             cells = getattr(leaf, "Get" + name)()
             if cells is None or cells.GetNumberOfCells() == 0:
                 continue
             if not cells.IsValid():
                 return "the offsets that say where each cell's points begin are wrong."
             ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
-            sizes, bad = numpy.diff(offsets), (ids < 0) | (ids > last)
-            if bad.any():
-                cell = first + int(numpy.searchsorted(offsets, bad.argmax(), "right")) - 1
-                return f"cell {cell} has the point {ids[bad.argmax()]}, but points go from 0 to {last}."
+            sizes, bad = numpy.diff(offsets), numpy.flatnonzero((ids < 0) | (ids > last))
+            if len(bad):
+                cell = first + int(numpy.searchsorted(offsets, bad[0], "right")) - 1
+                return f"cell {cell} has the point {ids[bad[0]]}, but points go from 0 to {last}."
             if name in ("Polys", "Strips") and sizes.min() < 3:
                 return f"cell {first + sizes.argmin()} is a polygon of {sizes.min()} points."
             first += len(sizes)
@@ -88,13 +88,12 @@ def _find_bad_cell(data):
 
 def read(input):
     """The data object in a file of one of FORMATS. Raises Failure."""
-    limit = SECONDS + SECONDS_A_MEGABYTE * os.path.getsize(input.path) / 1e6
-    command = [sys.executable, "-m", __spec__.name, input.path, input.format]
+    limit = int(SECONDS + SECONDS_A_MEGABYTE * os.path.getsize(input.path) / 1e6)
+    command = [sys.executable, "-m", __spec__.name, input.path, input.format, str(limit)]
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
-    try:
-        child = subprocess.run(command, env=environment, capture_output=True, timeout=limit)
-    except subprocess.TimeoutExpired:
-        input.fail(f"reading takes longer than {limit:.0f} seconds: the file is damaged.")
+    child = subprocess.run(command, env=environment, capture_output=True)
+    if child.returncode == -signal.SIGXCPU:
+        input.fail(f"reading takes longer than {limit} seconds: the file is damaged.")
     if child.returncode not in (0, 1):
         input.fail("VTK's reader crashes: the file is damaged or has been cut off.")
     if child.returncode == 1:
@@ -108,14 +107,19 @@ def write(data, output):
     writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
     right = writer.GetDefaultFileExtension() if writer else "vtk"
     if output.format not in ("vtk", right):
-        raise Failure(f"A .{output.format} file cannot hold a {data.GetClassName()}: give the output the extension .{right}.",
-                      USAGE)
+        raise Failure(f"A .{output.format} file cannot hold a {data.GetClassName()}: use a .{right}.", USAGE)
     take_messages()
     if output.format == "vtk":
         writer = legacy.vtkGenericDataObjectWriter()
         writer.SetFileTypeToBinary()
     else:
-        _require_names(data)
+        names = [attributes.GetAbstractArray(i).GetName() or "" for leaf in leaves_of(data)
+                 for attributes in (leaf.GetPointData(), leaf.GetCellData(), leaf.GetFieldData())
+                 for i in range(attributes.GetNumberOfArrays())]
+        for name in names:
+            if set(name) & set("&<>\"'"):
+                raise Failure(f"The name of the array {quote(name)} has a character that VTK's XML files cannot hold "
+                              "(& < > \" '): rename it, or write a .vtk.")
         # VTK before 9.4 cannot read appended data with every version of expat.
         writer.SetDataModeToBinary()
     writer.WriteToOutputStringOn()
@@ -128,21 +132,12 @@ def write(data, output):
     output.write_bytes(text if isinstance(text, bytes) else text.encode())
 
 
-def _require_names(data):
-    for leaf in leaves_of(data):
-        for attributes in (leaf.GetPointData(), leaf.GetCellData(), leaf.GetFieldData()):
-            for i in range(attributes.GetNumberOfArrays()):
-                name = attributes.GetAbstractArray(i).GetName() or ""
-                if set(name) & set("&<>\"'"):
-                    raise Failure(f"The name of the array {quote(name)} has a character that VTK's XML files cannot hold "
-                                  "(& < > \" '): rename it, or write a .vtk.")
-
-
 if __name__ == "__main__":
     capture_messages()
     sys.stderr = open(os.devnull, "w")
     try:
-        found = _read(*sys.argv[1:])[1]
+        resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[3]), int(sys.argv[3]) + 5))
+        found = _read(*sys.argv[1:3])[1]
     except MemoryError:
         found = "it asks for more memory than there is."
     sys.stdout.buffer.write(found.encode("utf-8", "replace"))

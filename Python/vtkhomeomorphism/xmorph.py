@@ -3,30 +3,27 @@
 """Meshes of xmorph and gtkmorph: grids of quadrilaterals placed on two photographs by hand. Rows run from the top,
 y downwards."""
 
-import numpy
+import re
 
-LARGEST = 10000
-"""The most columns or rows."""
+import numpy
 
 
 def read(path):
     """The grid's points, of shape (rows, columns, 2). Raises ValueError, naming the line."""
     with open(path, encoding="utf-8", errors="replace") as file:
-        lines = [line.split()[:2] for line in file.read().split("\n")]
-
-    def numbers(line, kind, expected):
-        try:
-            first, second = map(kind, lines[line])
-            return first, second
-        except (ValueError, IndexError):
-            raise ValueError(f"line {line + 1}: expected {expected}.") from None
-
-    if lines[0][:1] != ["M2"]:
-        raise ValueError("line 1: expected M2, the first line of an xmorph mesh.")
-    columns, rows = numbers(1, int, "the numbers of columns and rows")
-    if not (2 <= columns <= LARGEST and 2 <= rows <= LARGEST):
-        raise ValueError(f"line 2: expected the numbers of columns and rows, 2 to {LARGEST}.")
-    points = [numbers(i, float, f"x and y of point {i - 2}") for i in range(2, 2 + columns * rows)]
+        header = re.fullmatch(r"M2\s*\n\s*([1-9]\d{0,3})\s+([1-9]\d{0,3})\b.*\n?", file.readline() + file.readline())
+        if not header or "1" in header.groups():
+            raise ValueError("expected M2 in line 1, and in line 2 the numbers of columns and rows, 2 to 9999.")
+        columns, rows = map(int, header.groups())
+        points = []
+        for number, line in zip(range(3, 3 + columns * rows), file):
+            try:
+                x, y = map(float, line.split()[:2])
+            except ValueError:
+                raise ValueError(f"line {number}: expected x and y of point {number - 3}.") from None
+            points.append((x, y))
+    if len(points) < columns * rows:
+        raise ValueError(f"line {3 + len(points)}: expected {columns * rows} points, found the end.")
     return numpy.array(points).reshape(rows, columns, 2)
 
 
@@ -45,8 +42,7 @@ def fills_picture(grid):
 def _smallest_angle(grid, triangles):
     """The smallest angle of each triangle (..., 3) in the grid; negative if it is flipped."""
     corners = grid.reshape(-1, 2)[triangles]
-    u = numpy.roll(corners, -1, axis=-2) - corners
-    v = numpy.roll(corners, -2, axis=-2) - corners
+    u, v = numpy.roll(corners, -1, axis=-2) - corners, numpy.roll(corners, -2, axis=-2) - corners
     cross = v[..., 0] * u[..., 1] - v[..., 1] * u[..., 0]
     return numpy.arctan2(cross, (u * v).sum(axis=-1)).min(axis=-1)
 
@@ -55,12 +51,10 @@ def triangulate(first, second):
     """Divides each quadrilateral along the diagonal with the larger smallest angle in both grids (y upwards)."""
     if first.shape != second.shape:
         raise ValueError("the two meshes do not have the same numbers of columns and rows.")
-    columns = first.shape[1]
+    ids = numpy.arange(first[..., 0].size).reshape(first.shape[:2])
     # The corners a, b and below them d, c.
-    a = numpy.arange(first[..., 0].size).reshape(first.shape[:2])[:-1, :-1].ravel()
-    b, c, d = a + 1, a + columns + 1, a + columns
+    a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
     cuts = [numpy.stack(corners, axis=1).reshape(-1, 2, 3) for corners in ((a, b, c, a, c, d), (a, b, d, b, c, d))]
     along_ac, along_bd = (
-        numpy.minimum(_smallest_angle(first, cut), _smallest_angle(second, cut)).min(axis=1) for cut in cuts
-    )
+        numpy.minimum(_smallest_angle(first, cut), _smallest_angle(second, cut)).min(axis=1) for cut in cuts)
     return numpy.where((along_ac >= along_bd)[:, None, None], *cuts).reshape(-1, 3)

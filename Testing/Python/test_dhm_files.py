@@ -33,7 +33,7 @@ def pair(dhm):
 COMMANDS = [
     ["map", "pair.json", "points.csv", "-o", "out.csv"],
     *[["map", "pair.json", "data.vtk", "-o", f"out.{e}"] for e in ("vtp", "vtk", "obj")],
-    *[["warp", "pair.json", "image.png", "-o", f"out.{e}"] for e in ("png", "jpg", "tif", "ppm", "vti")],
+    *[["warp", "pair.json", "image.png", "-o", f"out.{e}"] for e in ("png", "jpg", "tif", "ppm")],
     *[["figure", "pair.json", "--grid", "3", "-o", f"out.{e}"] for e in ("png", "svg", "pdf")],
     ["refine", "pair.json", "--max-error", "0.5", "-o", "out.json"],
     *[["convert", "pair.json", "-o", f"out.{e}"] for e in ("json", "vtp", "vtk")],
@@ -99,7 +99,7 @@ def test_standard_input(dhm, pair):
     off = dhm.path("target.off").read_bytes()
     out = dhm("map", "source.off", "-", "points.csv", "-s", "linear", "--input-format", "off", "-o", "-", input=off).out
     assert out == expected
-    assert b"<VTKFile" in dhm("map", "pair.json", "-", "-o", "-", "--output-format", "vtp", input=points).out
+    assert b"<VTKFile" in dhm("convert", "-", "-o", "-", "--output-format", "vtp", input=text).out
     dhm.refuse(FILE, "check", "-", input=off, says=("standard input", "--input-format"))
     dhm.refuse(FILE, "map", "pair.json", "-", "-o", "n.csv", input=off, says=("standard input", "--input-format"))
     dhm.refuse(FILE, "warp", "pair.json", "-", "-o", "n.png", input=off, says=("standard input", "--input-format"))

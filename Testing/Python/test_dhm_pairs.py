@@ -165,8 +165,7 @@ def test_morph_refusals(dhm, faces):
     images = ("--source-image", "0.ppm", "--target-image", "1.ppm")
     for options, output, says in (
             (images, "new.png", "%03d"), (images, "new%d.gif", ".png"), ((), "new%d.png", "--source-image"),
-            ((), "new%d-%d.vtp", "one place"), ((*images, "--data", "0.ppm"), "new%d.png", "--data"),
-            (("--data", "p.csv"), "new%d.vtp", "dhm coordinates"), ((*images, "--frames", "1"), "new%d.png", "--frames")):
+            ((), "new%d-%d.vtp", "one place"), ((*images, "--frames", "1"), "new%d.png", "--frames")):
         dhm.refuse(USAGE, "morph", "pair.json", *options, "-o", output, says=says)
     Image.fromarray(numpy.zeros((18, 24), "u1")).save(dhm.path("gray.pgm"))
     dhm.refuse(REFUSED, "morph", "pair.json", "--source-image", "0.ppm", "--target-image", "gray.pgm", "-o", "new%d.png",
@@ -176,7 +175,7 @@ def test_morph_refusals(dhm, faces):
 
 
 def test_figures(dhm, faces):
-    for name, options in (("a.png", ["--all-systems"]), ("b.png", ["--close-up", "10,8,2", "--image", "0.ppm"]),
+    for name, options in (("a.png", ["--all-systems"]), ("b.png", ["--close-up", "10", "8", "2", "--image", "0.ppm"]),
                           ("c.svg", []), ("d.pdf", [])):
         dhm("figure", "pair.json", "--width", "100", "--grid", "4", *options, "-o", name)
     assert Image.open(dhm.path("a.png")).size[0] == 5 * 100
@@ -184,8 +183,8 @@ def test_figures(dhm, faces):
     assert len(numpy.unique(pixels.reshape(-1, 3), axis=0)) > 200
     assert xml.etree.ElementTree.parse(dhm.path("c.svg")).getroot().tag.endswith("svg")
     assert dhm.path("d.pdf").read_bytes().startswith(b"%PDF-")
-    for values in ("1,2", "a,b,c", "0,0,-1", "nan,0,1", ","):
-        dhm.refuse(USAGE, "figure", "pair.json", "--close-up=" + values, "-o", "new.png", says="X,Y,R")
+    for values in ("a b c", "0 0 -1", "nan 0 1"):
+        dhm.refuse(USAGE, "figure", "pair.json", "--close-up", *values.split(), "-o", "new.png", says="--close-up")
     for option in ("--grid=0", "--grid=1.5", "--width=49", "--width=nan"):
         dhm.refuse(USAGE, "figure", "pair.json", option, "-o", "new.png", says=option.split("=")[0])
     dhm.refuse(USAGE, "figure", "pair.json", "-o", "new.jpg", says=".png")

@@ -10,7 +10,7 @@ import subprocess
 
 import numpy
 import pytest
-from conftest import DONE, FILE, REFUSED
+from conftest import DONE, FILE, USAGE
 from pairs import SHARED_DATA, Pair, inside_points, map_points, read_csv, read_json, write_csv, xy
 
 FINLAND = SHARED_DATA / "fi_nls_ykj_etrs35fin.json"
@@ -88,7 +88,7 @@ def test_tables_that_lost_rows(dhm, name, rows):
 
 @cases
 @pytest.mark.parametrize("arguments, status, says", [
-    (["map", "square.json", "column_names.csv", "-o", "new.vtp"], REFUSED, ["R&D", ".vtk"]),
+    (["map", "square.json", "column_names.csv", "-o", "new.vtp"], USAGE, ["column_names.csv", ".csv"]),
     (["map", "square.json", "polygon_of_2_points.vtp", "-o", "new.vtp"], FILE, ["polygon_of_2_points.vtp", "2 points"]),
     (["convert", "badid.vtu", "badid.vtu", "-o", "new.json"], FILE, ["badid.vtu", "cell 0", "1000000000000"]),
     (["map", "square.json", "short_string_array.vtp", "-o", "new.vtp"], FILE, ["short_string_array.vtp"]),

@@ -5,18 +5,19 @@
 import click
 
 from .. import options, pair
-from ..arrays import arrays_of, make_mesh
 from ..data import Data, data_options
-from ..mapping import run
+from ..mapping import PointMap, run, set_up
 from ..vtkFiltersHomeomorphism import vtkTriangularCoordinates
 
 
-class Coordinates:
+class Coordinates(PointMap):
     """Attaches triangular coordinates to points."""
+
+    moves = False
 
     def __init__(self, mesh, settings, name):
         self.name = name
-        self.filter = settings.set_up(vtkTriangularCoordinates())
+        self.filter = set_up(vtkTriangularCoordinates(), settings)
         self.filter.SetInputDataObject(0, mesh)
         self.filter.GenerateLinesOff()
 
@@ -26,16 +27,12 @@ class Coordinates:
         self.outside = self.filter.GetNumberOfOutsidePoints()
         return result
 
-    def map_points(self, points):
-        return points, arrays_of(self.map_data(make_mesh(points)).GetPointData())
-
 
 @click.command("coordinates")
 @click.argument("files", nargs=2, metavar="MESH DATA")
 @options.format_option
 @data_options
 @options.map_settings("smooth")
-@options.quiet
 def command(files, input_format, output, columns, require_inside, settings):
     """Attach triangular coordinates in a mesh to points.
 
@@ -43,4 +40,4 @@ def command(files, input_format, output, columns, require_inside, settings):
     TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1
     on the edge) and vtkValidPointMask."""
     work = Coordinates(pair.read_mesh(files[0], input_format), settings, files[0])
-    Data(output, columns, require_inside).process(files[1], input_format, work, moves=False)
+    Data(work, output, columns, require_inside).process(files[1], input_format)

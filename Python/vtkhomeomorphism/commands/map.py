@@ -6,7 +6,7 @@ import click
 
 from .. import options
 from ..data import Data, data_options
-from ..mapping import PointMap
+from ..mapping import PointMap, choose_system
 
 
 @click.command("map")
@@ -19,33 +19,26 @@ from ..mapping import PointMap
               help="Divide longer segments of vector data first; segments are straight between their mapped ends.")
 @click.option("-j", "--jacobian", is_flag=True,
               help="Add the array Jacobian: the derivative at each point, 9 numbers in row-major order.")
-@click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas at each point.")
+@click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas.")
 @click.option("--triangle-id", is_flag=True, help="Add the array TriangleId: the cell id of each point's triangle.")
-@click.option("--transform-all-vectors", is_flag=True, help="Transform all arrays of 3, 6 and 9 components by the "
-              "derivative, in addition to active vectors, normals and tensors.")
 @click.option("--keep-vectors", is_flag=True, help="Do not transform active vectors, normals and tensors.")
 @options.pair_files("SOURCE [TARGET] DATA")
-@options.quiet
-def command(inputs, output, columns, require_inside, settings, inverse, crs, densify, jacobian, determinant, triangle_id,
-            transform_all_vectors, keep_vectors):
+def command(inputs, output, columns, require_inside, settings, inverse, crs, densify, jacobian, determinant,
+            triangle_id, keep_vectors):
     """Map data from the source's domain to the target's.
 
-    DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl), a
-    VTK file (.vtp .vtu .vts .vtr .vti .vtm .vtk), or an image, whose pixels are mapped as points (use dhm warp to warp
-    it).
+    DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl),
+    or a VTK file (.vtp .vtu .vts .vtr .vti .vtm .vtk).
 
     Points outside the domain become nan and have the value 0 in vtkValidPointMask; features outside become empty. For a
     PROJ triangulation file, heights (a third coordinate) and the fallback strategy are handled as in PROJ."""
     inputs.crs = None if inverse else crs
     pair = options.read_pair(inputs)
-    work = PointMap(pair, settings.choose(pair), inverse)
+    work = PointMap(pair, choose_system(settings, pair), inverse)
     work.filter.SetComputeJacobian(jacobian)
     work.filter.SetComputeJacobianDeterminant(determinant)
     work.filter.SetComputeTriangleId(triangle_id)
-    work.filter.SetTransformAllInputVectors(transform_all_vectors)
     work.filter.SetTransformActiveAttributes(not keep_vectors)
-    known = (pair.shift.crs(inverse, output=False), pair.shift.crs(inverse)) if pair.shift else (None, None)
-    if pair.landmarks and pair.landmarks.crs:
-        # Pixels have no coordinate reference system.
-        known = (pair.landmarks.crs, "") if inverse else (None, pair.landmarks.crs)
-    Data(output, columns, require_inside, crs, pair.shift).process(inputs.other, inputs.format, work, True, densify, known)
+    source, target = pair.crs(inverse)
+    Data(work, output, columns, require_inside, densify, (source, target if crs is None else crs), pair.shift).process(
+        inputs.other, inputs.format)

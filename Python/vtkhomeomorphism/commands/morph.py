@@ -2,30 +2,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """dhm morph"""
 
-import re
 from dataclasses import replace
 
 import click
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .. import images, meshes, options, pair, vtkfiles
-from ..files import PICTURES, TABLES, USAGE, Failure, Input, Output, count, format_of, inform, progress
-from ..mapping import PointMap, run
+from .. import images, meshes, options, vtkfiles
+from ..files import PICTURES, USAGE, Failure, Input, Output, count, format_of, inform, progress
+from ..mapping import choose_system, run
 from ..vtkFiltersHomeomorphism import vtkInBetweenTriangulation
 from .warp import background_option
 
 PATHS = {"straight": vtkInBetweenTriangulation.STRAIGHT, "rotating": vtkInBetweenTriangulation.ROTATING,
          "best": vtkInBetweenTriangulation.FEWEST_FOLDS}
-
-
-def frame_names(pattern, number):
-    """File names, with %d or %03d replaced by the number of the frame."""
-    parts = re.split(r"(%0?[1-9]?d)", pattern)
-    if len(parts) != 3:
-        raise Failure(f"The output's name must have one place for the frame's number, such as frame-%03d.png: {pattern}.",
-                      USAGE)
-    return [parts[0] + parts[1] % k + parts[2] for k in range(number)]
 
 
 def make_meshes(both, mask_invalid, path, times):
@@ -36,24 +26,23 @@ def make_meshes(both, mask_invalid, path, times):
     filter.SetMaskInvalidTriangles(mask_invalid)
     filter.SetPath(PATHS[path])
     result, folded = [], []
-    for time in times:
+    for frame, time in enumerate(times):
         filter.SetTime(time)
         # The next output of the filter must be a separate object.
         mesh = vtkPolyData()
         mesh.ShallowCopy(run(filter, both.name))
         mesh.GetCellData().RemoveArray("Folded")
         result.append(mesh)
-        folded += [time] * (filter.GetNumberOfFoldedTriangles() > 0)
+        folded += [f"frame {frame} (at {time:.4g})"] * (filter.GetNumberOfFoldedTriangles() > 0)
     if filter.GetMirrored():
         raise Failure(f"{both.name}: the target is a mirror image of the source: all triangles fold on the way.")
     number = filter.GetNumberOfFoldingTriangles()
+    where = (f"{both.name}: {count(number, 'triangle folds', 'triangles fold')} on the way (cell "
+             f"{filter.GetFirstFoldingTriangle()} first, from {filter.GetFirstFoldTime():.4g} on; the last until "
+             f"{filter.GetLastFoldTime():.4g})")
+    if folded:
+        raise Failure(f"{where}, and {folded[0]} has folded triangles. Put a mesh in between and morph in two steps.")
     if number:
-        where = (f"{both.name}: {count(number, 'triangle folds', 'triangles fold')} on the way (cell "
-                 f"{filter.GetFirstFoldingTriangle()} first, from {filter.GetFirstFoldTime():.4g} on; the last until "
-                 f"{filter.GetLastFoldTime():.4g})")
-        if folded:
-            raise Failure(f"{where}, and frame {times.index(folded[0])} (at {folded[0]:.4g}) has folded triangles. Put a "
-                          "mesh in between and morph in two steps.")
         inform(where + ", but in none of the frames.")
     return result
 
@@ -71,35 +60,28 @@ def blend(first, second, t):
               "number, such as frame-%03d.png.")
 @options.force
 @click.option("--source-image", default="", metavar="FILE", help="Image over the source.")
-@click.option("--target-image", default="", metavar="FILE", help="Image over the target. With both images, the first fades "
-              "into the second.")
-@click.option("--data", default="", metavar="FILE", help="Data over the source, instead of images (default: the source "
-              "mesh).")
-@click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER", show_default=True,
+@click.option("--target-image", default="", metavar="FILE", help="Image over the target, into which a first one fades.")
+@click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER",
               help="Number of frames, including the first and the last.")
-@click.option("--path", type=click.Choice(list(PATHS)), default="best", show_default=True,
+@click.option("--path", type=click.Choice(list(PATHS)), default="best",
               help="Paths of the points: straight, rotating with the mesh as a whole, or the one with fewer folds.")
 @click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT",
               help="Size of the frames (default: the source image's).")
 @background_option
-@options.map_settings("cubic; on surfaces smooth; for a PROJ triangulation file linear")
+@options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.pair_files("SOURCE [TARGET]")
-@options.quiet
-def command(inputs, output, force, source_image, target_image, data, frames, path, size, background, settings):
-    """Morph images or data from the source to the target, in frames.
+def command(inputs, output, force, source_image, target_image, frames, path, size, background, settings):
+    """Morph images or the mesh from the source to the target, in frames.
 
     If a triangle is folded in a frame, nothing is written (status 1)."""
     names, format = (source_image, target_image), format_of(output)
-    for wrong, message in (
-            (any(names) and data, "Morph either images or data (--data), not both."),
-            (not any(names) and format in PICTURES, f"Meshes and data are not images (.{format}): give --source-image or "
-             "--target-image, or write .vtp."),
-            (format_of(data) in TABLES, f"{data} is a table, which has to become a .vtp first: dhm coordinates SOURCE {data} "
-             "-o points.vtp.")):
-        if wrong:
-            raise Failure(message, USAGE)
-    known = images.WRITE if any(names) else vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
-    outputs = [Output(name, "", force, known, "frames") for name in frame_names(output, frames)]
+    if not any(names) and format in PICTURES:
+        raise Failure(f"Meshes are not images (.{format}): write .vtp, or give --source-image.", USAGE)
+    known = PICTURES if any(names) else vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE
+    try:
+        outputs = [Output(output % k, "", force, known, "frames") for k in range(frames)]
+    except (TypeError, ValueError):
+        raise Failure(f"{output} must have one place for the frame's number, such as frame-%03d.png.", USAGE) from None
     color = images.read_background(background, format) if any(names) else None
     rasters = {}
     for side, name in enumerate(names):
@@ -108,29 +90,22 @@ def command(inputs, output, force, source_image, target_image, data, frames, pat
                 rasters[side] = images.read(file)
     if rasters:
         first = rasters.get(0, rasters.get(1))
-        inputs.grids = lambda marks: [rasters.get(side, first).grid for side in (0, 1)]
+        inputs.grids = [rasters.get(side, first).grid for side in (0, 1)]
     both = options.read_pair(inputs)
-    settings = settings.choose(both, "cubic")
-    things = both.source
-    if data:
-        with Input(data) as file:
-            things = meshes.read_data(file)
     if rasters:
+        settings = choose_system(settings, both, "cubic")
         grid = images.Grid(*size) if size else first.grid
-        pair.fit_to_pictures(both, [rasters[side].grid if side in rasters else grid for side in (0, 1)])
-        for side, raster in rasters.items():
-            raster.grid = raster.grid.hanging() if both.landmarks else raster.grid
-            images.require_overlap(raster.grid, names[side], both.meshes[side], both.name_of(side))
+        both.fit([rasters[side].grid if side in rasters else grid for side in (0, 1)], rasters, names)
         grid = grid.hanging() if both.landmarks else grid
     times = [k / (frames - 1) for k in range(frames)]
-    steps = zip(times, outputs, make_meshes(both, settings.mask_invalid, path, times))
+    steps = zip(times, outputs, make_meshes(both, settings["mask_invalid"], path, times))
     for t, frame, mesh in progress(list(steps), "Morphing"):
-        moving = {side: replace(both, meshes=[both.meshes[side], mesh], shift=None) for side in (0, 1)}
-        with frame:
+        with frame.writing():
             if not rasters:
-                meshes.write(PointMap(moving[0], settings).map_data(things), frame)
+                meshes.write(mesh, frame)
                 continue
-            warped = [images.Warp(moving[side], settings).warp(raster, grid, "") for side, raster in rasters.items()]
+            warped = [images.Warp(replace(both, meshes=[both.meshes[side], mesh]), settings).warp(raster, grid, "")
+                      for side, raster in rasters.items()]
             pixels, mask = warped[0]
             if len(warped) == 2:
                 pixels, mask = blend(pixels, warped[1][0], t), mask & warped[1][1]

@@ -8,14 +8,13 @@ from dataclasses import replace
 import click
 
 from .. import meshes, options, pair, report, tinshift
-from ..arrays import arrays_of, points_of
+from ..arrays import add_array, arrays_of, points_of
 from ..files import Failure, inform
-from ..mapping import add_array, run
+from ..mapping import run, set_up
 from ..vtkFiltersHomeomorphism import vtkRefinedTriangulationPair
 from .convert import crs_options
 
-PROJ_LIMIT = 10 * 1024 * 1024
-"""The largest file that PROJ reads, in bytes."""
+PROJ_LIMIT = 10 * 1024 * 1024  # the largest file that PROJ reads, in bytes
 
 
 @click.command("refine")
@@ -23,25 +22,24 @@ PROJ_LIMIT = 10 * 1024 * 1024
                 pair.FORMATS, "a pair")
 @click.option("-t", "--max-error", type=options.POSITIVE, required=True, metavar="DISTANCE",
               help="Greatest distance of the refined pair's piecewise linear map from the map, in units of the target.")
-@click.option("--max-triangles", type=click.IntRange(1), default=2000000, metavar="NUMBER", show_default=True,
+@click.option("--max-triangles", type=click.IntRange(1), default=2000000, metavar="NUMBER",
               help="Greatest number of triangles.")
 @options.map_settings("smooth")
 @crs_options
 @options.pair_files("SOURCE [TARGET]")
-@options.quiet
-def command(inputs, output, max_error, max_triangles, settings, output_array, systems):
+def command(inputs, output, max_error, max_triangles, settings, systems):
     """Refine a pair until its piecewise linear map is close to the map.
 
     PROJ can then use the refined pair instead of the map. The pair must be planar. Heights of a triangulation file
     remain the same functions of the point."""
-    both = report.require_map(options.read_pair(inputs), settings.mask_invalid)
+    both = report.require_map(options.read_pair(inputs), settings["mask_invalid"])
     both.require_flat()
     if both.shift and not both.shift.horizontal:
-        raise Failure(f"{both.name} shifts heights only, which are piecewise linear already: there is nothing to refine.")
+        raise Failure(f"{both.name} shifts heights only, which are piecewise linear: there is nothing to refine.")
     heights = both.shift.heights if both.shift else {}
     for name, values in heights.items():
         add_array(both.source, name, values)
-    refining = settings.set_up(vtkRefinedTriangulationPair(), both)
+    refining = set_up(vtkRefinedTriangulationPair(), settings, both)
     refining.SetMaximumError(max_error)
     refining.SetMaximumNumberOfTriangles(max_triangles)
     try:
@@ -49,23 +47,24 @@ def command(inputs, output, max_error, max_triangles, settings, output_array, sy
     except Failure:
         if refining.GetResult() != refining.TOO_MANY_TRIANGLES:
             raise
-        raise Failure(f"{both.name}: an error of {max_error:g} takes more than {max_triangles} triangles (--max-triangles); "
-                      f"with as many the largest error is still {refining.GetLargestError():.3g}: allow a larger "
-                      "--max-error.") from None
-    system = (settings.system or "smooth").capitalize()
+        raise Failure(f"{both.name}: an error of {max_error:g} takes more than {max_triangles} triangles "
+                      f"(--max-triangles); with as many the largest error is {refining.GetLargestError():.3g}: allow a "
+                      "larger --max-error.") from None
+    system = (settings["system"] or "smooth").capitalize()
     finer = replace(both, meshes=[refining.GetOutput(0), refining.GetOutput(1)], shift=None)
-    inform(f"{both.source.GetNumberOfPolys()} triangles became {finer.source.GetNumberOfPolys()}; farthest from {system}: "
-           f"{refining.GetLargestError():.4g}, at {refining.GetNumberOfSamples()} points.")
+    inform(f"{both.source.GetNumberOfPolys()} triangles became {finer.source.GetNumberOfPolys()}; farthest from "
+           f"{system}: {refining.GetLargestError():.4g}, at {refining.GetNumberOfSamples()} points.")
     # Mark the file as different from the published one.
     published = finer.metadata.get("description")
     finer.metadata["description"] = (f"{published}. " if isinstance(published, str) else "") + (
-        f"Refined by dhm: its piecewise linear map is within {max_error:g} of the {system} map of the original triangulation")
+        f"Refined by dhm: its piecewise linear map is within {max_error:g} of the {system} map of the original")
     finer.metadata.update(systems)
     if both.shift:
         arrays = arrays_of(finer.source.GetPointData())
         points = [points_of(mesh)[:, :2] for mesh in finer.meshes]
-        finer.shift = tinshift.Shift(*points, meshes.triangles_of(finer.source), {name: arrays[name] for name in heights})
-    with output:
-        pair.write(finer, output, output_array)
+        heights = {name: arrays[name] for name in heights}
+        finer.shift = tinshift.Shift(*points, meshes.triangles_of(finer.source), heights)
+    with output.writing():
+        pair.write(finer, output)
         if output.format == "json" and os.path.getsize(output.path) > PROJ_LIMIT:
-            inform(f"PROJ reads no triangulation files of more than 10 MiB, as {output.name} is: allow a larger --max-error.")
+            inform(f"PROJ reads no files of more than 10 MiB, as {output.name} is: allow a larger --max-error.")

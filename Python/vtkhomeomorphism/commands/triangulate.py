@@ -75,7 +75,6 @@ def print_report(made, marks):
 @click.option("--leave-out-conflicts", is_flag=True, help="Leave out and list lines that conflict with others.")
 @click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks with the largest residuals.")
 @options.pair_files("LANDMARKS | SOURCE TARGET")
-@options.quiet
 def command(inputs, output, lines, outlines, domain, quality, target_angle, maximum_added_points,
             maximum_size, leave_out_conflicts, report):
     """Make a pair of meshes with the same triangles from landmarks.
@@ -102,7 +101,7 @@ def command(inputs, output, lines, outlines, domain, quality, target_angle, maxi
         marks, " and ".join(inputs.pair), inputs, outlines=loops, segments=segments, domain=domain, quality=quality,
         target_minimum_angle=target_angle, maximum_added_points=maximum_added_points,
         maximum_triangle_size=maximum_size, leave_out_conflicting_segments=leave_out_conflicts)
-    with output:
+    with output.writing():
         pair.write(both, output)
     if report:
         print_report(made, marks)
