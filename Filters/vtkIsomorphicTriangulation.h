@@ -125,8 +125,10 @@ public:
   ///@{
   /// Frames: least x, largest x, least y, largest y in the coordinates of the figure's plane (x and
   /// y if z is constant), for example the rectangles of images. Corners are matched to fit the
-  /// landmarks best. The default of both, (0, -1, 0, -1), selects a frame 5 percent larger than the
-  /// source and its affine image, or a larger frame if that needs fewer added points.
+  /// landmarks best. The default of both, (0, -1, 0, -1), selects an automatic frame: half the mean
+  /// distance of neighboring landmarks away from the source's bounds, with points on its edges so
+  /// that triangles at the frame are not thin, and its affine image; or a larger frame if that
+  /// needs fewer added points.
   vtkSetVector4Macro(SourceFrame, double);
   vtkGetVector4Macro(SourceFrame, double);
   vtkSetVector4Macro(TargetFrame, double);
@@ -151,7 +153,9 @@ public:
   ///@{
   /// Points are added until no angle of either domain is smaller than this, in degrees, 0 to 60. 0
   /// (default): only necessary points are added. With CONCORDANCE and NON_OBTUSE, 90 means no
-  /// discordant or obtuse triangle. With DISTORTION, 60 means similar triangles.
+  /// discordant or obtuse triangle, and no angle gets smaller than half the smallest one of the
+  /// pair with the necessary points alone, or than 2.5 degrees if that is less. With DISTORTION, 60
+  /// means similar triangles.
   vtkSetClampMacro(TargetMinimumAngle, double, 0.0, 90.0);
   vtkGetMacro(TargetMinimumAngle, double);
   ///@}
@@ -202,7 +206,7 @@ public:
   ///@}
 
   ///@{
-  /// Statistics of the last update: the number of added points (without a frame's corners); the
+  /// Statistics of the last update: the number of added points (without a frame's points); the
   /// smallest angles of source and target in degrees; the share of angles below 10, 15 and 20
   /// degrees in the worse of the two; the share of triangles that are obtuse, or discordant, in at
   /// least one domain; the largest distortion and its triangle; whether the figures are mirror

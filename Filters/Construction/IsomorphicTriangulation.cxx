@@ -106,11 +106,19 @@ std::array<Vector2, 2> Bounds(const std::vector<Vector2>& points)
   return bounds;
 }
 
-std::array<Vector2, 2> Enlarged(const std::array<Vector2, 2>& bounds, double share)
+std::array<Vector2, 2> Enlarged(const std::array<Vector2, 2>& bounds, double margin)
 {
-  const double margin = share * std::max(bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y);
   return { { { bounds[0].x - margin, bounds[0].y - margin },
     { bounds[1].x + margin, bounds[1].y + margin } } };
+}
+
+/// The typical distance between points: that of as many points spread over their bounds.
+double Spacing(const std::vector<Vector2>& points)
+{
+  const std::array<Vector2, 2> bounds = Bounds(points);
+  const Vector2 size = bounds[1] - bounds[0];
+  const double n = static_cast<double>(points.size());
+  return std::max(std::sqrt(size.x / n * size.y), std::max(size.x, size.y) / n);
 }
 
 std::vector<Vector2> Corners(const std::array<Vector2, 2>& r)
@@ -189,12 +197,14 @@ int Sense(const std::vector<Vector2>& points, const std::vector<int>& loop)
 class Builder
 {
 public:
-  /// @param frameMargin how far an automatic frame is from the points, in shares of their extent
-  Builder(
-    const FigurePair& figure, const IsomorphicTriangulationOptions& options, double frameMargin)
+  /// @param frameMargin how far an automatic frame is from the points, in their spacings
+  /// @param dividesFrame whether an automatic frame gets points on its edges
+  Builder(const FigurePair& figure, const IsomorphicTriangulationOptions& options,
+    double frameMargin, bool dividesFrame)
     : Figure(figure)
     , Options(options)
     , FrameMargin(frameMargin)
+    , DividesFrame(dividesFrame)
   {
   }
 
@@ -210,13 +220,17 @@ public:
     for (int order = 0; order < Orders; ++order)
     {
       std::unique_ptr<PairMesh> mesh = this->Construct(order);
-      if (mesh && (!this->Best || mesh->CountAdded() < this->Best->CountAdded()))
+      // Of equally many points, those with the better triangles.
+      if (mesh &&
+        (!this->Best ||
+          std::make_pair(mesh->CountAdded(), -mesh->WorstQuality()) <
+            std::make_pair(this->Best->CountAdded(), -this->Best->WorstQuality())))
       {
         this->Best = std::move(mesh);
       }
       const int added = this->CountAdded();
       if (!this->CanImprove() || (order == 3 && added > FewPoints) ||
-        (this->Best && added > ManyPoints) || this->Refused)
+        (this->Best && added > ManyPoints) || this->Refused || this->NeedsPlainFrame)
       {
         break;
       }
@@ -224,6 +238,10 @@ public:
     if (this->Best)
     {
       this->Result.Problems.clear();
+      if (this->Options.OptimizeAddedPoints && this->CanImprove())
+      {
+        JointOptimization(*this->Best, this->KeepGoing(0.6)).RemovePointsWithNeighbors();
+      }
     }
     return this->Best != nullptr;
   }
@@ -298,6 +316,12 @@ public:
   }
 
   bool HasAutomaticFrame() const { return this->AutomaticFrame; }
+  /// Whether the points on an automatic frame's edges prevented a result, or perhaps a better one.
+  bool MayNeedPlainFrame() const
+  {
+    return this->NeedsPlainFrame ||
+      (this->FrameIsDivided && this->Best && this->CountAdded() > ManyPoints);
+  }
   IsomorphicTriangulationResult& GetResult() { return this->Result; }
 
 private:
@@ -486,7 +510,15 @@ private:
         mirrored = Cross(fit.X, fit.Y) < 0.0;
       }
       this->AutomaticFrame = true;
-      return this->AddFrame(this->AutomaticFrames(fit), mirrored);
+      if (!this->AddFrame(this->AutomaticFrames(fit), mirrored))
+      {
+        return false;
+      }
+      if (this->DividesFrame)
+      {
+        this->DivideFrame();
+      }
+      return true;
     }
     if (domain == FigureDomain::ConvexHull)
     {
@@ -505,22 +537,59 @@ private:
   {
     const std::array<Vector2, 2> bounds = Bounds(this->Points[0]);
     const int sense = Cross(fit.X, fit.Y) < 0.0 ? -1 : 1;
-    for (double share = this->FrameMargin; share < 0.5 + this->FrameMargin; share *= 1.5)
-    {
-      std::array<std::vector<Vector2>, 2> frames;
-      frames[0] = Corners(Enlarged(bounds, share));
-      for (const Vector2& corner : frames[0])
+    const double least = this->FrameMargin * Spacing(this->Points[0]);
+    const double most =
+      least + 0.5 * std::max(bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y);
+    const auto images = [&](const std::vector<Vector2>& corners) {
+      std::vector<Vector2> mapped;
+      for (const Vector2& corner : corners)
       {
-        frames[1].push_back(fit(corner));
+        mapped.push_back(fit(corner));
       }
+      return mapped;
+    };
+    for (double margin = least; margin < most; margin *= 1.5)
+    {
+      // Points nearer to the image than half the margin would make thin triangles.
+      const std::vector<Vector2> inner = images(Corners(Enlarged(bounds, margin - 0.5 * least)));
       if (std::all_of(this->Points[1].begin(), this->Points[1].end(),
-            [&](const Vector2& p) { return IsInside(p, frames[1], sense); }))
+            [&](const Vector2& p) { return IsInside(p, inner, sense); }))
       {
-        return frames;
+        const std::vector<Vector2> corners = Corners(Enlarged(bounds, margin));
+        return { corners, images(corners) };
       }
     }
-    return MatchRectangles(this->Figure, Enlarged(bounds, this->FrameMargin),
-      Enlarged(Bounds(this->Points[1]), this->FrameMargin));
+    return MatchRectangles(this->Figure, Enlarged(bounds, least),
+      Enlarged(Bounds(this->Points[1]), this->FrameMargin * Spacing(this->Points[1])));
+  }
+
+  /// Puts points on the edges of an automatic frame, about two spacings of the points apart: long
+  /// edges would make thin triangles with the points along them.
+  void DivideFrame()
+  {
+    const std::vector<Vector2>& given = this->Figure.Points[0];
+    const std::array<Vector2, 2> bounds = Bounds(given);
+    const Vector2 size = bounds[1] - bounds[0];
+    const double step = 2.0 * Spacing(given);
+    std::vector<int> loop;
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      const std::array<int, 2> ends{ { this->Loops[0][k], this->Loops[0][(k + 1) % 4] } };
+      const int pieces = 1 + static_cast<int>((k % 2 == 0 ? size.x : size.y) / step);
+      loop.push_back(ends[0]);
+      for (int i = 1; i < pieces; ++i)
+      {
+        loop.push_back(static_cast<int>(this->Points[0].size()));
+        ++this->Result.NumberOfFramePoints;
+        for (auto& points : this->Points)
+        {
+          const Vector2 start = points[ends[0]];
+          points.push_back(start + (static_cast<double>(i) / pieces) * (points[ends[1]] - start));
+        }
+      }
+    }
+    this->FrameIsDivided = loop.size() > 4;
+    this->Loops[0] = loop;
   }
 
   bool AddFrame(const std::array<std::vector<Vector2>, 2>& frames, bool mirrored)
@@ -595,7 +664,7 @@ private:
         cornerIds[k] = static_cast<int>(this->Points[0].size());
         this->Points[0].push_back(frames[0][k]);
         this->Points[1].push_back(frames[1][k]);
-        ++this->Result.NumberOfFrameCorners;
+        ++this->Result.NumberOfFramePoints;
       }
     }
     for (int k = 0; k < corners; ++k)
@@ -789,6 +858,12 @@ private:
     this->Map->SetOrder(order);
     this->FillFaces();
     this->AddCommonEdges();
+    if (this->FrameIsDivided && this->AreUnrelated())
+    {
+      // A grid needs a frame of four corners.
+      this->NeedsPlainFrame = true;
+      return nullptr;
+    }
     std::array<std::vector<Vector2>, 2> points;
     std::vector<std::array<int, 3>> triangles;
     if (!this->Proceed(0.3) ||
@@ -1061,7 +1136,7 @@ private:
     std::array<std::vector<Vector2>, 2>& points, std::vector<std::array<int, 3>>& triangles)
   {
     if (this->Loops.size() != 1 || this->Loops[0].size() != 4 || !this->Segments.empty() ||
-      this->Result.NumberOfFrameCorners != 4)
+      this->Result.NumberOfFramePoints != 4)
     {
       return false;
     }
@@ -1339,7 +1414,10 @@ private:
   double FrameMargin;
   IsomorphicTriangulationResult Result;
   std::unique_ptr<PairMesh> Best;
+  bool DividesFrame;
   bool AutomaticFrame = false;
+  bool FrameIsDivided = false;
+  bool NeedsPlainFrame = false;
   bool Refused = false;
 
   // The figure's points, then the frame's corners.
@@ -1365,10 +1443,20 @@ IsomorphicTriangulationResult MakeIsomorphicTriangulation(
 {
   // An automatic frame that is too near the points can require points that a wider one does not.
   std::unique_ptr<Builder> best;
-  for (const double margin : { 0.05, 0.15, 0.4 })
+  for (const double margin : { 0.5, 1.5, 4.0 })
   {
-    auto builder = std::make_unique<Builder>(figure, options, margin);
-    const bool made = builder->Prepare();
+    auto builder = std::make_unique<Builder>(figure, options, margin, true);
+    bool made = builder->Prepare();
+    if (builder->MayNeedPlainFrame())
+    {
+      auto plain = std::make_unique<Builder>(figure, options, margin, false);
+      const bool madePlain = plain->Prepare();
+      if (!made || (madePlain && plain->CountAdded() < builder->CountAdded()))
+      {
+        builder = std::move(plain);
+        made = madePlain;
+      }
+    }
     if (!best || (made && builder->CountAdded() < best->CountAdded()))
     {
       best = std::move(builder);

@@ -35,8 +35,11 @@ struct IsomorphicTriangulationOptions
 {
   FigureDomain Domain = FigureDomain::Automatic;
   /// Corresponding corners of two convex polygons around the points; both empty: the source's
-  /// bounds, 5 percent larger, and their image by the affine map that fits best, or where that
-  /// would have to be much larger the target's bounds.
+  /// bounds, enlarged by half the points' spacing (that of as many points spread evenly over their
+  /// bounds), and their image by the affine map that fits best, enlarged further until all points
+  /// are inside, or where that would have to be much larger the target's bounds. Such frames have
+  /// points on their edges, about two spacings apart, so that triangles between the frame and the
+  /// points are not thin; unless the two domains' positions are unrelated.
   std::array<std::vector<Vector2>, 2> Frames;
   /// With Concordance and NonObtuse, no angle gets smaller than half the smallest angle, or half of
   /// 5 degrees if that is less, of the pair with the necessary points alone: such a pair is not
@@ -63,7 +66,7 @@ struct IsomorphicTriangulationOptions
 struct IsomorphicTriangulationResult
 {
   std::array<std::vector<Vector2>, 2> Points;
-  /// The figure's number of each point: i for the first points, -1 for frame corners and added
+  /// The figure's number of each point: i for the first points, -1 for those of a frame and added
   /// ones.
   std::vector<int> OriginalIds;
   /// Counterclockwise in the source; in the target clockwise if the figures are mirror images.
@@ -76,9 +79,11 @@ struct IsomorphicTriangulationResult
   /// Segments that were left out, and why.
   FigureProblems LeftOut;
   bool Mirrored = false;
-  /// Points added, frame corners not counted.
+  /// Points added, those of a frame not counted.
   int NumberOfAddedPoints = 0;
-  int NumberOfFrameCorners = 0;
+  /// Corners of the frame that are no points of the figure, and points on an automatic frame's
+  /// edges.
+  int NumberOfFramePoints = 0;
 
   bool IsComplete() const { return this->Problems.empty(); }
 };

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <queue>
+#include <set>
 #include <utility>
 
 namespace homeomorphism
@@ -24,6 +25,11 @@ constexpr std::size_t MovedTogether = 40;
 /// More points than this are not moved, and not merged: it would take too long.
 constexpr int MovedAtAll = 5000;
 constexpr int MergedAtAll = 20000;
+/// Points up to which each is also taken out with triangles beside its star: how many triangles,
+/// and how many such regions of each size are tried.
+constexpr int RemovedWithNeighbors = 400;
+constexpr int TrianglesBeside = 5;
+constexpr std::size_t RegionsTried = 120;
 /// Points without gain after which adding more is given up.
 constexpr int IdlePoints = 7;
 /// The same for each further triangle, after the worst one could not be improved.
@@ -453,6 +459,12 @@ bool JointOptimization::RemovePoint(int vertex)
   {
     return false;
   }
+  return this->RefillWithout(star, outline);
+}
+
+bool JointOptimization::RefillWithout(
+  const std::vector<int>& triangles, const std::vector<int>& outline)
+{
   PolygonPair polygons;
   for (int d = 0; d < 2; ++d)
   {
@@ -461,17 +473,73 @@ bool JointOptimization::RemovePoint(int vertex)
       polygons[d].push_back(this->Mesh.GetPoints(d)[v]);
     }
   }
-  CornerTriangles triangles;
-  if (!FillByDiagonals(polygons, this->Mesh.GetQuality(), triangles))
+  CornerTriangles filled;
+  if (!FillByDiagonals(polygons, this->Mesh.GetQuality(), filled))
   {
     return false;
   }
-  for (auto& t : triangles)
+  for (auto& t : filled)
   {
     t = { outline[t[0]], outline[t[1]], outline[t[2]] };
   }
-  this->Mesh.Replace(star, triangles);
+  this->Mesh.Replace(triangles, filled);
   return true;
+}
+
+bool JointOptimization::RemovePointWithNeighbors(int vertex)
+{
+  std::vector<int> star;
+  this->Mesh.Star(vertex, star);
+  std::sort(star.begin(), star.end());
+  std::set<std::vector<int>> regions{ star };
+  std::vector<int> outline;
+  std::vector<int> inner;
+  for (int more = 0; more < TrianglesBeside && this->KeepGoing(); ++more)
+  {
+    std::set<std::vector<int>> larger;
+    for (const std::vector<int>& region : regions)
+    {
+      for (const int t : region)
+      {
+        const auto& triangle = this->Mesh.GetTriangles()[t];
+        for (int k = 0; k < 3 && larger.size() < RegionsTried; ++k)
+        {
+          const int n = triangle.Neighbors[k];
+          if (n < 0 || triangle.Fixed[k] || std::binary_search(region.begin(), region.end(), n))
+          {
+            continue;
+          }
+          std::vector<int> next = region;
+          next.insert(std::upper_bound(next.begin(), next.end(), n), n);
+          if (larger.count(next) != 0 || !this->Mesh.Outline(next, outline))
+          {
+            continue;
+          }
+          larger.insert(next);
+          // Whatever is inside, and would go, has to be an added point.
+          inner.clear();
+          for (const int i : next)
+          {
+            for (const int v : this->Mesh.GetTriangles()[i].Vertices)
+            {
+              if (std::find(outline.begin(), outline.end(), v) == outline.end())
+              {
+                inner.push_back(v);
+              }
+            }
+          }
+          if (std::all_of(
+                inner.begin(), inner.end(), [this](int v) { return this->Mesh.IsFree(v); }) &&
+            this->RefillWithout(next, outline))
+          {
+            return true;
+          }
+        }
+      }
+    }
+    regions = std::move(larger);
+  }
+  return false;
 }
 
 bool JointOptimization::MergePoints(int vertex, int other)
@@ -605,6 +673,26 @@ void JointOptimization::RemovePoints(bool mergePoints)
     this->Flip();
     this->Improve(2);
     this->Mesh.Commit();
+  }
+}
+
+void JointOptimization::RemovePointsWithNeighbors()
+{
+  if (this->Mesh.CountAdded() > RemovedWithNeighbors)
+  {
+    return;
+  }
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    for (const int vertex : this->Mesh.FreeVertices())
+    {
+      if (this->KeepGoing() && this->Mesh.IsFree(vertex) && this->RemovePointWithNeighbors(vertex))
+      {
+        changed = true;
+        this->Mesh.Commit();
+      }
+    }
   }
 }
 

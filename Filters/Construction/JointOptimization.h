@@ -28,6 +28,10 @@ public:
   /// Takes out added points, and on request merges neighboring ones, as long as that is possible.
   void RemovePoints(bool mergePoints);
 
+  /// Takes out further added points together with a few edges around them, if there are at most a
+  /// few hundred.
+  void RemovePointsWithNeighbors();
+
   /// Moves the free points of each domain, and flips: at most @a rounds times.
   void Improve(int rounds);
 
@@ -52,6 +56,11 @@ private:
 
   void FlipAround(std::vector<int> triangles);
   bool RemovePoint(int vertex);
+  /// Takes a point out that its star alone cannot do without, by filling the star and a few
+  /// triangles beside it; other added points that become inner ones go, too.
+  bool RemovePointWithNeighbors(int vertex);
+  /// Fills an outline by diagonals in the place of triangles.
+  bool RefillWithout(const std::vector<int>& triangles, const std::vector<int>& outline);
   bool MergePoints(int vertex, int other);
   void Smooth(const std::vector<int>& vertices, bool finish);
   void SmoothDomain(
