@@ -6,9 +6,9 @@
 
     landmarks.py extract FOLDER LANDMARKS.csv
         the points of gtkmorph's meshes image1.png.mesh and image2.png.mesh, in pixels, without their cells
-    landmarks.py folds LANDMARKS.csv PAIR.vtp IMAGE PICTURE.png
-        the Delaunay triangulation of the source's landmarks drawn over the target's, folded triangles in red, and the
-        target of the pair that dhm triangulate made (y upwards from 0 at the upper edge of the image)
+    landmarks.py folds LANDMARKS.csv PAIR.vtp SOURCE_IMAGE TARGET_IMAGE PICTURE.png
+        the Delaunay triangulation of one domain's landmarks drawn in the other domain, where more triangles fold, folded
+        ones in red, and the pair that dhm triangulate made (y upwards from 0 at the upper edge of the image)
 """
 
 import os
@@ -53,35 +53,39 @@ def read_pair(path):
     return points, vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
 
 
-def folds(landmarks, pair, picture, output):
+def folds(landmarks, pair, source_image, target_image, output):
     values = numpy.genfromtxt(landmarks, delimiter=",", names=True)
     source, target = (numpy.column_stack((values[s + "_x"], -values[s + "_y"])) for s in ("source", "target"))
+    reused = []
     for name, first, second in (("source", source, target), ("target", target, source)):
         triangles = tri.Triangulation(*first.T).triangles
         areas = doubled_areas(second, triangles)
+        reused.append((triangles, areas <= 0))
         print(f"{landmarks}: of the {len(triangles)} Delaunay triangles of the {name}'s {len(first)} landmarks, "
               f"{(areas < 0).sum()} fold in the other domain and {(areas == 0).sum()} have no area there")
     ours, made = read_pair(pair)
     bad = [int((doubled_areas(points, made) * doubled_areas(ours[0], made) <= 0).sum()) for points in ours]
     print(f"{pair}: of {len(made)} triangles, {max(bad)} fold")
 
-    triangles = tri.Triangulation(*source.T).triangles
-    folded = doubled_areas(target, triangles) <= 0
-    panels = (("Delaunay triangles of the source, reused", target, triangles, folded),
-              ("made for both domains", ours[1], made, numpy.zeros(len(made), bool)))
-    pixels = image.imread(picture)
+    # The picture shows the domain in which more triangles fold.
+    shown = 1 if reused[0][1].sum() > reused[1][1].sum() else 0
+    triangles, folded = reused[1 - shown]
+    if not folded.any():
+        print(f"{output} is not drawn, since no triangle folds")
+        return
+    points = (source, target)[shown]
+    panels = ((f"Delaunay triangles of the {('target', 'source')[shown]}'s landmarks", points, triangles, folded),
+              ("made for both domains", ours[shown], made, numpy.zeros(len(made), bool)))
+    pixels = image.imread((source_image, target_image)[shown])
     rows, columns = pixels.shape[:2]
-    views = [(0, columns, -rows, 0)]
-    if folded.any():
-        # Around the place with the most folded triangles.
-        centers = target[triangles[folded]].mean(axis=1)
-        near = numpy.hypot(*(centers[:, None] - centers).transpose(2, 0, 1)) < 0.12 * rows
-        x, y = centers[near.sum(axis=1).argmax()]
-        r = 0.11 * rows
-        views.append((x - r, x + r, y - r, y + r))
-    figure, axes = pyplot.subplots(len(views), 2, figsize=(9, 6.4 * rows / columns * (1 if len(views) == 1 else 1.25)),
-                                   squeeze=False, layout="constrained",
-                                   gridspec_kw={"height_ratios": [rows / columns, 1][: len(views)]})
+    # The whole, and the place with the most folded triangles.
+    centers = points[triangles[folded]].mean(axis=1)
+    near = numpy.hypot(*(centers[:, None] - centers).transpose(2, 0, 1)) < 0.12 * rows
+    x, y = centers[near.sum(axis=1).argmax()]
+    r = 0.11 * rows
+    views = [(0, columns, -rows, 0), (x - r, x + r, y - r, y + r)]
+    figure, axes = pyplot.subplots(2, 2, figsize=(9, 8.0 * rows / columns), squeeze=False, layout="constrained",
+                                   gridspec_kw={"height_ratios": [rows / columns, 1]})
     for row, view in zip(axes, views):
         for panel, (title, points, cells, red) in zip(row, panels):
             panel.imshow(pixels, extent=views[0], cmap="gray", alpha=0.75)
@@ -98,7 +102,7 @@ def folds(landmarks, pair, picture, output):
 if __name__ == "__main__":
     if len(sys.argv) == 4 and sys.argv[1] == "extract":
         extract(*sys.argv[2:])
-    elif len(sys.argv) == 6 and sys.argv[1] == "folds":
+    elif len(sys.argv) == 7 and sys.argv[1] == "folds":
         folds(*sys.argv[2:])
     else:
         sys.exit(__doc__)
