@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "Cxx/Kernel/RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include "Continuity/OneSidedDerivative.h"
 
@@ -10,7 +10,7 @@
 #include <cmath>
 
 using namespace homeomorphism;
-using homeomorphism_test::RandomNumbers;
+using homeomorphism_test::Random;
 using homeomorphism_test::Ulp;
 
 namespace
@@ -34,7 +34,7 @@ double LengthOfError(const DerivativeEstimate& estimate, const Vector& exact)
 // small.
 TEST(OneSidedDerivative, BoundsItsError)
 {
-  RandomNumbers random(31);
+  Random random(31);
   for (int i = 0; i < 2000; ++i)
   {
     const double a = random.Uniform(-2.0, 2.0);

@@ -4,7 +4,7 @@
 // The predicates agree with 128-bit integer arithmetic, which is exact: coordinates are integers of
 // at most 60 bits times a power of two, of which a double holds 53 leading bits.
 
-#include "RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include "Kernel/ExactSign.h"
 
@@ -101,7 +101,7 @@ int KernelOrientation(const Point& a, const Point& b, const Point& c, int unit)
 
 /// An integer with at most @a bits bits, often small, of which at most 53 bits are not trailing
 /// zeros.
-std::int64_t AnyInteger(RandomNumbers& random, int bits)
+std::int64_t AnyInteger(Random& random, int bits)
 {
   const int used = random.Integer(1, std::min(bits, 53));
   const int shift = random.Below(bits - used + 1);
@@ -110,7 +110,7 @@ std::int64_t AnyInteger(RandomNumbers& random, int bits)
 }
 
 /// One of the three points, moved by one bit in one coordinate: an ulp of the largest coordinates.
-void Nudge(RandomNumbers& random, std::array<Point, 3>& points, int dimension)
+void Nudge(Random& random, std::array<Point, 3>& points, int dimension)
 {
   std::int64_t& x = points[random.Below(3)][random.Below(dimension)];
   const double moved = std::nextafter(static_cast<double>(x), random.Chance(0.5) ? 1e300 : -1e300);
@@ -156,7 +156,7 @@ struct ScaledPoints
 template <typename Make>
 void ExpectExactOrientations(std::uint64_t seed, Make&& make)
 {
-  RandomNumbers random(seed);
+  Random random(seed);
   std::array<int, 3> seen{};
   int wrongWithout = 0;
   for (int n = 0; n < 100000; ++n)
@@ -178,7 +178,7 @@ void ExpectExactOrientations(std::uint64_t seed, Make&& make)
   EXPECT_GT(wrongWithout, 10);
 }
 
-Point AnyPoint(RandomNumbers& random, int dimension, int bits)
+Point AnyPoint(Random& random, int dimension, int bits)
 {
   Point point{ AnyInteger(random, bits), AnyInteger(random, bits), 0 };
   point[2] = dimension == 3 ? AnyInteger(random, bits) : 0;
@@ -189,7 +189,7 @@ TEST(ExactSign, OrientationIsExact)
 {
   // Anywhere; and exactly collinear, as multiples of one direction that are so small that the sums
   // are doubles, with one bit changed in half of the cases.
-  ExpectExactOrientations(12, [](RandomNumbers& random) {
+  ExpectExactOrientations(12, [](Random& random) {
     ScaledPoints scaled{ {}, units[random.Below(4)] };
     const bool anywhere = random.Chance(0.2);
     const Point d = AnyPoint(random, 2, 26);
@@ -210,7 +210,7 @@ TEST(ExactSign, OrientationIsExact)
 
 TEST(ExactSign, OrientationOfRoundedPointsOnALineIsExact)
 {
-  ExpectExactOrientations(13, [](RandomNumbers& random) {
+  ExpectExactOrientations(13, [](Random& random) {
     ScaledPoints scaled{ {}, -52 };
     const double dx = random.Uniform(-1.0, 1.0);
     const double dy = random.Uniform(-1.0, 1.0);
@@ -229,7 +229,7 @@ TEST(ExactSign, OrientationFromRoundedDifferencesIsExact)
 {
   // One point near the origin, two far from it on a line through the origin: the rounding errors of
   // the differences decide.
-  ExpectExactOrientations(19, [](RandomNumbers& random) {
+  ExpectExactOrientations(19, [](Random& random) {
     ScaledPoints scaled{ {}, units[random.Below(4)] };
     const Point d = AnyPoint(random, 2, 26);
     scaled.Points[0] = { random.Integer(-512, 512), random.Integer(-512, 512), 0 };
@@ -244,7 +244,7 @@ TEST(ExactSign, OrientationFromRoundedDifferencesIsExact)
 
 TEST(ExactSign, ConcordanceIsExact)
 {
-  RandomNumbers random(14);
+  Random random(14);
   int concordant = 0;
   for (int n = 0; n < 100000; ++n)
   {
@@ -264,7 +264,7 @@ TEST(ExactSign, ConcordanceIsExact)
 /// Three corners whose foot on the edge from the first to the second is exactly the first: with u =
 /// B - A and v = C - A, u.(u + v) = 0, that is, v = -u + w with w perpendicular to u. u has up to
 /// @a bits bits, w is up to @a otherBits bits longer.
-std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension, int bits, int otherBits)
+std::array<Point, 3> OnTheLimit(Random& random, int dimension, int bits, int otherBits)
 {
   const Point a = AnyPoint(random, dimension, 52);
   Point u = AnyPoint(random, dimension, bits);
@@ -285,7 +285,7 @@ std::array<Point, 3> OnTheLimit(RandomNumbers& random, int dimension, int bits, 
 
 TEST(ExactSign, ConcordanceAtTheLimitIsExact)
 {
-  RandomNumbers random(15);
+  Random random(15);
   std::array<int, 2> seen{};
   for (int n = 0; n < 100000; ++n)
   {
@@ -306,7 +306,7 @@ TEST(ExactSign, ConcordanceFromRoundedDifferencesIsExact)
 {
   // Two corners far from the origin, the third within a few of their ulps of it. The differences of
   // coordinates are rounded, and their rounding errors decide.
-  RandomNumbers random(19);
+  Random random(19);
   std::array<int, 2> concordances{};
   for (int n = 0; n < 100000; ++n)
   {

@@ -4,7 +4,7 @@
 // Edge views agree with integer arithmetic. Where differences of coordinates are exact, every
 // number of the view is accurate to a few ulp of itself, in needles too.
 
-#include "RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ double RelativeError(double found, double expected)
 
 TEST(Geometry, ViewFromEdgeIsAccurateToAFewUlp)
 {
-  RandomNumbers random(71);
+  Random random(71);
   double worstLength = 0.0;
   double worstFoot = 0.0;
   double worstHeight = 0.0;
@@ -74,7 +74,7 @@ TEST(Geometry, DifferenceOfProductsIsAccurateToOneAndAHalfUlp)
 {
   // __extension__ because -Wpedantic rejects this type.
   __extension__ using Wide = __int128;
-  RandomNumbers random(74);
+  Random random(74);
   double worst = 0.0;
   for (int n = 0; n < 100000; ++n)
   {
@@ -94,7 +94,7 @@ TEST(Geometry, DifferenceOfProductsIsAccurateToOneAndAHalfUlp)
 
 TEST(Geometry, BarycentricCoordinatesOfCornersAreExact)
 {
-  RandomNumbers random(72);
+  Random random(72);
   for (int n = 0; n < 50000; ++n)
   {
     const TriangleShape shape = PlaneTriangle(AnyTriangle(random)).Shape;
@@ -113,13 +113,13 @@ TEST(Geometry, BarycentricCoordinatesOfCornersAreExact)
 
 TEST(Geometry, VectorsAreDifferencesOfPoints)
 {
-  RandomNumbers random(73);
+  Random random(73);
   double worst = 0.0;
   for (int n = 0; n < 50000; ++n)
   {
     const TriangleShape shape = PlaneTriangle(AnyTriangle(random)).Shape;
-    const Barycentric l = AnyBarycentric(random);
-    const Barycentric m = AnyBarycentric(random);
+    const Barycentric l = random.Weights();
+    const Barycentric m = random.Weights();
     const Vector2 vector = shape.FromBarycentric(m) - shape.FromBarycentric(l);
     const Barycentric components = shape.VectorToBarycentric(vector);
     // An ulp of the points, relative to the height of the triangle.

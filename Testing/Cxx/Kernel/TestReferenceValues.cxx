@@ -4,7 +4,7 @@
 // Coordinates, mapped points and derivatives agree with values computed to 50 digits by
 // Testing/Reference/reference_values.py, which shares no code with the library.
 
-#include "PlaneTriangle.h"
+#include "Fixtures/Triangles.h"
 
 #include "Kernel/ContourChart.h"
 #include "Kernel/LinearChart.h"

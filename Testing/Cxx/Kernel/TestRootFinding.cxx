@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include "Kernel/RootFinding.h"
 
@@ -49,7 +49,7 @@ double Solve(double root, double guess, double power)
 
 TEST(RootFinding, FindsTheRootFromAnyGuess)
 {
-  RandomNumbers random(11);
+  Random random(11);
   for (int i = 0; i < 10000; ++i)
   {
     const double root = random.Uniform(0.01, 1.0);
@@ -76,7 +76,7 @@ TEST(RootFinding, FindsRootsAtTheEnds)
 TEST(RootFinding, EquationsOfABatchAreIndependent)
 {
   constexpr int width = 8;
-  RandomNumbers random(12);
+  Random random(12);
   for (int i = 0; i < 1000; ++i)
   {
     double roots[width];

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "Cxx/Kernel/RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include "Mesh/BoxTree.h"
 
@@ -11,13 +11,13 @@
 #include <set>
 
 using namespace homeomorphism;
-using homeomorphism_test::RandomNumbers;
+using homeomorphism_test::Random;
 
 namespace
 {
 
 template <int Dimension>
-Box<Dimension> RandomBox(RandomNumbers& random, double size)
+Box<Dimension> RandomBox(Random& random, double size)
 {
   std::array<double, Dimension> center;
   for (double& x : center)
@@ -30,7 +30,7 @@ Box<Dimension> RandomBox(RandomNumbers& random, double size)
 template <int Dimension>
 void ExpectAllFound(int count, double size)
 {
-  RandomNumbers random(21 + count);
+  Random random(21 + count);
   std::vector<Box<Dimension>> boxes;
   for (int i = 0; i < count; ++i)
   {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "Cxx/Kernel/RandomTriangles.h"
 #include "Fixtures/Meshes.h"
+#include "Fixtures/Triangles.h"
 
 #include "Mesh/MeshGeometry.h"
 
@@ -13,7 +13,7 @@
 using namespace homeomorphism;
 using fixtures::Point;
 using fixtures::Triangle;
-using homeomorphism_test::RandomNumbers;
+using homeomorphism_test::Random;
 using homeomorphism_test::Ulp;
 
 namespace
@@ -23,9 +23,9 @@ namespace
 class Soup
 {
 public:
-  Soup(int count, const std::function<Vector3(RandomNumbers&)>& pointOf)
+  Soup(int count, const std::function<Vector3(Random&)>& pointOf)
   {
-    RandomNumbers random(51);
+    Random random(51);
     LargeArray<Triangulation::Corners> corners(static_cast<std::size_t>(count));
     this->Points->SetDataTypeToDouble();
     for (std::int32_t t = 0; t < count; ++t)
@@ -83,7 +83,7 @@ TEST(MeshGeometry, FramesReturn)
   {
     for (const double scale : { 1e-200, 1.0, 1e150 })
     {
-      Soup soup(200, [kind, scale](RandomNumbers& random) -> Vector3 {
+      Soup soup(200, [kind, scale](Random& random) -> Vector3 {
         const double x = scale * random.Uniform();
         const double y = scale * random.Uniform();
         const double slope = 0.25 * x - 0.5 * y + 3.0 * scale;
@@ -98,7 +98,7 @@ TEST(MeshGeometry, FramesReturn)
 // Normalized coordinates are those of the input times a power of two.
 TEST(MeshGeometry, NormalizesWithoutRounding)
 {
-  Soup soup(20, [](RandomNumbers& random) -> Vector3 {
+  Soup soup(20, [](Random& random) -> Vector3 {
     return { 3e7 * random.Uniform(), 5e6 + random.Uniform(), 0.0 };
   });
   MeshGeometry geometry(soup.Points, soup.Topology);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "Cxx/Kernel/RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include "Pipeline/ImageSampling.h"
 
@@ -18,7 +18,7 @@
 #include <cmath>
 
 using namespace homeomorphism;
-using homeomorphism_test::RandomNumbers;
+using homeomorphism_test::Random;
 
 namespace
 {
@@ -74,7 +74,7 @@ TEST(ImageSampling, InterpolatesLinearly)
   constexpr int count = ImageSampling::Capacity;
   vtkNew<vtkPointData> output;
   const ImageSampling sampling(image, output, count);
-  RandomNumbers random(41);
+  Random random(41);
   double bounds[6];
   image->GetBounds(bounds);
   double points[count][3];

@@ -7,7 +7,7 @@
 #ifndef StressMeshes_h
 #define StressMeshes_h
 
-#include "../Kernel/RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include "Kernel/CoordinateSystem.h"
 
@@ -93,7 +93,7 @@ enum class Shape
 };
 
 /// The apex of a triangle over the edge from (0, 0) to (1, 0).
-inline Vector2 AnyApex(RandomNumbers& random, Shape shape, double malice, double thinnest)
+inline Vector2 AnyApex(Random& random, Shape shape, double malice, double thinnest)
 {
   switch (shape)
   {
@@ -111,7 +111,7 @@ inline Vector2 AnyApex(RandomNumbers& random, Shape shape, double malice, double
 }
 
 /// The apex of a concordant triangle.
-inline Vector2 ConcordantApex(RandomNumbers& random, Shape shape)
+inline Vector2 ConcordantApex(Random& random, Shape shape)
 {
   for (;;)
   {
@@ -137,7 +137,7 @@ inline Vector2 ConcordantApex(RandomNumbers& random, Shape shape)
 
 /// Two triangles with a common edge.
 inline std::vector<Vector2> TwoTriangles(
-  RandomNumbers& random, Shape shape, double malice, double thinnest, bool concordant)
+  Random& random, Shape shape, double malice, double thinnest, bool concordant)
 {
   const auto apex = [&]() {
     return concordant ? ConcordantApex(random, shape) : AnyApex(random, shape, malice, thinnest);
@@ -148,7 +148,7 @@ inline std::vector<Vector2> TwoTriangles(
 }
 
 /// A triangle and its three neighbors. If they overlap, the mesh is refused.
-inline std::vector<Vector2> Cluster(RandomNumbers& random, Shape shape, double malice)
+inline std::vector<Vector2> Cluster(Random& random, Shape shape, double malice)
 {
   std::vector<Vector2> points{ { 0.0, 0.0 }, { 1.0, 0.0 },
     AnyApex(random, shape, malice, -15.0 * malice) };
@@ -165,7 +165,7 @@ inline std::vector<Vector2> Cluster(RandomNumbers& random, Shape shape, double m
 }
 
 /// A vertex with @a count triangles around it.
-inline std::vector<Vector2> Fan(RandomNumbers& random, Shape shape, double malice, int count)
+inline std::vector<Vector2> Fan(Random& random, Shape shape, double malice, int count)
 {
   std::vector<double> angles(count);
   double sum = 0.0;
@@ -188,7 +188,7 @@ inline std::vector<Vector2> Fan(RandomNumbers& random, Shape shape, double malic
 }
 
 /// A grid of 3 x 3 cells; with @a equilateral, of almost equilateral triangles.
-inline std::vector<Vector2> Grid(RandomNumbers& random, bool equilateral)
+inline std::vector<Vector2> Grid(Random& random, bool equilateral)
 {
   const double jitter = equilateral ? 0.1 : 0.25;
   std::vector<Vector2> points;
@@ -220,7 +220,7 @@ inline Triangles GridCells()
 }
 
 /// Transforms a mesh according to its family: rotation, scale, translation, rounding.
-inline void Put(RandomNumbers& random, int family, bool turn, std::vector<Vector2>& points)
+inline void Put(Random& random, int family, bool turn, std::vector<Vector2>& points)
 {
   double size = 0.0;
   for (const Vector2& p : points)
@@ -267,7 +267,7 @@ inline void Put(RandomNumbers& random, int family, bool turn, std::vector<Vector
 
 /// A pair of a family. It may be invalid, especially where coordinates are
 /// rounded.
-inline PlanePair AnyPair(RandomNumbers& random, int family, const TestedSystem& system)
+inline PlanePair AnyPair(Random& random, int family, const TestedSystem& system)
 {
   Shape shape = Shape::Fair;
   if (family == RATIOS)

@@ -244,7 +244,7 @@ private:
   /// formulas change.
   Vector3 AnyPoint(Domain domain, TriangleIndex triangle)
   {
-    RandomNumbers& random = this->Random;
+    Random& random = this->Random;
     const MeshGeometry& geometry = this->GeometryOf(domain);
     const Corners corners = this->CornersOf(domain, triangle);
     Vector2 normalized;
@@ -255,7 +255,7 @@ private:
     {
       case 0:
       case 1:
-        normalized = Combined(corners, AnyBarycentric(random));
+        normalized = Combined(corners, random.Weights());
         break;
       case 2:
         // Close to an edge or a vertex by any power of ten.
@@ -677,7 +677,7 @@ private:
   }
 
   const TestedSystem& System;
-  RandomNumbers Random;
+  Random Random;
   std::int64_t Number;
   PlanePair Pair;
   std::shared_ptr<const Homeomorphism> Map;

@@ -1,107 +1,154 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// @file RandomTriangles.h
-/// Random triangles, neighbors and points for property tests. All values follow from the seed on
-/// every platform, unlike those of the distributions of the standard library.
+/// @file Triangles.h
+/// Triangles of the plane, their neighbors, points and charts, at random and as extreme as asked,
+/// for tests of properties. Nothing of VTK is needed.
 
-#ifndef RandomTriangles_h
-#define RandomTriangles_h
+#ifndef fixtures_Triangles_h
+#define fixtures_Triangles_h
 
-#include "PlaneTriangle.h"
+#include "Random.h"
 
 #include "Kernel/ContourChart.h"
+#include "Kernel/CoordinateSystem.h"
 #include "Kernel/ExactSign.h"
+#include "Kernel/Geometry.h"
 #include "Kernel/LinearChart.h"
 #include "Kernel/SmoothChart.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
-#include <limits>
-#include <random>
 #include <string>
 
 namespace homeomorphism_test
 {
 
-constexpr double Ulp = std::numeric_limits<double>::epsilon();
+using namespace homeomorphism;
+using fixtures::Random;
+using fixtures::Ulp;
 
-class RandomNumbers
+/// A triangle together with its frame.
+struct PlaneTriangle
 {
-public:
-  explicit RandomNumbers(std::uint64_t seed)
-    : Engine(seed)
-  {
-  }
+  std::array<Vector2, 3> Corners;
+  TriangleShape Shape;
+  Vector2 Origin;
+  Vector2 Tangent;
 
-  std::uint64_t Bits() { return this->Engine(); }
-
-  /// Uniform in [0, 1).
-  double Uniform() { return std::ldexp(static_cast<double>(this->Engine() >> 11), -53); }
-  double Uniform(double lower, double upper) { return lower + (upper - lower) * this->Uniform(); }
-  /// 10 to a power that is uniform between the two arguments.
-  double PowerOfTen(double lower, double upper)
+  explicit PlaneTriangle(const std::array<Vector2, 3>& corners)
+    : Corners(corners)
   {
-    return std::pow(10.0, this->Uniform(lower, upper));
-  }
-  /// 0 to @a count - 1.
-  int Below(int count)
-  {
-    return static_cast<int>(this->Engine() % static_cast<std::uint64_t>(count));
-  }
-  int Integer(int least, int greatest) { return least + this->Below(greatest - least + 1); }
-  bool Chance(double probability) { return this->Uniform() < probability; }
-
-  /// In [0, 1], with the exponents of the distances to both ends uniformly distributed.
-  double Proportion()
-  {
-    switch (this->Below(6))
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k)
     {
-      case 0:
-        return this->PowerOfTen(-18.0, 0.0);
-      case 1:
-        return 1.0 - this->PowerOfTen(-18.0, 0.0);
-      case 2:
-        return this->Below(2);
-      default:
-        return this->Uniform();
+      const Vector2 edge = corners[PreviousCorner(k)] - corners[NextCorner(k)];
+      const double length = std::hypot(edge.x, edge.y);
+      if (length > longest)
+      {
+        longest = length;
+        this->Shape.Apex = k;
+        this->Origin = corners[NextCorner(k)];
+        this->Tangent = (1.0 / length) * edge;
+      }
     }
+    this->Shape.Base = longest;
+    const Vector2 edge = corners[PreviousCorner(this->Shape.Apex)] - this->Origin;
+    const Vector2 apex = corners[this->Shape.Apex] - this->Origin;
+    this->Shape.ApexX = Dot(apex, this->Tangent);
+    this->Shape.Height = DifferenceOfProducts(edge.x, apex.y, edge.y, apex.x) / longest;
   }
 
-private:
-  std::mt19937_64 Engine;
+  Vector2 ToFrame(const Vector2& point) const
+  {
+    const Vector2 d = point - this->Origin;
+    return { Dot(d, this->Tangent), Cross(this->Tangent, d) };
+  }
+
+  Vector2 FromFrame(const Vector2& point) const
+  {
+    return this->Origin + this->VectorFromFrame(point);
+  }
+
+  Vector2 VectorFromFrame(const Vector2& v) const
+  {
+    return { v.x * this->Tangent.x - v.y * this->Tangent.y,
+      v.x * this->Tangent.y + v.y * this->Tangent.x };
+  }
+
+  /// The neighbor with this apex across the edge opposite corner @a edge.
+  Neighbor NeighborWithApex(int edge, const Vector2& apex) const
+  {
+    if (std::isnan(apex.x))
+    {
+      return {};
+    }
+    return { true,
+      ViewFromEdge(this->Corners[NextCorner(edge)], this->Corners[PreviousCorner(edge)], apex) };
+  }
+
+  EdgeViews Views() const
+  {
+    return ViewsFromEdges(this->Corners[0], this->Corners[1], this->Corners[2]);
+  }
 };
+
+/// Transforms the derivative of a homeomorphism from the frames of two triangles to coordinates of
+/// the plane.
+inline Matrix2 InPlane(const PlaneTriangle& from, const PlaneTriangle& to, const Matrix2& matrix)
+{
+  const auto image = [&](const Vector2& v) {
+    const Vector2 w{ Dot(v, from.Tangent), Cross(from.Tangent, v) };
+    return to.VectorFromFrame(w.x * matrix.ImageOfX + w.y * matrix.ImageOfY);
+  };
+  return { image({ 1.0, 0.0 }), image({ 0.0, 1.0 }) };
+}
+
+inline double Norm(const Vector2& v)
+{
+  return std::hypot(v.x, v.y);
+}
+
+inline double Norm(const Matrix2& m)
+{
+  return std::hypot(Norm(m.ImageOfX), Norm(m.ImageOfY));
+}
+
+inline Matrix2 operator-(const Matrix2& a, const Matrix2& b)
+{
+  return { a.ImageOfX - b.ImageOfX, a.ImageOfY - b.ImageOfY };
+}
 
 using Corners = std::array<Vector2, 3>;
 
 /// The triangle with base from (0, 0) to (1, 0) and this apex, rotated and scaled, with randomly
 /// numbered corners.
-inline Corners Moved(RandomNumbers& random, const Vector2& apex, double scale)
+inline Corners Moved(Random& random, const Vector2& apex, double scale)
 {
   const double angle = random.Uniform(0.0, 6.283185307179586);
   // One in four stays axis-parallel, where coordinates are exact.
   const bool turned = random.Chance(0.75);
   const Vector2 u =
     turned ? Vector2{ scale * std::cos(angle), scale * std::sin(angle) } : Vector2{ scale, 0.0 };
-  const auto surfacePoint = [&u](const Vector2& p) -> Vector2 {
+  const auto turn = [&u](const Vector2& p) -> Vector2 {
     return { p.x * u.x - p.y * u.y, p.x * u.y + p.y * u.x };
   };
-  const Corners corners{ surfacePoint({ 0.0, 0.0 }), surfacePoint({ 1.0, 0.0 }),
-    surfacePoint(apex) };
+  const Corners corners{ turn({ 0.0, 0.0 }), turn({ 1.0, 0.0 }), turn(apex) };
   const int first = random.Below(3);
   return { corners[first], corners[NextCorner(first)], corners[PreviousCorner(first)] };
 }
 
 /// The height over the longest edge is at least a quarter of that edge.
-inline Corners FatTriangle(RandomNumbers& random)
+inline Corners FatTriangle(Random& random)
 {
   const Vector2 apex{ random.Uniform(0.1, 0.9), random.Uniform(0.25, 0.86) };
   return Moved(random, apex, random.PowerOfTen(-0.5, 0.5));
 }
 
 /// From fat triangles to needles with a height of a millionth of the longest edge.
-inline Corners AnyTriangle(RandomNumbers& random)
+inline Corners AnyTriangle(Random& random)
 {
   return Moved(
     random, { random.Proportion(), random.PowerOfTen(-6.0, -0.07) }, random.PowerOfTen(-3.0, 3.0));
@@ -112,19 +159,9 @@ inline bool IsConcordant(const Corners& corners)
   return homeomorphism::IsConcordant(&corners[0].x, &corners[1].x, &corners[2].x, 2);
 }
 
-inline Corners FatConcordantTriangle(RandomNumbers& random)
-{
-  Corners corners;
-  do
-  {
-    corners = FatTriangle(random);
-  } while (!IsConcordant(corners));
-  return corners;
-}
-
 /// Concordant triangles: fat ones, flat caps and tall needles down to a millionth, and triangles of
 /// each kind that one bit separates from discordant ones.
-inline Corners ConcordantTriangle(RandomNumbers& random)
+inline Corners ConcordantTriangle(Random& random)
 {
   for (;;)
   {
@@ -175,7 +212,7 @@ inline Corners ConcordantTriangle(RandomNumbers& random)
 
 /// A neighbor across an edge from which the triangle has the view @a own: up to a million times
 /// lower or higher, with its apex up to twenty edge lengths aside. One in eight is missing.
-inline Neighbor AnyNeighbor(RandomNumbers& random, const EdgeView& own)
+inline Neighbor AnyNeighbor(Random& random, const EdgeView& own)
 {
   if (random.Chance(0.125))
   {
@@ -190,36 +227,10 @@ inline Neighbor AnyNeighbor(RandomNumbers& random, const EdgeView& own)
   return neighbor;
 }
 
-inline std::array<Neighbor, 3> AnyNeighbors(RandomNumbers& random, const EdgeViews& views)
+inline std::array<Neighbor, 3> AnyNeighbors(Random& random, const EdgeViews& views)
 {
   return { AnyNeighbor(random, views[0]), AnyNeighbor(random, views[1]),
     AnyNeighbor(random, views[2]) };
-}
-
-/// Neighbors of a size similar to that of the triangle.
-inline std::array<Neighbor, 3> ModerateNeighbors(RandomNumbers& random, const EdgeViews& views)
-{
-  std::array<Neighbor, 3> neighbors;
-  for (int k = 0; k < 3; ++k)
-  {
-    neighbors[k].Exists = true;
-    neighbors[k].View = { views[k].Length, random.Uniform(-0.5, 1.5),
-      views[k].Height * random.Uniform(0.3, 3.0) };
-  }
-  return neighbors;
-}
-
-/// Uniform in the triangle.
-inline Barycentric AnyBarycentric(RandomNumbers& random)
-{
-  double x = random.Uniform();
-  double y = random.Uniform();
-  if (x + y > 1.0)
-  {
-    x = 1.0 - x;
-    y = 1.0 - y;
-  }
-  return { x, y, 1.0 - x - y };
 }
 
 /// No subnormal numbers beside 0: the predicate for sides of a line could not form their products.
@@ -240,7 +251,7 @@ inline double MovedByUlps(double x, int count)
 inline double DistanceOutside(const Corners& corners, const Vector2& point)
 {
   const int sign = Orientation(corners[0], corners[1], corners[2]);
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = fixtures::Infinity;
   bool inside = true;
   for (int k = 0; k < 3; ++k)
   {
@@ -283,32 +294,26 @@ inline Barycentric OnStripBorder(int k, double tau, double proportion)
 /// The coordinate systems with the construction of their charts, for tests over all systems.
 struct LinearSystem
 {
-  using Chart = LinearChart;
   static constexpr const char* Name = "Linear";
-  static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
-  static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
-  static Chart Make(RandomNumbers&, const PlaneTriangle& t, bool) { return Chart(t.Shape); }
+  using Chart = LinearChart;
+  static Corners Any(Random& random) { return AnyTriangle(random); }
+  static Chart Make(Random&, const PlaneTriangle& t) { return Chart(t.Shape); }
 };
 
 struct ContourSystem
 {
-  using Chart = ContourChart;
   static constexpr const char* Name = "Contour";
-  static Corners Any(RandomNumbers& random) { return ConcordantTriangle(random); }
-  static Corners Fat(RandomNumbers& random) { return FatConcordantTriangle(random); }
-  static Chart Make(RandomNumbers&, const PlaneTriangle& t, bool)
-  {
-    return Chart(t.Shape, t.Views());
-  }
+  using Chart = ContourChart;
+  static Corners Any(Random& random) { return ConcordantTriangle(random); }
+  static Chart Make(Random&, const PlaneTriangle& t) { return Chart(t.Shape, t.Views()); }
 };
 
 struct IncenterSystem
 {
+  static constexpr const char* Name = "Contour_from_the_incenter";
   using Chart = ContourChart;
-  static constexpr const char* Name = "Contour from the incenter";
-  static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
-  static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
-  static Chart Make(RandomNumbers&, const PlaneTriangle& t, bool)
+  static Corners Any(Random& random) { return AnyTriangle(random); }
+  static Chart Make(Random&, const PlaneTriangle& t)
   {
     return Chart(t.Shape, t.Views(), CenterPoint::Incenter);
   }
@@ -316,15 +321,13 @@ struct IncenterSystem
 
 struct SmoothSystem
 {
-  using Chart = SmoothChart;
   static constexpr const char* Name = "Smooth";
-  static Corners Any(RandomNumbers& random) { return AnyTriangle(random); }
-  static Corners Fat(RandomNumbers& random) { return FatTriangle(random); }
-  static Chart Make(RandomNumbers& random, const PlaneTriangle& t, bool moderate)
+  using Chart = SmoothChart;
+  static Corners Any(Random& random) { return AnyTriangle(random); }
+  static Chart Make(Random& random, const PlaneTriangle& t)
   {
     const EdgeViews views = t.Views();
-    return Chart(
-      t.Shape, views, moderate ? ModerateNeighbors(random, views) : AnyNeighbors(random, views));
+    return Chart(t.Shape, views, AnyNeighbors(random, views));
   }
 };
 
@@ -334,9 +337,7 @@ struct SystemName
   template <typename System>
   static std::string GetName(int)
   {
-    std::string name = System::Name;
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
+    return System::Name;
   }
 };
 

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Round trips from a point to its coordinates and back, for all systems, for triangles from fat
-// ones to needles, and for points on and within a few ulp of every line at which the formulas
-// change.
+// Charts of all systems: round trips from a point to its coordinates and back, for triangles from
+// fat ones to needles, on and within a few ulp of every line at which the formulas change; edges,
+// which have coordinates in proportion to lengths; and derivatives. See TestReferenceValues for
+// their values.
 
-#include "RandomTriangles.h"
+#include "Fixtures/Triangles.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 namespace
@@ -65,12 +65,12 @@ Vector2 OnLineOf(const SmoothChart& chart, const TriangleShape& shape, int k, do
 
 /// A point of the closed triangle, or outside by a few ulp.
 template <typename Chart>
-Vector2 AnyPoint(RandomNumbers& random, const TriangleShape& shape, const Chart& chart)
+Vector2 AnyPoint(Random& random, const TriangleShape& shape, const Chart& chart)
 {
   const int kind = random.Below(8);
   if (kind <= 1)
   {
-    return shape.FromBarycentric(AnyBarycentric(random));
+    return shape.FromBarycentric(random.Weights());
   }
   const int k = random.Below(3);
   const double proportion = random.Proportion();
@@ -112,27 +112,41 @@ void ExpectValid(const TriangularCoordinates& c)
 }
 
 template <typename System>
-class RoundTrip : public testing::Test
+struct Domain
+{
+  PlaneTriangle Triangle;
+  typename System::Chart Chart;
+
+  explicit Domain(Random& random)
+    : Triangle(System::Any(random))
+    , Chart(System::Make(random, this->Triangle))
+  {
+  }
+};
+
+template <typename System>
+class Charts : public testing::Test
 {
 };
 
 using Systems = testing::Types<LinearSystem, ContourSystem, IncenterSystem, SmoothSystem>;
 
-TYPED_TEST_SUITE(RoundTrip, Systems, SystemName);
+TYPED_TEST_SUITE(Charts, Systems, SystemName);
 
-TYPED_TEST(RoundTrip, PointToCoordinatesToPoint)
+TYPED_TEST(Charts, PointToCoordinatesToPoint)
 {
   constexpr int triangles = 6000;
   constexpr int pointsPerTriangle = 100;
-  RandomNumbers random(21);
+  Random random(21);
   // Points of the closed triangle, then points outside.
   std::array<Worst, 2> viaReference;
   std::array<Worst, 2> viaCoordinates;
   for (int n = 0; n < triangles; ++n)
   {
-    const PlaneTriangle triangle(TypeParam::Any(random));
+    const Domain<TypeParam> domain(random);
+    const PlaneTriangle& triangle = domain.Triangle;
     const TriangleShape& shape = triangle.Shape;
-    const auto chart = TypeParam::Make(random, triangle, false);
+    const auto& chart = domain.Chart;
     for (int i = 0; i < pointsPerTriangle; ++i)
     {
       const Vector2 point = AnyPoint(random, shape, chart);
@@ -160,9 +174,113 @@ TYPED_TEST(RoundTrip, PointToCoordinatesToPoint)
   }
 }
 
+TYPED_TEST(Charts, PointOnAnEdgeHasItsCoordinates)
+{
+  Random random(32);
+  Worst worstP;
+  Worst worstC;
+  Worst worstPoint;
+  int wrongEdges = 0;
+  int notOnBase = 0;
+  // Smooth computes its coordinates in the equilateral triangle, whose sides are not on the x axis.
+  const bool isExact = std::string(TypeParam::Name) != SmoothSystem::Name;
+  for (int n = 0; n < 20000; ++n)
+  {
+    const Domain<TypeParam> p(random);
+    const TriangleShape& shape = p.Triangle.Shape;
+    for (int k = 0; k < 3; ++k)
+    {
+      const double t = random.Uniform(0.001, 0.999);
+      const Vector2 start = shape.Corner(NextCorner(k));
+      const Vector2 end = shape.Corner(PreviousCorner(k));
+      const Vector2 point = (1.0 - t) * start + t * end;
+      const auto reference = p.Chart.ToReference(point);
+      const TriangularCoordinates found = p.Chart.ToCoordinates(reference);
+      wrongEdges += found.Edge != k + 1;
+      // The position of the point is known to an ulp of the longest edge.
+      const double rounding =
+        Ulp * shape.Base / Norm(end - start) * InverseMagnification(p.Chart, shape, reference);
+      worstP.Take(std::abs(found.EdgeParameter - t) / rounding, p.Triangle, point);
+      // The contour may be as short as the height of the triangle.
+      const double roundingOfC =
+        Ulp * shape.Base / shape.Height * InverseMagnification(p.Chart, shape, reference);
+      worstC.Take((1.0 - found.ContourParameter) / roundingOfC, p.Triangle, point);
+      if (k == shape.Apex)
+      {
+        // On the x axis coordinates are exact.
+        notOnBase += found.ContourParameter != 1.0;
+      }
+    }
+    // In coordinates all edges are exact: c = 1 is on the edge, at p.
+    const int e = random.Integer(1, 3);
+    const double t = random.Proportion();
+    const Vector2 expected =
+      (1.0 - t) * shape.Corner(NextCorner(e - 1)) + t * shape.Corner(PreviousCorner(e - 1));
+    const auto reference = p.Chart.FromCoordinates({ e, t, 1.0 });
+    const Vector2 found = p.Chart.ToPoint(reference);
+    const double rounding = Ulp * shape.Base * Magnification(p.Chart, shape, reference);
+    worstPoint.Take(Norm(found - expected) / rounding, p.Triangle, expected);
+  }
+  EXPECT_LT(worstP.Value, 16.0) << worstP.Where;
+  EXPECT_LT(worstC.Value, 16.0) << worstC.Where;
+  EXPECT_LT(worstPoint.Value, 16.0) << worstPoint.Where;
+  EXPECT_EQ(wrongEdges, 0);
+  if (isExact)
+  {
+    EXPECT_EQ(notOnBase, 0);
+  }
+}
+
+TYPED_TEST(Charts, PullbackIsTheInverseOfPushforward)
+{
+  Random random(42);
+  Worst worst;
+  for (int n = 0; n < 20000; ++n)
+  {
+    const Domain<TypeParam> p(random);
+    for (int i = 0; i < 5; ++i)
+    {
+      const Vector2 point = p.Triangle.Shape.FromBarycentric(random.Weights());
+      const auto reference = p.Chart.ToReference(point);
+      // Contour directions are measured against p, whose unit is the edge, which may be short. The
+      // error is therefore relative to the largest component.
+      const Matrix2 identity = MapDerivative(p.Chart, p.Chart, reference);
+      const double error = Norm(identity - Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } });
+      const double condition = p.Triangle.Shape.Base / p.Triangle.Shape.Height *
+        Magnification(p.Chart, p.Triangle.Shape, reference) *
+        InverseMagnification(p.Chart, p.Triangle.Shape, reference);
+      worst.Take(error / (Ulp * condition), p.Triangle, point);
+    }
+  }
+  EXPECT_LT(worst.Value, 64.0) << worst.Where;
+}
+
+TYPED_TEST(Charts, DeterminantIsPositive)
+{
+  Random random(43);
+  for (int n = 0; n < 40000; ++n)
+  {
+    const Domain<TypeParam> p(random);
+    const Domain<TypeParam> q(random);
+    for (int i = 0; i < 5; ++i)
+    {
+      // Inside, on the edges, near the corners and along contours near the center.
+      const double c = random.Chance(0.3) ? 1.0 : random.Uniform();
+      const TriangularCoordinates coordinates{ random.Integer(1, 3),
+        random.Uniform(1e-9, 1.0 - 1e-9), random.Chance(0.2) ? 1e-9 * c : c };
+      const auto reference = p.Chart.FromCoordinates(coordinates);
+      const Matrix2 derivative = MapDerivative(p.Chart, q.Chart, reference);
+      // Negated so that NaN fails.
+      ASSERT_TRUE(derivative.Determinant() > 0.0)
+        << Description(p.Triangle, p.Chart.ToPoint(reference)) << " to "
+        << Description(q.Triangle, {});
+    }
+  }
+}
+
 /// Near the tip of a flat cap arcs turn by almost a right angle, and the cosine cancels. The root
 /// must still be found.
-TEST(ContourRoundTrip, NearTheTipOfACap)
+TEST(ContourCharts, NearTheTipOfACap)
 {
   const PlaneTriangle triangle({ Vector2{ 40.334549577597691, 0.0 }, { 0.0, 0.0 },
     { 20.167274795109954, -0.00039122220690191047 } });
@@ -173,7 +291,7 @@ TEST(ContourRoundTrip, NearTheTipOfACap)
 
 /// With the incenter, needles and caps as thin as doubles can represent: products of two heights
 /// underflow.
-TEST(ContourRoundTrip, NeedlesFromTheIncenterHaveImagesAndDerivatives)
+TEST(ContourCharts, NeedlesFromTheIncenterHaveImagesAndDerivatives)
 {
   const std::vector<double> weights{ 0.0, 1e-300, 1e-200, 1e-100, 1e-40, 1e-17, 1e-10, 1e-3, 0.1,
     0.3 };
