@@ -357,6 +357,10 @@ void ConstrainedTriangulation::Flip(int t, int k)
 
 void ConstrainedTriangulation::Legalize()
 {
+  // A new point is a corner of all flipped triangles, and few edges are far from a new constraint:
+  // more flips than these go round in circles, where products of coordinates underflow. The
+  // triangulation is valid after each of them.
+  std::size_t flipsLeft = 64 + 16 * this->Triangles.size();
   while (!this->Doubtful.empty())
   {
     const auto [t, k] = this->Doubtful.back();
@@ -370,8 +374,9 @@ void ConstrainedTriangulation::Legalize()
     const int d = this->Triangles[twin.Triangle].Vertices[twin.Index];
     if (CertainlyInCircle(
           this->Points[v[0]], this->Points[v[1]], this->Points[v[2]], this->Points[d]) &&
-      this->IsConvex(t, k))
+      this->IsConvex(t, k) && flipsLeft > 0)
     {
+      --flipsLeft;
       this->Flip(t, k);
       this->Doubtful.push_back({ t, 0 });
       this->Doubtful.push_back({ t, 2 });

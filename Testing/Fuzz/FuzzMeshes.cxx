@@ -9,26 +9,21 @@
 
 #include "FuzzInput.h"
 
+#include "../Cxx/Fixtures/Meshes.h"
+
 #include "Mesh/Homeomorphism.h"
 
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkDifferentiableHomeomorphism.h"
 #include "vtkDoubleArray.h"
 #include "vtkHomeomorphismTransform.h"
-#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkJacobianContinuity.h"
-#include "vtkNew.h"
 #include "vtkObject.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkResampleThroughHomeomorphism.h"
 #include "vtkSMPTools.h"
-#include "vtkSmartPointer.h"
 #include "vtkTriangularCoordinates.h"
 #include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
@@ -100,18 +95,8 @@ vtkSmartPointer<vtkCellArray> AnyCells(Input& input, int points)
   if (input.Chance(2))
   {
     // A grid, which is a valid mesh more often than random ids are.
-    const int domain = 1 + input.Below(3);
-    auto cells = vtkSmartPointer<vtkCellArray>::New();
-    for (int j = 0; j < domain; ++j)
-    {
-      for (int i = 0; i < domain; ++i)
-      {
-        const vtkIdType a = j * (domain + 1) + i;
-        const vtkIdType c = a + domain + 1;
-        cells->InsertNextCell({ a, a + 1, c + 1 });
-        cells->InsertNextCell({ a, c + 1, c });
-      }
-    }
+    const vtkSmartPointer<vtkCellArray> cells =
+      fixtures::MakeMesh({}, fixtures::GridTriangles(1 + input.Below(3)))->GetPolys();
     cells->Squeeze();
     return cells;
   }
@@ -160,28 +145,6 @@ bool IsTame(vtkPoints* points)
   return true;
 }
 
-void Show(vtkPolyData* mesh)
-{
-  for (vtkIdType i = 0; mesh->GetPoints() && i < mesh->GetNumberOfPoints(); ++i)
-  {
-    double p[3];
-    mesh->GetPoint(i, p);
-    std::cout << "point " << i << ": " << p[0] << ", " << p[1] << ", " << p[2] << "\n";
-  }
-  for (vtkIdType i = 0; mesh->GetPolys()->IsValid() && i < mesh->GetPolys()->GetNumberOfCells();
-       ++i)
-  {
-    vtkNew<vtkIdList> ids;
-    mesh->GetPolys()->GetCellAtId(i, ids);
-    std::cout << "polygon " << i << ":";
-    for (const vtkIdType id : *ids)
-    {
-      std::cout << " " << id;
-    }
-    std::cout << "\n";
-  }
-}
-
 struct Setting
 {
   int System;
@@ -225,6 +188,24 @@ bool IsFarBeside(
   return 4.0 * HalfUlp * largest * scale > map.GetAbsoluteTolerance(domain, 0.0, HalfUlp);
 }
 
+/// An image of a point is finite, like its determinant, and found in the other domain.
+void CheckImage(const homeomorphism::Homeomorphism& map, homeomorphism::Domain from,
+  const double image[3], double determinant, bool isFound)
+{
+  if (!(std::isfinite(image[0]) && std::isfinite(image[1]) && std::isfinite(image[2])))
+  {
+    Fail("an image that is not finite");
+  }
+  if (std::isnan(determinant))
+  {
+    Fail("a determinant that is not a number");
+  }
+  if (!isFound && !IsFarBeside(map, Opposite(from), image))
+  {
+    Fail("an image outside the other domain");
+  }
+}
+
 /// Below the filters, which is far faster.
 void MapDirectly(
   vtkPolyData* source, vtkPolyData* target, vtkPoints* points, const Setting& setting, bool tame)
@@ -254,24 +235,11 @@ void MapDirectly(
     double image[3];
     map->MapPoint(from, surfacePoint, image);
     const Jacobian jacobian = map->GetJacobian(from, surfacePoint);
-    if (!tame)
+    const double tolerance = map->GetAbsoluteTolerance(Opposite(from), 0.0, HalfUlp);
+    if (tame)
     {
-      continue;
-    }
-    if (!(std::isfinite(image[0]) && std::isfinite(image[1]) && std::isfinite(image[2])))
-    {
-      Fail("an image that is not finite");
-    }
-    if (std::isnan(jacobian.Determinant))
-    {
-      Fail("a determinant that is not a number");
-    }
-    if (!IsFarBeside(*map, Opposite(from), image) &&
-      map->Locate(
-           Opposite(from), image, map->GetAbsoluteTolerance(Opposite(from), 0.0, HalfUlp), -1)
-          .Triangle < 0)
-    {
-      Fail("an image outside the other domain");
+      CheckImage(*map, from, image, jacobian.Determinant,
+        map->Locate(Opposite(from), image, tolerance, -1).Triangle >= 0);
     }
   }
 }
@@ -327,20 +295,9 @@ void MapByFilter(vtkPolyData* meshes[2], vtkPolyData* cloud, const Setting& sett
       }
       double image[3];
       output->GetPoint(i, image);
-      if (!(std::isfinite(image[0]) && std::isfinite(image[1]) && std::isfinite(image[2])))
-      {
-        Fail("an image that is not finite");
-      }
-      if (std::isnan(determinant->GetComponent(i, 0)))
-      {
-        Fail("a determinant that is not a number");
-      }
-      const auto to =
-        setting.Inverse ? homeomorphism::Domain::Source : homeomorphism::Domain::Target;
-      if (!IsFarBeside(*map, to, image) && !(returnedValid && returnedValid->GetValue(i)))
-      {
-        Fail("an image outside the other domain");
-      }
+      CheckImage(*map,
+        setting.Inverse ? homeomorphism::Domain::Target : homeomorphism::Domain::Source, image,
+        determinant->GetComponent(i, 0), returnedValid && returnedValid->GetValue(i));
     }
   }
 }
@@ -463,7 +420,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     std::cout.precision(17);
     for (vtkPolyData* mesh : { pair[0], pair[1], cloud.Get() })
     {
-      Show(mesh);
+      for (const fixtures::Point& p : fixtures::PointsOf(mesh))
+      {
+        std::cout << p[0] << ", " << p[1] << ", " << p[2] << "\n";
+      }
+      mesh->GetPolys()->PrintDebug(std::cout);
     }
     std::cout << "way " << way << ", system " << setting.System << ", center " << setting.Center
               << ", mask " << setting.Mask << ", by linear " << setting.ByLinear << ", inverse "

@@ -6,7 +6,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkHomeomorphismTransform.h"
 #include "vtkJacobianContinuity.h"
 
 namespace
@@ -22,22 +21,9 @@ MeshPair MakeCounterexample()
     MakeMesh({ { -2, 0, 0 }, { 2, 0, 0 }, { 0, 6, 0 }, { 0, -3, 0 } }, triangles) };
 }
 
-vtkSmartPointer<vtkHomeomorphismTransform> MakeMap(int coordinateSystem)
+Point Image(vtkHomeomorphismTransform* map, double x, double y)
 {
-  const MeshPair pair = MakeCounterexample();
-  auto map = vtkSmartPointer<vtkHomeomorphismTransform>::New();
-  map->SetSource(pair.Source);
-  map->SetTarget(pair.Target);
-  map->SetCoordinateSystem(coordinateSystem);
-  return map;
-}
-
-std::array<double, 2> Image(vtkHomeomorphismTransform* map, double x, double y)
-{
-  const double point[3] = { x, y, 0.0 };
-  double image[3];
-  map->TransformPoint(point, image);
-  return { image[0], image[1] };
+  return Transformed(map, { x, y, 0.0 });
 }
 
 /// The length of the contour of a half edge that ends at a given distance from the foot, by the
@@ -71,7 +57,7 @@ constexpr std::array<EdgeSample, 3> samples{ { { 1.0 / 2.0, 2.0, 0.55470 },
 
 TEST(Differentiability, ContourIsPiecewiseLinearOnTheMiddleLine)
 {
-  const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
+  const auto map = MakeTransform(Contour, MakeCounterexample());
   for (int i = 0; i <= 16; ++i)
   {
     const double y = i / 16.0;
@@ -84,7 +70,7 @@ TEST(Differentiability, ContourIsPiecewiseLinearOnTheMiddleLine)
 
 TEST(Differentiability, OneSidedDerivativesDiffer)
 {
-  const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
+  const auto map = MakeTransform(Contour, MakeCounterexample());
   for (const EdgeSample& surfacePoint : samples)
   {
     const double x = -2.0 + 4.0 * surfacePoint.Proportion;
@@ -135,7 +121,7 @@ TEST(Differentiability, DirectionsTurnAtDifferentRatesBesideASpoke)
 
   // From values of the map: a small turn to either side of the segment from the centroid (0, 1) to
   // A = (-2, 0).
-  const auto map = MakeMap(vtkHomeomorphismTransform::CONTOUR);
+  const auto map = MakeTransform(Contour, MakeCounterexample());
   const double direction = std::atan2(-1.0, -2.0);
   const auto directionOfImage = [&](double turn) {
     constexpr double distance = 0.25;
@@ -164,24 +150,18 @@ TEST(Differentiability, CreasesOfContourAreAsDocumented)
     filter->CenterSegmentsOn();
     filter->CentroidsOn();
     filter->Update();
-    EXPECT_EQ(
-      filter->GetNumberOfFeatures(vtkJacobianContinuity::EDGE, vtkJacobianContinuity::CREASE), 1);
     // The upper triangle is stretched, the lower one is not. On both sides of the spoke to the
     // upper corner directions turn alike, but distances grow on both sides.
-    EXPECT_EQ(
-      filter->GetNumberOfFeatures(vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::CREASE), 3);
-    EXPECT_EQ(filter->GetNumberOfFeatures(
-                vtkJacobianContinuity::SPOKE, vtkJacobianContinuity::DIFFERENTIABLE),
-      3);
-    EXPECT_EQ(filter->GetNumberOfFeatures(
-                vtkJacobianContinuity::TRIANGLE_CENTER, vtkJacobianContinuity::CREASE),
-      1);
-    EXPECT_EQ(filter->GetNumberOfFeatures(
-                vtkJacobianContinuity::WING_SEGMENT, vtkJacobianContinuity::CREASE),
-      0);
-    EXPECT_EQ(filter->GetNumberOfFeatures(
-                vtkJacobianContinuity::CENTER_SEGMENT, vtkJacobianContinuity::CREASE),
-      0);
+    const auto count = [&filter](int type, int verdict) {
+      return filter->GetNumberOfFeatures(type, verdict);
+    };
+    using Continuity = vtkJacobianContinuity;
+    EXPECT_EQ(count(Continuity::EDGE, Continuity::CREASE), 1);
+    EXPECT_EQ(count(Continuity::SPOKE, Continuity::CREASE), 3);
+    EXPECT_EQ(count(Continuity::SPOKE, Continuity::DIFFERENTIABLE), 3);
+    EXPECT_EQ(count(Continuity::TRIANGLE_CENTER, Continuity::CREASE), 1);
+    EXPECT_EQ(count(Continuity::WING_SEGMENT, Continuity::CREASE), 0);
+    EXPECT_EQ(count(Continuity::CENTER_SEGMENT, Continuity::CREASE), 0);
   }
 }
 

@@ -6,8 +6,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkTriangularCoordinates.h"
-
 namespace
 {
 
@@ -34,6 +32,7 @@ TEST_P(FilterInEverySystem, RoundTrip)
 {
   for (const Pairing& pairing : AllPairings(20, 3, 100))
   {
+    SCOPED_TRACE(pairing.Name);
     const MeshPair& pair = pairing.Meshes;
     const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 8000, 1));
     const auto forward = MakeFilter(GetParam(), pair, cloud);
@@ -42,21 +41,18 @@ TEST_P(FilterInEverySystem, RoundTrip)
     forward->ComputeJacobianOn();
     backward->ComputeJacobianOn();
     vtkPointSet* back = Output(backward);
-    EXPECT_EQ(forward->GetNumberOfOutsidePoints(), 0) << pairing.Name;
-    EXPECT_EQ(backward->GetNumberOfOutsidePoints(), 0) << pairing.Name;
-    // The image is rounded to an ulp of the target's coordinates, and the inverse magnifies this by
-    // |J^-1|, to more than 1e-14 where the map contracts strongly. At an edge the derivatives of
-    // both triangles count, because rounding may move the image to the other side.
-    vtkDataArray* jacobian = PointArray(Output(forward), "Jacobian");
-    Worst worst;
+    EXPECT_EQ(forward->GetNumberOfOutsidePoints(), 0);
+    EXPECT_EQ(backward->GetNumberOfOutsidePoints(), 0);
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
     {
-      const double stretch = std::max(
-        Norm(Inverted(MatrixOf(jacobian, i))), Norm(MatrixOf(PointArray(back, "Jacobian"), i)));
-      worst.Take(Distance(PointOf(back, i), PointOf(cloud, i)),
+      // The image is rounded to an ulp of the target's coordinates, and the inverse magnifies this
+      // by |J^-1|, to more than 1e-14 where the map contracts strongly. At an edge the derivatives
+      // of both triangles count, because rounding may move the image to the other side.
+      const double stretch =
+        std::max(Norm(Inverted(JacobianOf(Output(forward), i))), Norm(JacobianOf(back, i)));
+      ASSERT_LE(Distance(PointOf(back, i), PointOf(cloud, i)),
         std::max(1e-14 * SizeOf(pair.Source), stretch * Ulp * LargestCoordinate(pair.Target)));
     }
-    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
   }
 }
 
@@ -108,7 +104,7 @@ TEST_P(FilterInEverySystem, MapsCompose)
     { closed.Source, closed.Target, MakeClosedPair(2, 140).Target, false } };
   for (const Triple& triple : triples)
   {
-    if (!triple.IsConcordant && std::string(GetParam().Name) == Contour.Name)
+    if (!triple.IsConcordant && GetParam().IsChoosy())
     {
       continue;
     }
@@ -120,15 +116,13 @@ TEST_P(FilterInEverySystem, MapsCompose)
     vtkPointSet* twoSteps = Output(toR);
     vtkPointSet* oneStep = Output(direct);
     EXPECT_EQ(toR->GetNumberOfOutsidePoints(), 0);
-    Worst worst;
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
     {
       // As in RoundTrip: the second map magnifies the rounding in Q.
-      const double stretch = Norm(MatrixOf(PointArray(twoSteps, "Jacobian"), i));
-      worst.Take(Distance(PointOf(twoSteps, i), PointOf(oneStep, i)),
-        std::max(1e-14 * SizeOf(triple.R), 2.0 * stretch * Ulp * LargestCoordinate(triple.Q)));
+      ASSERT_LE(Distance(PointOf(twoSteps, i), PointOf(oneStep, i)),
+        std::max(1e-14 * SizeOf(triple.R),
+          2.0 * Norm(JacobianOf(twoSteps, i)) * Ulp * LargestCoordinate(triple.Q)));
     }
-    EXPECT_LE(worst.OverBound, 1.0);
   }
 }
 
@@ -136,44 +130,35 @@ TEST_P(FilterInEverySystem, VerticesMapToVerticesAndEdgesLinearly)
 {
   for (const Pairing& pairing : AllPairings(10, 2, 150))
   {
+    SCOPED_TRACE(pairing.Name);
     const MeshPair& pair = pairing.Meshes;
     const auto filter = MakeFilter(GetParam(), pair);
-    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Target), 0) << pairing.Name;
-    EXPECT_EQ(CountDifferentCells(Output(filter), pair.Target), 0) << pairing.Name;
+    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Target), 0);
+    EXPECT_EQ(CountDifferentCells(Output(filter), pair.Target), 0);
     filter->InverseOn();
-    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0) << pairing.Name;
-    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0) << pairing.Name;
+    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0);
+    EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
 
     Random random(5);
     std::vector<MeshPoint> samples;
-    for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
+    for (vtkIdType i = 0; i < 24 * pair.Source->GetNumberOfCells(); ++i)
     {
-      for (std::size_t k = 0; k < 3; ++k)
-      {
-        for (int i = 0; i < 8; ++i)
-        {
-          const double p = i < 4 ? random.Uniform() : std::pow(10.0, random.Uniform(-15.0, 0.0));
-          MeshPoint surfacePoint{ t, {} };
-          surfacePoint.Weights[(k + 1) % 3] = 1.0 - p;
-          surfacePoint.Weights[(k + 2) % 3] = p;
-          samples.push_back(surfacePoint);
-        }
-      }
+      const double p = i % 2 == 0 ? random.Uniform() : random.PowerOfTen(-15.0, 0.0);
+      Point weights{ p, 1.0 - p, 0.0 };
+      std::rotate(weights.begin(), weights.begin() + i % 3, weights.end());
+      samples.push_back({ i / 24, weights });
     }
     const auto onEdges = MakeFilter(GetParam(), pair, MakeCloud(pair.Source, samples));
     onEdges->ComputeJacobianOn();
     vtkPointSet* output = Output(onEdges);
-    EXPECT_EQ(onEdges->GetNumberOfOutsidePoints(), 0) << pairing.Name;
-    Worst worst;
-    for (std::size_t i = 0; i < samples.size(); ++i)
+    EXPECT_EQ(onEdges->GetNumberOfOutsidePoints(), 0);
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
-      const auto id = static_cast<vtkIdType>(i);
-      const double stretch = Norm(MatrixOf(PointArray(output, "Jacobian"), id));
-      worst.Take(Distance(PointOf(output, id), PositionOf(pair.Target, samples[i])),
-        std::max(
-          1e-14 * SizeOf(pair.Target), 2.0 * stretch * Ulp * LargestCoordinate(pair.Source)));
+      ASSERT_LE(
+        Distance(PointOf(output, i), PositionOf(pair.Target, samples[static_cast<std::size_t>(i)])),
+        std::max(1e-14 * SizeOf(pair.Target),
+          2.0 * Norm(JacobianOf(output, i)) * Ulp * LargestCoordinate(pair.Source)));
     }
-    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
   }
 }
 
@@ -218,20 +203,16 @@ TEST_P(FilterInEverySystem, AffineMapsAreReproduced)
     filter->ComputeJacobianDeterminantOn();
     vtkPointSet* output = Output(filter);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
-    const double determinant = Determinant(matrix);
-    Worst worst;
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
     {
-      worst.Take(
+      ASSERT_LE(
         Distance(PointOf(output, i), matrix * PointOf(cloud, i) + shift), 1e-14 * SizeOf(target));
-      const double bound = JacobianBound(source, samples[static_cast<std::size_t>(i)]);
-      worst.Take(
-        Distance(MatrixOf(PointArray(output, "Jacobian"), i), matrix), bound * Norm(matrix));
-      worst.Take(
-        std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0) - determinant),
-        bound * Norm(matrix) * Norm(matrix));
+      const double bound =
+        Norm(matrix) * JacobianBound(source, samples[static_cast<std::size_t>(i)]);
+      ASSERT_LE(Distance(JacobianOf(output, i), matrix), bound);
+      ASSERT_NEAR(
+        PointValue(output, "JacobianDeterminant", i), Determinant(matrix), bound * Norm(matrix));
     }
-    EXPECT_LE(worst.OverBound, 1.0);
   }
 }
 
@@ -246,13 +227,11 @@ TEST_P(FilterInEverySystem, MirroredPairs)
   vtkPointSet* image = Output(mirror);
   EXPECT_LT(PointArray(image, "JacobianDeterminant")->GetRange()[1], 0.0);
   // The mirror image of the map is the map of the mirror images.
-  Worst worst;
   for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
   {
-    worst.Take(Distance(PointOf(image, i), mirrored(PointOf(Output(straight), i))),
+    ASSERT_LE(Distance(PointOf(image, i), mirrored(PointOf(Output(straight), i))),
       1e-14 * SizeOf(pair.Target));
   }
-  EXPECT_LE(worst.OverBound, 1.0);
   // On a surface it is another surface, where areas have no sign.
   const MeshPair closed = MakeClosedPair(2, 172);
   const auto onSurface = MakeFilter(GetParam(), { closed.Source, Moved(closed.Target, mirrored) },
@@ -260,67 +239,6 @@ TEST_P(FilterInEverySystem, MirroredPairs)
   onSurface->ComputeJacobianDeterminantOn();
   EXPECT_GT(PointArray(Output(onSurface), "JacobianDeterminant")->GetRange()[0], 0.0);
   EXPECT_EQ(onSurface->GetNumberOfOutsidePoints(), 0);
-}
-
-TEST_P(FilterInEverySystem, TurnedPlanesGiveTheTurnedMap)
-{
-  const MeshPair pair = MakePlanarPair(10, 200);
-  const auto samples = RandomSamples(pair.Source, 5000, 11);
-  Random random(12);
-  const auto cloud = Moved(MakeCloud(pair.Source, samples), [&random](const Point& p) -> Point {
-    return { p[0], p[1], random.Uniform(-5.0, 5.0) };
-  });
-  const auto filter = MakeFilter(GetParam(), pair, cloud);
-  filter->ComputeJacobianOn();
-  vtkPointSet* flat = Output(filter);
-  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
-  // x and y become y and z, or z and x, to the same bits; turned a little, by almost a right angle,
-  // and upside down. The normals of source and target make less than a right angle.
-  const Matrix cyclic{ { { 0, 0, 1 }, { 1, 0, 0 }, { 0, 1, 0 } } };
-  const std::vector<std::pair<Matrix, bool>> turns{ { cyclic, true }, { cyclic * cyclic, true },
-    { Rotation({ 1.0, 1.0, 0.0 }, 0.4), false }, { Rotation({ -1.0, 2.0, 0.3 }, -0.6), false },
-    { Rotation({ 0.0, 1.0, 0.1 }, 1.4), false }, { Rotation({ 1.0, 0.3, 0.0 }, 2.8), false } };
-  for (std::size_t n = 0; n < turns.size(); ++n)
-  {
-    SCOPED_TRACE(n);
-    const bool exact = turns[n].second;
-    const Matrix& from = turns[n].first;
-    const Matrix& to = exact || n + 1 == turns.size() ? from : turns[n + 1].first;
-    const Point shift = exact ? Point{} : Point{ 1.0, -2.0, 0.5 };
-    const Point up{ 0.0, 0.0, 1.0 };
-    const double side = Dot(from * up, to * up) < 0.0 ? -1.0 : 1.0;
-    const Matrix flip{ { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, side } } };
-    const auto turned = MakeFilter(GetParam(),
-      { Tilted(pair.Source, from, {}), Tilted(pair.Target, to, shift) }, Tilted(cloud, from, {}));
-    turned->ComputeJacobianOn();
-    turned->ComputeJacobianDeterminantOn();
-    vtkPointSet* output = Output(turned);
-    // Points outside by the rounding of a rotation are moved inside. Heights must not disturb this.
-    EXPECT_EQ(turned->GetNumberOfOutsidePoints(), 0);
-    Worst worst;
-    vtkIdType different = 0;
-    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
-    {
-      const Matrix j = MatrixOf(PointArray(flat, "Jacobian"), i);
-      const Point expected = to * (flip * PointOf(flat, i)) + shift;
-      const Matrix expectedJ = to * (flip * j) * Transposed(from);
-      const Matrix found = MatrixOf(PointArray(output, "Jacobian"), i);
-      different += exact && (PointOf(output, i) != expected || found != expectedJ);
-      worst.Take(
-        Distance(PointOf(output, i), expected), 8.0 * Ulp * (1.0 + Norm(j)) * SizeOf(pair.Target));
-      const auto& weights = samples[static_cast<std::size_t>(i)].Weights;
-      // At edges, rounding decides which triangle gives the limit.
-      if (*std::min_element(weights.begin(), weights.end()) > 1e-3)
-      {
-        worst.Take(Distance(found, expectedJ), 1e-9 * Norm(j));
-        worst.Take(std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0) -
-                     side * Determinant(j)),
-          1e-9 * Norm(j) * Norm(j));
-      }
-    }
-    EXPECT_EQ(different, 0);
-    EXPECT_LE(worst.OverBound, 1.0);
-  }
 }
 
 // --- Derivatives ---------------------------------------------------------------------------------
@@ -355,18 +273,16 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
     const auto stencilFilter = MakeFilter(GetParam(), pair, stencilCloud);
     vtkPointSet* images = Output(stencilFilter);
     std::vector<double> errors;
-    Worst worst;
     for (std::size_t i = 0; i < samples.size(); ++i)
     {
       const auto id = static_cast<vtkIdType>(i);
-      const Matrix j = MatrixOf(PointArray(output, "Jacobian"), id);
+      const Matrix j = JacobianOf(output, id);
       const std::array<Point, 3> from = CornersOf(pair.Source, samples[i].Triangle);
       const std::array<Point, 3> to = CornersOf(pair.Target, samples[i].Triangle);
       // The Jacobian maps normal to normal. The normals of these planes follow from the winding.
       const Point normal = Unit(Cross(from[1] - from[0], from[2] - from[0]));
-      worst.Take(Distance(j * normal, Unit(Cross(to[1] - to[0], to[2] - to[0]))), 1e-11);
-      worst.Take(
-        std::abs(PointArray(output, "JacobianDeterminant")->GetComponent(id, 0) - Determinant(j)),
+      ASSERT_LE(Distance(j * normal, Unit(Cross(to[1] - to[0], to[2] - to[0]))), 1e-11);
+      ASSERT_NEAR(PointValue(output, "JacobianDeterminant", id), Determinant(j),
         1e-11 * (1.0 + std::abs(Determinant(j))) * Norm(j));
       for (int direction = 0; direction < 2; ++direction)
       {
@@ -378,11 +294,10 @@ TEST_P(FilterInEverySystem, JacobianIsTheDerivative)
         errors.push_back(Distance(difference, expected) / Norm(to[direction + 1] - to[0]));
       }
     }
-    EXPECT_LE(worst.OverBound, 1.0) << pairing.Name;
-    // A few stencils lie across creases of Linear and Contour, wing segments, or the borders of
-    // strips.
+    // A few stencils lie across spokes of Contour, wing segments, or the borders of strips.
     std::sort(errors.begin(), errors.end());
     EXPECT_LT(errors[errors.size() * 99 / 100], 1e-8) << pairing.Name;
+    EXPECT_LT(errors.back(), GetParam().IsContour() ? 10.0 : 1e-5) << pairing.Name;
   }
 }
 
@@ -407,12 +322,10 @@ TEST_P(FilterInEverySystem, TriangleIdIsTheCellId)
       filter->ComputeTriangleIdOn();
       auto* ids = vtkIdTypeArray::SafeDownCast(PointArray(Output(filter), "TriangleId"));
       ASSERT_TRUE(ids);
-      vtkIdType wrong = 0;
       for (std::size_t i = 0; i < samples.size(); ++i)
       {
-        wrong += ids->GetValue(static_cast<vtkIdType>(i)) != samples[i].Triangle + 2;
+        ASSERT_EQ(ids->GetValue(static_cast<vtkIdType>(i)), samples[i].Triangle + 2);
       }
-      EXPECT_EQ(wrong, 0) << pairing.Name << inverse;
     }
   }
 }
@@ -432,40 +345,33 @@ TEST_P(FilterInEverySystem, UsedCoordinateSystemMarksTrianglesMappedByLinear)
     filter->ComputeTriangleIdOn();
     vtkPointSet* output = Output(filter);
     vtkDataArray* used = PointArray(output, "UsedCoordinateSystem");
-    if (std::string(GetParam().Name) != Contour.Name || pair.Source == concordant.Source)
+    if (!GetParam().IsChoosy() || pair.Source == concordant.Source)
     {
       EXPECT_FALSE(used);
       EXPECT_EQ(filter->GetNumberOfDiscordantTriangles(), 0);
       continue;
     }
-    std::set<vtkIdType> discordant;
-    for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
+    const auto ofSource = MakeCoordinates(GetParam(), pair.Source);
+    const auto ofTarget = MakeCoordinates(GetParam(), pair.Target);
+    const auto isConcordant = [&](vtkIdType t) {
+      return CellValue(Output(ofSource), "Concordant", t) != 0.0 &&
+        CellValue(Output(ofTarget), "Concordant", t) != 0.0;
+    };
+    vtkIdType discordant = 0;
+    for (vtkIdType t = 0; t < pair.Source->GetNumberOfCells(); ++t)
     {
-      vtkNew<vtkTriangularCoordinates> described;
-      described->SetSourceData(mesh);
-      described->Update();
-      vtkDataArray* isConcordant =
-        described->GetTriangulation()->GetCellData()->GetArray("Concordant");
-      for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
-      {
-        if (isConcordant->GetTuple1(t) == 0.0)
-        {
-          discordant.insert(t);
-        }
-      }
+      discordant += !isConcordant(t);
     }
-    EXPECT_EQ(filter->GetNumberOfDiscordantTriangles(), static_cast<vtkIdType>(discordant.size()));
-    EXPECT_GT(discordant.size(), 20u);
+    EXPECT_EQ(filter->GetNumberOfDiscordantTriangles(), discordant);
+    EXPECT_GT(discordant, 20);
     ASSERT_TRUE(vtkIntArray::SafeDownCast(used));
-    vtkIdType wrong = 0;
     for (vtkIdType i = 0; i < 2000; ++i)
     {
-      const auto t = static_cast<vtkIdType>(PointArray(output, "TriangleId")->GetComponent(i, 0));
-      wrong += used->GetComponent(i, 0) !=
-        (discordant.count(t) ? vtkDifferentiableHomeomorphism::LINEAR
-                             : vtkDifferentiableHomeomorphism::CONTOUR);
+      const auto t = static_cast<vtkIdType>(PointValue(output, "TriangleId", i));
+      ASSERT_EQ(used->GetComponent(i, 0),
+        isConcordant(t) ? vtkDifferentiableHomeomorphism::CONTOUR
+                        : vtkDifferentiableHomeomorphism::LINEAR);
     }
-    EXPECT_EQ(wrong, 0);
     EXPECT_EQ(used->GetComponent(2000, 0), -1.0);
   }
 }
@@ -483,15 +389,18 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     const vtkIdType points = image->GetNumberOfPoints();
     const vtkIdType cells = image->GetNumberOfCells();
     image->GetPointData()->SetVectors(RandomArray("Velocity", 3, points, 31));
+    const auto ghosts = [hasGhosts](vtkIdType i, int every, int mark) {
+      return hasGhosts && i % every == 0 ? mark : 0;
+    };
     const auto pointGhosts = MakeGhosts(points, {}, 0);
     const auto cellGhosts = MakeGhosts(cells, {}, 0);
-    for (vtkIdType i = 0; i < points && hasGhosts; i += 5)
+    for (vtkIdType i = 0; i < points; ++i)
     {
-      pointGhosts->SetValue(i, Attributes::DUPLICATEPOINT);
+      pointGhosts->SetComponent(i, 0, ghosts(i, 5, Attributes::DUPLICATEPOINT));
     }
-    for (vtkIdType i = 0; i < cells && hasGhosts; i += 7)
+    for (vtkIdType i = 0; i < cells; ++i)
     {
-      cellGhosts->SetValue(i, Attributes::DUPLICATECELL);
+      cellGhosts->SetComponent(i, 0, ghosts(i, 7, Attributes::DUPLICATECELL));
     }
     if (hasGhosts)
     {
@@ -503,29 +412,22 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     filter->ComputeJacobianDeterminantOn();
     filter->ComputeTriangleIdOn();
     vtkPointSet* output = Output(filter);
-    const char* ghosts = Attributes::GhostArrayName();
+    const char* name = Attributes::GhostArrayName();
     vtkIdType outside = 0;
     for (vtkIdType i = 0; i < points; ++i)
     {
       const Point p = PointOf(image, i);
       const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0;
+      const int ghost = ghosts(i, 5, Attributes::DUPLICATEPOINT);
       // Ghost points are marked, but not counted.
-      outside += isOutside && pointGhosts->GetValue(i) == 0;
-      ASSERT_EQ(PointArray(output, "vtkValidPointMask")->GetComponent(i, 0), isOutside ? 0 : 1);
-      ASSERT_EQ(PointArray(output, "TriangleId")->GetComponent(i, 0) < 0, isOutside);
-      for (const char* name : { "Jacobian", "JacobianDeterminant", "Velocity" })
-      {
-        for (int k = 0; k < PointArray(output, name)->GetNumberOfComponents(); ++k)
-        {
-          ASSERT_EQ(std::isnan(PointArray(output, name)->GetComponent(i, k)), isOutside);
-        }
-      }
-      if (isOutside)
-      {
-        ASSERT_EQ(PointOf(output, i), p);
-      }
-      ASSERT_EQ(PointArray(output, ghosts)->GetComponent(i, 0),
-        pointGhosts->GetValue(i) | (isOutside ? Attributes::HIDDENPOINT : 0));
+      outside += isOutside && ghost == 0;
+      ASSERT_NE(IsValid(output, i), isOutside);
+      ASSERT_EQ(PointValue(output, "TriangleId", i) < 0, isOutside);
+      ASSERT_EQ(std::isnan(Norm(JacobianOf(output, i))), isOutside);
+      ASSERT_EQ(std::isnan(PointValue(output, "JacobianDeterminant", i)), isOutside);
+      ASSERT_EQ(std::isnan(Norm(VectorOf(PointArray(output, "Velocity"), i))), isOutside);
+      ASSERT_TRUE(!isOutside || PointOf(output, i) == p);
+      ASSERT_EQ(PointValue(output, name, i), ghost | (isOutside ? Attributes::HIDDENPOINT : 0));
     }
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), outside);
     EXPECT_GT(outside, 100);
@@ -533,16 +435,15 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     for (vtkIdType cell = 0; cell < cells; ++cell)
     {
       image->GetCellPoints(cell, ids);
-      const bool isOutside = std::any_of(ids->begin(), ids->end(), [&](vtkIdType i) {
-        return PointArray(output, "vtkValidPointMask")->GetComponent(i, 0) == 0.0;
-      });
-      ASSERT_EQ(output->GetCellData()->GetArray(ghosts)->GetComponent(cell, 0),
-        cellGhosts->GetValue(cell) | (isOutside ? Attributes::HIDDENCELL : 0));
+      const bool isInside =
+        std::all_of(ids->begin(), ids->end(), [output](vtkIdType i) { return IsValid(output, i); });
+      ASSERT_EQ(CellValue(output, name, cell),
+        ghosts(cell, 7, Attributes::DUPLICATECELL) | (isInside ? 0 : Attributes::HIDDENCELL));
     }
     // The input's arrays are not modified.
-    EXPECT_EQ(PointArray(image, ghosts), hasGhosts ? pointGhosts.Get() : nullptr);
+    EXPECT_EQ(PointArray(image, name), hasGhosts ? pointGhosts.Get() : nullptr);
     filter->BlankOutsideOff();
-    EXPECT_EQ(PointArray(Output(filter), ghosts), hasGhosts ? pointGhosts.Get() : nullptr);
+    EXPECT_EQ(PointArray(Output(filter), name), hasGhosts ? pointGhosts.Get() : nullptr);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), outside);
   }
   // There are none if all points are inside.
@@ -577,7 +478,7 @@ TEST(DifferentiableHomeomorphism, ArraysOfTheSameNameAreReplaced)
 
 // --- Executions ----------------------------------------------------------------------------------
 
-TEST(DifferentiableHomeomorphism, ChangingAPropertyExecutesOnceMore)
+TEST(DifferentiableHomeomorphism, ChangingAPropertyExecutesAgain)
 {
   using Filter = vtkDifferentiableHomeomorphism;
   const std::vector<std::function<void(Filter*)>> changes{ [](Filter* f) {
@@ -599,27 +500,19 @@ TEST(DifferentiableHomeomorphism, ChangingAPropertyExecutesOnceMore)
   const MeshPair pair = MakePlanarPair(6, 356, 0.05);
   const auto filter =
     MakeFilter(Smooth, pair, MakeCloud(pair.Source, RandomSamples(pair.Source, 50, 44)));
-  struct Counter
-  {
-    int Count = 0;
-    void Increment() { ++this->Count; }
-  } executions;
-  filter->AddObserver(vtkCommand::StartEvent, &executions, &Counter::Increment);
-  filter->Update();
-  int expected = 1;
+  Output(filter);
   for (const auto& change : changes)
   {
+    const vtkMTimeType before = Output(filter)->GetMTime();
     change(filter);
-    filter->Update();
-    EXPECT_EQ(executions.Count, ++expected);
-    vtkNew<vtkPolyData> first;
-    first->DeepCopy(filter->GetOutputDataObject(0));
+    const vtkMTimeType after = Output(filter)->GetMTime();
+    EXPECT_GT(after, before);
     // Another update does nothing, and executing again gives the same.
-    filter->Update();
-    EXPECT_EQ(executions.Count, expected);
+    EXPECT_EQ(Output(filter)->GetMTime(), after);
+    vtkNew<vtkPolyData> first;
+    first->DeepCopy(Output(filter));
     filter->Modified();
     EXPECT_EQ(CountDifferentPoints(Output(filter), first), 0);
-    ++expected;
   }
 }
 

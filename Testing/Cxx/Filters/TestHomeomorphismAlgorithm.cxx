@@ -8,10 +8,7 @@
 #include "Fixtures/FilterRuns.h"
 
 #include "vtkCellLocator.h"
-#include "vtkHomeomorphismTransform.h"
-#include "vtkJacobianContinuity.h"
 #include "vtkResampleThroughHomeomorphism.h"
-#include "vtkTriangularCoordinates.h"
 
 #include <atomic>
 #include <regex>
@@ -21,11 +18,6 @@ namespace
 {
 
 using namespace fixtures;
-
-vtkDataSet* DataOf(vtkAlgorithm* filter)
-{
-  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-}
 
 /// Runs work in threads of its own, several times.
 void RunInThreads(const std::function<void()>& work)
@@ -47,32 +39,16 @@ void RunInThreads(const std::function<void()>& work)
 TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
 {
   const MeshPair pair = MakePlanarPair(12, 71);
-  const double point[3] = { 5.3, 4.6, 0.0 };
-  vtkNew<vtkHomeomorphismTransform> reference;
-  reference->SetSource(pair.Source);
-  reference->SetTarget(pair.Target);
-  double expected[3];
-  reference->TransformPoint(point, expected);
+  const Point point{ 5.3, 4.6, 0.0 };
+  const auto reference = MakeTransform(Smooth, pair);
+  const Point expected = Transformed(reference, point);
   std::atomic<int> different{ 0 };
-  const auto compare = [&](const double image[3]) {
-    different += image[0] != expected[0] || image[1] != expected[1] || image[2] != expected[2];
-  };
-
   // A transform of its own for each thread, and a copy of one that has been updated.
-  RunInThreads([&] {
-    vtkNew<vtkHomeomorphismTransform> transform;
-    transform->SetSource(pair.Source);
-    transform->SetTarget(pair.Target);
-    double image[3];
-    transform->TransformPoint(point, image);
-    compare(image);
-  });
+  RunInThreads([&] { different += Transformed(MakeTransform(Smooth, pair), point) != expected; });
   RunInThreads([&] {
     vtkNew<vtkHomeomorphismTransform> transform;
     transform->DeepCopy(reference);
-    double image[3];
-    transform->TransformPoint(point, image);
-    compare(image);
+    different += Transformed(transform, point) != expected;
   });
   // Filters of its own on shallow copies.
   RunInThreads([&] {
@@ -80,18 +56,14 @@ TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
     vtkNew<vtkPolyData> target;
     source->ShallowCopy(pair.Source);
     target->ShallowCopy(pair.Target);
-    const auto filter = MakeFilter(
-      Smooth, { source.Get(), target.Get() }, MakeCloud({ { point[0], point[1], point[2] } }));
-    filter->Update();
-    compare(DataOf(filter)->GetPoint(0));
+    const auto filter = MakeFilter(Smooth, { source.Get(), target.Get() }, MakeCloud({ point }));
+    different += PointOf(Output(filter), 0) != expected;
     vtkNew<vtkResampleThroughHomeomorphism> resample;
     resample->SetSourceData(source);
     resample->SetTargetData(target);
     resample->SetSamplingDimensions(8, 8);
     resample->Update();
-    vtkNew<vtkTriangularCoordinates> coordinates;
-    coordinates->SetSourceData(source);
-    coordinates->Update();
+    MakeCoordinates(Smooth, source)->Update();
   });
   EXPECT_EQ(different.load(), 0);
 }
@@ -117,7 +89,7 @@ TEST(HomeomorphismAlgorithm, BlocksWithoutPointsAreLeftOut)
 TEST(HomeomorphismAlgorithm, PointsThatMissASurfaceAreExplained)
 {
   // Points of a curved surface, rounded to four decimals.
-  const MeshPair pair = MakeClosedPair(4, 76);
+  const MeshPair pair = MakeClosedPair(3, 76);
   std::vector<Point> points;
   for (const Triangle& triangle : TrianglesOf(pair.Source))
   {
@@ -154,7 +126,7 @@ TEST(HomeomorphismAlgorithm, PointsThatMissASurfaceAreExplained)
     {
       // A number of the warning is that tolerance, rounded up.
       const std::string words = messages.Warning();
-      const std::regex number("[0-9.]+e-[0-9]+");
+      const std::regex number("[0-9][0-9.]*e-[0-9]+");
       EXPECT_TRUE(std::any_of(std::sregex_iterator(words.begin(), words.end(), number), {},
         [least](const std::smatch& match) {
           const double tolerance = std::stod(match.str());

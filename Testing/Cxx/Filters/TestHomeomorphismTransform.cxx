@@ -5,8 +5,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkHomeomorphismTransform.h"
-
 #include "vtkGeneralTransform.h"
 #include "vtkImageReslice.h"
 #include "vtkSMPTools.h"
@@ -17,15 +15,6 @@ namespace
 {
 
 using namespace fixtures;
-
-vtkSmartPointer<vtkHomeomorphismTransform> MakeTransform(const System& system, const MeshPair& pair)
-{
-  auto transform = vtkSmartPointer<vtkHomeomorphismTransform>::New();
-  SetSystem(transform.Get(), system);
-  transform->SetSource(pair.Source);
-  transform->SetTarget(pair.Target);
-  return transform;
-}
 
 /// Pairs of planes: xy to xy, and tilted to x = const.
 std::vector<MeshPair> PlanarPairs(std::uint64_t seed)
@@ -53,13 +42,6 @@ std::vector<Point> PositionsAround(vtkPolyData* mesh, std::uint64_t seed)
     positions.push_back(PositionOf(mesh, surfacePoint) + 0.5 * size * random.Vector());
   }
   return positions;
-}
-
-Point Transformed(vtkAbstractTransform* transform, const Point& p)
-{
-  Point image;
-  transform->TransformPoint(p.data(), image.data());
-  return image;
 }
 
 /// Image and derivative at a point; the input is also the output.
@@ -130,16 +112,13 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
         }
         const double coordinate = transform->GetOutsideCoordinate();
         const double outside = isFloat ? RoundedToFloat(coordinate) : coordinate;
-        const auto isInside = [&](vtkIdType i) {
-          return PointArray(mapped, "vtkValidPointMask")->GetComponent(i, 0) != 0.0;
-        };
+        const auto isInside = [&](vtkIdType i) { return IsValid(mapped, i); };
         const auto expected = [&](vtkIdType i) {
           return isInside(i) ? PointOf(mapped, i) : Point{ outside, outside, outside };
         };
 
         // Point by point.
         vtkIdType different = 0;
-        Worst derivatives;
         for (vtkIdType i = 0; i < count; ++i)
         {
           const Point p = positions[static_cast<std::size_t>(i)];
@@ -165,14 +144,13 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
           if (isInside(i))
           {
             // VTK inverts the forward derivative of an inverse.
-            const Matrix j = MatrixOf(PointArray(mapped, "Jacobian"), i);
+            const Matrix j = JacobianOf(mapped, i);
             different += !isFloat && !inverse && found.Derivative != j;
-            derivatives.Take(Distance(found.Derivative, j),
+            ASSERT_LE(Distance(found.Derivative, j),
               (isFloat ? 1e-6 : 1e-13) * Norm(j) * Norm(Inverted(j)) * Norm(j));
           }
         }
         EXPECT_EQ(different, 0);
-        EXPECT_LE(derivatives.OverBound, 1.0);
 
         // All points at once, by the transform itself, which appends, and by VTK's users of it.
         const auto countDifferent = [&](vtkPoints* points, vtkIdType first) {
@@ -254,16 +232,14 @@ TEST_P(TransformInEverySystem, Inverse)
   EXPECT_EQ(inverse->GetInverse(), transform.Get());
   transform->Update();
   inverse->Update();
-  Worst worst;
   for (const MeshPoint& surfacePoint : InnerSamples(pair.Source, 3000, 67, 1e-3))
   {
     const Differential forward(transform, PositionOf(pair.Source, surfacePoint));
     const Differential backward(inverse, forward.Image);
     const Matrix inverted = Inverted(forward.Derivative);
-    worst.Take(Distance(backward.Derivative, inverted),
+    ASSERT_LE(Distance(backward.Derivative, inverted),
       1e-11 * Norm(inverted) * Norm(inverted) * Norm(forward.Derivative));
   }
-  EXPECT_LE(worst.OverBound, 1.0);
   // Setting the flag once gives the inverse, and likewise for the inverse; twice restores the map.
   const Point p = PositionOf(pair.Source, { 7, { 0.3, 0.3, 0.4 } });
   const Point image = Transformed(transform, p);
@@ -313,46 +289,6 @@ TEST_P(TransformInEverySystem, CopiesAreEqual)
   vtkAbstractTransform* made = transform->MakeTransform();
   EXPECT_TRUE(vtkHomeomorphismTransform::SafeDownCast(made));
   made->Delete();
-}
-
-TEST(HomeomorphismTransform, FollowsItsMeshes)
-{
-  // Filters of VTK that hold the transform or its inverse notice changes of meshes and options.
-  const MeshPair pair = MakePlanarPair(8, 550);
-  const auto transform = MakeTransform(Smooth, pair);
-  const Point p = PositionOf(pair.Source, { 60, { 0.05, 0.45, 0.5 } });
-  vtkNew<vtkTransformFilter> users[2];
-  for (const int inverse : { 0, 1 })
-  {
-    users[inverse]->SetInputData(MakeCloud({ p }));
-    users[inverse]->SetTransform(inverse ? transform->GetInverse() : transform.Get());
-  }
-  std::set<Point> seen;
-  const auto expectFresh = [&](const System& system, const MeshPair& meshes) {
-    const auto fresh = MakeTransform(system, meshes);
-    for (const int inverse : { 0, 1 })
-    {
-      users[inverse]->Update();
-      const Point image = PointOf(users[inverse]->GetOutput(), 0);
-      EXPECT_EQ(image, Transformed(inverse ? fresh->GetInverse() : fresh.Get(), p));
-      EXPECT_TRUE(inverse || seen.insert(image).second);
-    }
-  };
-  expectFresh(Smooth, pair);
-  for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
-  {
-    // A vertex of that triangle.
-    vtkNew<vtkIdList> ids;
-    mesh->GetCellPoints(60, ids);
-    MovePoint(mesh, ids->GetId(0), PointOf(mesh, ids->GetId(0)) + Point{ 0.05, 0.0, 0.0 });
-    expectFresh(Smooth, pair);
-  }
-  transform->SetCoordinateSystemToLinear();
-  expectFresh(Linear, pair);
-  const MeshPair other = MakePlanarPair(8, 552);
-  transform->SetTarget(other.Target);
-  transform->SetSource(other.Source);
-  expectFresh(Linear, other);
 }
 
 // --- Outside -------------------------------------------------------------------------------------
@@ -483,7 +419,7 @@ TEST_P(TransformInEverySystem, ImagesAreResampled)
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
       const Point p = PointOf(preimages, i);
-      const bool inside = PointArray(preimages, "vtkValidPointMask")->GetTuple1(i) != 0.0;
+      const bool inside = IsValid(preimages, i);
       // VTK rounds positions to about 2^-17 of a pixel.
       ASSERT_NEAR(output->GetPointData()->GetScalars()->GetTuple1(i),
         inside ? 3.0 * p[0] / size + p[1] / size : -1000.0, 1e-4);

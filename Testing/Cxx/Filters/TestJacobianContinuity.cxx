@@ -7,7 +7,6 @@
 #include "Fixtures/MeasuredMaps.h"
 
 #include "vtkCallbackCommand.h"
-#include "vtkHomeomorphismTransform.h"
 #include "vtkJacobianContinuity.h"
 #include "vtkObjectFactory.h"
 #include "vtkSMPTools.h"
@@ -69,18 +68,13 @@ vtkSmartPointer<Continuity> MeasureEverything(const MeshPair& pair, const System
 
 double CellValue(Continuity* filter, const char* name, vtkIdType cell)
 {
-  return filter->GetOutput()->GetCellData()->GetArray(name)->GetTuple1(cell);
-}
-
-vtkDataArray* SampleArray(Continuity* filter, const char* name)
-{
-  return PointArray(filter->GetOutput(), name);
+  return fixtures::CellValue(filter->GetOutput(), name, cell);
 }
 
 std::pair<vtkIdType, vtkIdType> TrianglesAt(Continuity* filter, vtkIdType cell)
 {
   double triangles[2];
-  filter->GetOutput()->GetCellData()->GetArray("EdgeTriangles")->GetTuple(cell, triangles);
+  CellArray(filter->GetOutput(), "EdgeTriangles")->GetTuple(cell, triangles);
   return { static_cast<vtkIdType>(triangles[0]), static_cast<vtkIdType>(triangles[1]) };
 }
 
@@ -122,9 +116,9 @@ void ExpectJumpsOfTheClosedForm(Continuity* filter)
   vtkIdType jumps = 0;
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfPoints(); ++i)
   {
-    const double jump = SampleArray(filter, "JacobianJump")->GetTuple1(i);
-    const double bound = SampleArray(filter, "JacobianJumpError")->GetTuple1(i);
-    const double exact = SampleArray(filter, "JacobianJumpExact")->GetTuple1(i);
+    const double jump = PointValue(filter->GetOutput(), "JacobianJump", i);
+    const double bound = PointValue(filter->GetOutput(), "JacobianJumpError", i);
+    const double exact = PointValue(filter->GetOutput(), "JacobianJumpExact", i);
     beyond += std::abs(jump - exact) > bound;
     jumps += exact > 1e-3;
     wide += exact > 1e-3 && !(bound < 1e-6 * exact);
@@ -172,22 +166,14 @@ TEST_P(JacobianContinuityOf, VerdictsAreThoseOfTheClosedForm)
   }
 }
 
-TEST_P(JacobianContinuityOf, SimilarPairsAreDifferentiableEverywhere)
+TEST_P(JacobianContinuityOf, SimilarAndSomeAffinePairsAreDifferentiable)
 {
   const auto source = MakeMesh(GridPoints(5, 4, 0.15), GridTriangles(5));
-  const auto turned = Moved(source, [](const Point& p) -> Point {
-    return { 3.0 * p[0] - 4.0 * p[1] + 1.0, 4.0 * p[0] + 3.0 * p[1], 0.0 };
-  });
-  ExpectAllDifferentiable(MeasureEverything({ source, turned }, GetParam()));
-}
-
-TEST_P(JacobianContinuityOf, AffinePairsAreDifferentiableInLinearAndSmoothOnly)
-{
-  const auto source = MakeMesh(GridPoints(5, 4, 0.15), GridTriangles(5));
-  const auto stretched = Moved(source, [](const Point& p) -> Point {
-    return { 1.3 * p[0] + 0.2 * p[1], 0.1 * p[0] + 0.9 * p[1], 0.0 };
-  });
-  const auto filter = MeasureEverything({ source, stretched }, GetParam());
+  const Matrix similarity{ { { 3.0, -4.0, 0.0 }, { 4.0, 3.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
+  const Matrix affine{ { { 1.3, 0.2, 0.0 }, { 0.1, 0.9, 0.0 }, { 0.0, 0.0, 1.0 } } };
+  ExpectAllDifferentiable(
+    MeasureEverything({ source, Tilted(source, similarity, { 1.0, 0.0, 0.0 }) }, GetParam()));
+  const auto filter = MeasureEverything({ source, Tilted(source, affine, {}) }, GetParam());
   if (!GetParam().IsContour())
   {
     ExpectAllDifferentiable(filter);
@@ -203,10 +189,7 @@ TEST_P(JacobianContinuityOf, AffinePairsAreDifferentiableInLinearAndSmoothOnly)
 TEST_P(JacobianContinuityOf, ATransformIsMeasuredLikeItsMeshes)
 {
   const MeshPair pair = MakePlanarPair(10, 6);
-  vtkNew<vtkHomeomorphismTransform> transform;
-  transform->SetSource(pair.Source);
-  transform->SetTarget(pair.Target);
-  SetSystem(transform.Get(), GetParam());
+  const auto transform = MakeTransform(GetParam(), pair);
   const vtkIdType creases = Measure(pair, GetParam())->GetNumberOfCreases();
   const auto byTransform = Measure(pair.Source, transform);
   EXPECT_EQ(byTransform->GetNumberOfCreases(), creases);
@@ -218,7 +201,7 @@ TEST_P(JacobianContinuityOf, ATransformIsMeasuredLikeItsMeshes)
   EXPECT_EQ(fromOutside->GetNumberOfCreases(), creases);
   EXPECT_TRUE(std::isnan(CellValue(fromOutside, "JacobianJumpExact", 0)));
   // And on other triangles.
-  Messages messages(transform.Get());
+  Messages messages(static_cast<vtkObject*>(transform.Get()));
   const auto part = Measure(WithTriangles(pair.Source, { { 0, 1, 12 }, { 1, 2, 12 } }), transform);
   EXPECT_FALSE(messages.HasError());
   EXPECT_EQ(part->GetOutput()->GetNumberOfCells(), 1);
@@ -491,8 +474,8 @@ TEST(JacobianContinuity, ALoneTriangleHasNoJump)
   const auto filter = Measure({ triangle, triangle }, Smooth);
   EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 0);
   auto* colored = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
-  EXPECT_TRUE(std::isnan(colored->GetCellData()->GetArray("JacobianJump")->GetTuple1(0)));
-  EXPECT_TRUE(std::isnan(PointArray(colored, "JacobianJump")->GetTuple1(0)));
+  EXPECT_TRUE(std::isnan(fixtures::CellValue(colored, "JacobianJump", 0)));
+  EXPECT_TRUE(std::isnan(PointValue(colored, "JacobianJump", 0)));
 }
 
 TEST(JacobianContinuity, LinesHaveTheirPositions)
@@ -555,21 +538,23 @@ TEST(JacobianContinuity, ContourIsOnceDifferentiableAcrossWingSegments)
   EXPECT_GT(10 * creases, 9 * CountOf(filter, Continuity::WING_SEGMENT));
 }
 
-TEST(JacobianContinuity, SmoothIsTwiceDifferentiableWithinTriangles)
+TEST(JacobianContinuity, SmoothIsTwiceDifferentiable)
 {
   const auto filter = MakeContinuity(MakePlanarPair(6, 5), Smooth);
   filter->StripBordersOn();
   filter->SpokesOn();
   filter->SecondDerivativesOn();
   filter->Update();
-  vtkIdType decided = 0;
-  for (vtkIdType cell = 0; cell < filter->GetOutput()->GetNumberOfCells(); ++cell)
+  for (const char* verdict : { "Verdict", "SecondDerivativeVerdict" })
   {
-    EXPECT_NE(CellValue(filter, "Verdict", cell), Continuity::CREASE);
-    EXPECT_NE(CellValue(filter, "SecondDerivativeVerdict", cell), Continuity::CREASE);
-    decided += CellValue(filter, "Verdict", cell) == Continuity::DIFFERENTIABLE;
+    vtkIdType decided = 0;
+    for (vtkIdType cell = 0; cell < filter->GetOutput()->GetNumberOfCells(); ++cell)
+    {
+      EXPECT_NE(CellValue(filter, verdict, cell), Continuity::CREASE);
+      decided += CellValue(filter, verdict, cell) == Continuity::DIFFERENTIABLE;
+    }
+    EXPECT_GE(100 * decided, 90 * filter->GetOutput()->GetNumberOfCells()) << verdict;
   }
-  EXPECT_GE(100 * decided, 98 * filter->GetOutput()->GetNumberOfCells());
 }
 
 TEST(JacobianContinuity, VerticesOfSurfacesAreNotMeasured)
@@ -602,10 +587,9 @@ TEST(JacobianContinuity, TrianglesAndPointsHaveTheLargestJumpOfTheirEdges)
       largest[triangle] = std::max(largest[triangle], CellValue(filter, "JacobianJump", i));
     }
   }
-  vtkDataArray* triangleJump = colored->GetCellData()->GetArray("JacobianJump");
   for (vtkIdType t = 0; t < colored->GetNumberOfCells(); ++t)
   {
-    EXPECT_EQ(triangleJump->GetTuple1(t), largest[t]);
+    EXPECT_EQ(fixtures::CellValue(colored, "JacobianJump", t), largest[t]);
   }
   EXPECT_EQ(PointArray(colored, "JacobianJump")->GetRange()[1], filter->GetLargestJump());
   EXPECT_EQ(filter->GetOutput()->GetNumberOfCells() * 2 + filter->GetNumberOfBoundaryEdges(),
@@ -621,8 +605,8 @@ TEST(JacobianContinuity, ResultsDoNotDependOnThreads)
     vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads },
       [&]() { runs[threads - 1] = MeasureEverything(pair, Contour); });
   }
-  EXPECT_EQ(CountDifferentValues(
-              SampleArray(runs[0], "JacobianJump"), SampleArray(runs[1], "JacobianJump")),
+  EXPECT_EQ(CountDifferentValues(PointArray(runs[0]->GetOutput(), "JacobianJump"),
+              PointArray(runs[1]->GetOutput(), "JacobianJump")),
     0);
 }
 
@@ -658,8 +642,8 @@ TEST(JacobianContinuity, TheHomeomorphismFilterMeasuresTheSame)
     alone->SpokesOn();
     alone->Update();
     auto* measured = vtkPolyData::SafeDownCast(map->GetOutputDataObject(1));
-    EXPECT_EQ(CountDifferentValues(measured->GetCellData()->GetArray("JacobianJump"),
-                alone->GetOutput()->GetCellData()->GetArray("JacobianJump")),
+    EXPECT_EQ(CountDifferentValues(
+                CellArray(measured, "JacobianJump"), CellArray(alone->GetOutput(), "JacobianJump")),
       0);
     EXPECT_EQ(map->GetJacobianContinuity()->GetNumberOfCreases(), alone->GetNumberOfCreases());
 

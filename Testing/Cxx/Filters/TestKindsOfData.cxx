@@ -6,9 +6,9 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkTriangularCoordinates.h"
-
 #include "vtkCellType.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
 #include "vtkFieldData.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
@@ -175,12 +175,8 @@ void ExpectAttributesPassed(vtkDataSetAttributes* input, vtkDataSetAttributes* o
   for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
   {
     vtkAbstractArray* wanted = input->GetAbstractAttribute(role);
-    vtkAbstractArray* found = output->GetAbstractAttribute(role);
-    ASSERT_EQ(wanted != nullptr, found != nullptr) << role;
-    if (wanted)
-    {
-      EXPECT_STREQ(found->GetName(), wanted->GetName());
-    }
+    EXPECT_EQ(output->GetAbstractAttribute(role),
+      wanted ? output->GetAbstractArray(wanted->GetName()) : nullptr);
   }
 }
 
@@ -248,12 +244,9 @@ void ExpectMapped(vtkDataSet* input, vtkDataObject* object)
   ExpectPassed(input, output);
 }
 
-vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeCoordinates()
+vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeTheCoordinates()
 {
-  auto filter = vtkSmartPointer<vtkTriangularCoordinates>::New();
-  filter->SetSourceData(ThePair().Source);
-  filter->GenerateLinesOff();
-  return filter;
+  return MakeCoordinates(Smooth, ThePair().Source);
 }
 
 /// The points have the coordinates of those of a point cloud.
@@ -263,10 +256,8 @@ void ExpectCoordinates(vtkDataSet* input, vtkDataObject* object)
   ASSERT_TRUE(output);
   EXPECT_STREQ(output->GetClassName(), input->GetClassName());
   EXPECT_EQ(CountDifferentPoints(output, input), 0);
-  const auto filter = MakeCoordinates();
-  filter->SetDataObject(MakeCloud(PointsOf(input)));
-  filter->Update();
-  auto* expected = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  const auto filter = MakeCoordinates(Smooth, ThePair().Source, MakeCloud(PointsOf(input)));
+  vtkDataSet* expected = Output(filter);
   for (const char* name :
     { "TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter", "vtkValidPointMask" })
   {
@@ -292,12 +283,14 @@ protected:
     return this->Filter->GetOutputDataObject(0);
   }
 
+  void ExpectTree(vtkDataObjectTree* input, vtkIdType& outside);
+
   const vtkSmartPointer<vtkHomeomorphismAlgorithm> Filter = GetParam().Make();
 };
 
 INSTANTIATE_TEST_SUITE_P(All, KindsOfData,
   ::testing::Values(AFilter{ "Map", MakeMap, ExpectMapped },
-    AFilter{ "Coordinates", MakeCoordinates, ExpectCoordinates }),
+    AFilter{ "Coordinates", MakeTheCoordinates, ExpectCoordinates }),
   NameOfFilter);
 
 // --- Tests ---------------------------------------------------------------------------------------
@@ -319,7 +312,54 @@ TEST_P(KindsOfData, MayChangeBetweenUpdates)
   }
 }
 
-TEST_P(KindsOfData, MultiBlockDataSet)
+/// The output has the nodes, names and leaves of the input. The points outside are counted.
+void KindsOfData::ExpectTree(vtkDataObjectTree* input, vtkIdType& outside)
+{
+  auto* output = vtkDataObjectTree::SafeDownCast(this->Run(input));
+  ASSERT_TRUE(output);
+  EXPECT_STREQ(output->GetClassName(), input->GetClassName());
+  ExpectArraysPassed(input->GetFieldData(), output->GetFieldData());
+  vtkSmartPointer<vtkDataObjectTreeIterator> nodes[2];
+  for (vtkDataObjectTree* tree : { input, output })
+  {
+    auto& node = nodes[tree == output];
+    node.TakeReference(tree->NewTreeIterator());
+    node->VisitOnlyLeavesOff();
+    node->SkipEmptyNodesOff();
+    node->InitTraversal();
+  }
+  outside = 0;
+  for (; !nodes[0]->IsDoneWithTraversal(); nodes[0]->GoToNextItem(), nodes[1]->GoToNextItem())
+  {
+    ASSERT_FALSE(nodes[1]->IsDoneWithTraversal());
+    const auto nameOf = [](vtkDataObjectTreeIterator* node) {
+      const bool hasName =
+        node->HasCurrentMetaData() && node->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME());
+      return std::string(
+        hasName ? node->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : "");
+    };
+    EXPECT_EQ(nameOf(nodes[0]), nameOf(nodes[1]));
+    vtkDataObject* before = nodes[0]->GetCurrentDataObject();
+    vtkDataObject* after = nodes[1]->GetCurrentDataObject();
+    ASSERT_EQ(before != nullptr, after != nullptr);
+    auto* leaf = vtkDataSet::SafeDownCast(before);
+    if (leaf && leaf->GetNumberOfPoints() > 0)
+    {
+      GetParam().Expect(leaf, after);
+      for (vtkIdType i = 0; i < leaf->GetNumberOfPoints(); ++i)
+      {
+        outside += !IsValid(vtkDataSet::SafeDownCast(after), i);
+      }
+    }
+    else if (before)
+    {
+      EXPECT_STREQ(after->GetClassName(), before->GetClassName());
+    }
+  }
+  EXPECT_TRUE(nodes[1]->IsDoneWithTraversal());
+}
+
+TEST_P(KindsOfData, Trees)
 {
   const auto kinds = AllKinds();
   vtkNew<vtkMultiBlockDataSet> inner;
@@ -327,76 +367,35 @@ TEST_P(KindsOfData, MultiBlockDataSet)
   inner->SetBlock(1, vtkNew<vtkMultiBlockDataSet>());
   inner->SetBlock(2, kinds[1]);
   inner->SetBlock(3, vtkNew<vtkPolyData>());
-  vtkNew<vtkMultiBlockDataSet> data;
-  data->SetNumberOfBlocks(5);
-  data->SetBlock(0, kinds[4]);
-  data->SetBlock(2, inner);
-  data->SetBlock(3, kinds[3]);
-  data->GetMetaData(0u)->Set(vtkCompositeDataSet::NAME(), "picture");
-  data->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "inner");
-  data->GetFieldData()->AddArray(RandomArray("WholeTree", 2, 3, 28));
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(this->Run(data));
-  ASSERT_TRUE(output);
-  ASSERT_EQ(output->GetNumberOfBlocks(), 5u);
-  GetParam().Expect(kinds[4], output->GetBlock(0));
-  GetParam().Expect(kinds[3], output->GetBlock(3));
-  EXPECT_FALSE(output->GetBlock(1));
-  EXPECT_FALSE(output->GetBlock(4));
-  EXPECT_STREQ(output->GetMetaData(0u)->Get(vtkCompositeDataSet::NAME()), "picture");
-  EXPECT_STREQ(output->GetMetaData(2u)->Get(vtkCompositeDataSet::NAME()), "inner");
-  ExpectArraysPassed(data->GetFieldData(), output->GetFieldData());
-  auto* outputInner = vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(2));
-  ASSERT_TRUE(outputInner);
-  ASSERT_EQ(outputInner->GetNumberOfBlocks(), 4u);
-  GetParam().Expect(kinds[0], outputInner->GetBlock(0));
-  EXPECT_TRUE(vtkMultiBlockDataSet::SafeDownCast(outputInner->GetBlock(1)));
-  GetParam().Expect(kinds[1], outputInner->GetBlock(2));
-  ASSERT_TRUE(vtkPolyData::SafeDownCast(outputInner->GetBlock(3)));
-  EXPECT_EQ(outputInner->GetBlock(3)->GetNumberOfElements(vtkDataObject::POINT), 0);
-
-  // Outside points of all blocks are counted together.
-  vtkIdType outside = 0;
-  for (const unsigned int block : { 0u, 3u })
-  {
-    vtkDataArray* mask =
-      PointArray(vtkDataSet::SafeDownCast(output->GetBlock(block)), "vtkValidPointMask");
-    for (vtkIdType i = 0; i < mask->GetNumberOfTuples(); ++i)
-    {
-      outside += mask->GetComponent(i, 0) == 0.0;
-    }
-  }
-  EXPECT_EQ(this->Filter->GetNumberOfOutsidePoints(), outside);
-  EXPECT_GT(outside, 0);
-}
-
-TEST_P(KindsOfData, PartitionedDataSetCollection)
-{
-  const auto kinds = AllKinds();
-  vtkNew<vtkPartitionedDataSet> first;
-  first->SetNumberOfPartitions(3);
-  first->SetPartition(0, kinds[4]);
-  first->SetPartition(2, kinds[4]);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetNumberOfBlocks(5);
+  blocks->SetBlock(0, kinds[4]);
+  blocks->SetBlock(2, inner);
+  blocks->SetBlock(3, kinds[3]);
+  blocks->GetMetaData(0u)->Set(vtkCompositeDataSet::NAME(), "picture");
+  blocks->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "inner");
+  blocks->GetFieldData()->AddArray(RandomArray("WholeTree", 2, 3, 28));
+  vtkNew<vtkPartitionedDataSet> partitions;
+  partitions->SetNumberOfPartitions(3);
+  partitions->SetPartition(0, kinds[4]);
+  partitions->SetPartition(2, kinds[4]);
   vtkNew<vtkPartitionedDataSet> second;
   second->SetPartition(0, kinds[0]);
-  vtkNew<vtkPartitionedDataSetCollection> data;
-  data->SetPartitionedDataSet(0, first);
-  data->SetPartitionedDataSet(1, vtkNew<vtkPartitionedDataSet>());
-  data->SetPartitionedDataSet(2, second);
-  data->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "second");
-  auto* output = vtkPartitionedDataSetCollection::SafeDownCast(this->Run(data));
-  ASSERT_TRUE(output);
-  ASSERT_EQ(output->GetNumberOfPartitionedDataSets(), 3u);
-  ASSERT_EQ(output->GetNumberOfPartitions(0), 3u);
-  EXPECT_EQ(output->GetNumberOfPartitions(1), 0u);
-  ASSERT_EQ(output->GetNumberOfPartitions(2), 1u);
-  GetParam().Expect(kinds[4], output->GetPartition(0, 0));
-  EXPECT_FALSE(output->GetPartition(0, 1));
-  GetParam().Expect(kinds[0], output->GetPartition(2, 0));
-  EXPECT_STREQ(output->GetMetaData(2u)->Get(vtkCompositeDataSet::NAME()), "second");
-  // A partitioned data set is also a tree.
-  auto* partitions = vtkPartitionedDataSet::SafeDownCast(this->Run(first));
-  ASSERT_TRUE(partitions);
-  GetParam().Expect(kinds[4], partitions->GetPartition(2));
+  vtkNew<vtkPartitionedDataSetCollection> collection;
+  collection->SetPartitionedDataSet(0, partitions);
+  collection->SetPartitionedDataSet(1, vtkNew<vtkPartitionedDataSet>());
+  collection->SetPartitionedDataSet(2, second);
+  collection->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "second");
+  for (vtkDataObjectTree* tree :
+    std::initializer_list<vtkDataObjectTree*>{ blocks, collection, partitions })
+  {
+    SCOPED_TRACE(tree->GetClassName());
+    // Outside points of all leaves are counted together.
+    vtkIdType outside = -1;
+    this->ExpectTree(tree, outside);
+    EXPECT_EQ(this->Filter->GetNumberOfOutsidePoints(), outside);
+    EXPECT_GT(outside, 0);
+  }
 }
 
 TEST_P(KindsOfData, EmptyInputsGiveEmptyOutputs)

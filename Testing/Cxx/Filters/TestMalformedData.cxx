@@ -7,7 +7,6 @@
 #include "Fixtures/FilterRuns.h"
 
 #include "vtkResampleThroughHomeomorphism.h"
-#include "vtkTriangularCoordinates.h"
 
 #include "vtkCellType.h"
 #include "vtkTypeInt64Array.h"
@@ -86,8 +85,8 @@ TEST_F(MalformedData, GhostArraysOfWrongLengthAreReplaced)
       vtkPointSet* output = this->Run(data);
       EXPECT_EQ(ValuesOf(PointArray(output, "vtkGhostType")),
         (std::vector<double>{ 0, 0, 0, HiddenPoint, HiddenPoint, HiddenPoint }));
-      EXPECT_EQ(ValuesOf(output->GetCellData()->GetArray("vtkGhostType")),
-        (std::vector<double>{ 0, HiddenCell }));
+      EXPECT_EQ(
+        ValuesOf(CellArray(output, "vtkGhostType")), (std::vector<double>{ 0, HiddenCell }));
       // The filter must not modify its input.
       EXPECT_EQ(PointArray(data, "vtkGhostType")->GetNumberOfTuples(), points);
     }
@@ -123,7 +122,7 @@ TEST_F(MalformedData, ArraysOfWrongLengthPassUnchanged)
     for (const auto& array : arrays)
     {
       EXPECT_EQ(PointArray(output, array->GetName()), array);
-      EXPECT_EQ(output->GetCellData()->GetArray(array->GetName()) == array, tuples != 2);
+      EXPECT_EQ(CellArray(output, array->GetName()) == array, tuples != 2);
     }
   }
   vtkNew<vtkImageData> image;
@@ -177,7 +176,7 @@ TEST_F(MalformedData, CellsWithInvalidPointIds)
       ASSERT_EQ(output->GetNumberOfPoints(), 6);
       ASSERT_EQ(output->GetNumberOfCells(), 3);
       // Only whole cells inside are visible.
-      EXPECT_EQ(ValuesOf(output->GetCellData()->GetArray("vtkGhostType")),
+      EXPECT_EQ(ValuesOf(CellArray(output, "vtkGhostType")),
         (std::vector<double>{ 0, HiddenCell, HiddenCell }));
       // Cell vectors are transformed at the center of the cell, which does not exist.
       vtkDataArray* vectors = output->GetCellData()->GetVectors();
@@ -186,9 +185,7 @@ TEST_F(MalformedData, CellsWithInvalidPointIds)
       EXPECT_TRUE(std::isnan(vectors->GetComponent(2, 0)));
     }
     // Coordinates belong to points: the cells are not read.
-    vtkNew<vtkTriangularCoordinates> coordinates;
-    coordinates->SetInputData(0, this->Source);
-    coordinates->SetDataObject(polygons);
+    const auto coordinates = MakeCoordinates(Linear, this->Source, polygons);
     coordinates->Update();
     EXPECT_EQ(coordinates->GetNumberOfOutsidePoints(), 3);
   }
@@ -208,10 +205,10 @@ TEST_F(MalformedData, PolygonsAndLinesWithTooFewPoints)
   data->GetCellData()->SetVectors(MakeNumbers("Flux", 3, 4));
   vtkPointSet* output = this->Run(data);
   ASSERT_EQ(output->GetNumberOfCells(), 4);
-  EXPECT_EQ(ValuesOf(output->GetCellData()->GetArray("vtkGhostType")),
-    (std::vector<double>{ 0, 0, 0, HiddenCell }));
-  EXPECT_TRUE(std::isfinite(output->GetCellData()->GetArray("Flux")->GetComponent(0, 0)));
-  EXPECT_TRUE(std::isnan(output->GetCellData()->GetArray("Flux")->GetComponent(3, 0)));
+  EXPECT_EQ(
+    ValuesOf(CellArray(output, "vtkGhostType")), (std::vector<double>{ 0, 0, 0, HiddenCell }));
+  EXPECT_TRUE(std::isfinite(CellArray(output, "Flux")->GetComponent(0, 0)));
+  EXPECT_TRUE(std::isnan(CellArray(output, "Flux")->GetComponent(3, 0)));
 }
 
 // --- Values that are looked for in data ----------------------------------------------------------
@@ -252,10 +249,9 @@ TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
   for (const auto& [name, change] : changes)
   {
     SCOPED_TRACE(name);
-    vtkNew<vtkResampleThroughHomeomorphism> resample;
+    const auto resample =
+      MakeAlgorithm<vtkResampleThroughHomeomorphism>({ this->Source, this->Source });
     Messages messages(resample);
-    resample->SetSourceData(this->Source);
-    resample->SetTargetData(this->Source);
     const auto data = MakeDataPartlyOutside();
     resample->SetDataObject(data);
     resample->SetSamplingDimensions(5, 5);

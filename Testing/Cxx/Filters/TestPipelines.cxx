@@ -62,12 +62,9 @@ vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeMap(const MeshPair& pair)
   return MakeFilter(Smooth, pair);
 }
 
-vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeCoordinates(const MeshPair& pair)
+vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeCoordinatesOfSource(const MeshPair& pair)
 {
-  auto filter = vtkSmartPointer<vtkTriangularCoordinates>::New();
-  filter->SetSourceData(pair.Source);
-  filter->GenerateLinesOff();
-  return filter;
+  return MakeCoordinates(Smooth, pair.Source);
 }
 
 class PipelinesOfData : public ::testing::TestWithParam<MakeAFilter>
@@ -85,7 +82,19 @@ protected:
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, PipelinesOfData, ::testing::Values(&MakeMap, &MakeCoordinates));
+INSTANTIATE_TEST_SUITE_P(
+  All, PipelinesOfData, ::testing::Values(&MakeMap, &MakeCoordinatesOfSource));
+
+/// An algorithm whose meshes and data are outputs.
+template <typename Algorithm>
+vtkSmartPointer<Algorithm> Connected(vtkAlgorithm* source, vtkAlgorithm* target, vtkAlgorithm* data)
+{
+  auto algorithm = vtkSmartPointer<Algorithm>::New();
+  algorithm->SetInputConnection(0, source->GetOutputPort());
+  algorithm->SetInputConnection(1, target->GetOutputPort());
+  algorithm->SetInputConnection(2, data->GetOutputPort());
+  return algorithm;
+}
 
 vtkSmartPointer<vtkSphereSource> MakeSphere(double radius)
 {
@@ -199,10 +208,7 @@ TEST(Pipelines, MeshesAreRequestedWholeAndMayChange)
   const auto source = MakeSphere(1.0);
   const auto target = MakeSphere(2.0);
   const auto data = MakeSphere(1.0);
-  vtkNew<vtkDifferentiableHomeomorphism> map;
-  map->SetSourceConnection(source->GetOutputPort());
-  map->SetTargetConnection(target->GetOutputPort());
-  map->SetDataConnection(data->GetOutputPort());
+  const auto map = Connected<vtkDifferentiableHomeomorphism>(source, target, data);
   for (const double radius : { 2.0, 3.0 })
   {
     target->SetRadius(radius);
@@ -250,18 +256,12 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
          static_cast<vtkAlgorithm*>(other) })
   {
     SCOPED_TRACE(data->GetClassName());
-    vtkNew<vtkDifferentiableHomeomorphism> map;
-    map->SetSourceConnection(mesh->GetOutputPort());
-    map->SetTargetConnection(same->GetOutputPort());
-    map->SetDataConnection(data->GetOutputPort());
+    const auto map = Connected<vtkDifferentiableHomeomorphism>(mesh, same, data);
+    const auto resample = Connected<vtkResampleThroughHomeomorphism>(mesh, same, mesh);
+    resample->SetGridConnection(data->GetOutputPort());
     vtkNew<vtkTriangularCoordinates> coordinates;
     coordinates->SetInputConnection(0, mesh->GetOutputPort());
     coordinates->SetDataConnection(data->GetOutputPort());
-    coordinates->GenerateLinesOff();
-    vtkNew<vtkResampleThroughHomeomorphism> resample;
-    resample->SetSourceConnection(mesh->GetOutputPort());
-    resample->SetTargetConnection(same->GetOutputPort());
-    resample->SetGridConnection(data->GetOutputPort());
     for (vtkAlgorithm* filter : { static_cast<vtkAlgorithm*>(map),
            static_cast<vtkAlgorithm*>(coordinates), static_cast<vtkAlgorithm*>(resample) })
     {
@@ -283,14 +283,8 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
 
   // The output of a map of independent data with the same meshes comes in pieces nevertheless: the
   // first map requests its meshes whole, too.
-  vtkNew<vtkDifferentiableHomeomorphism> forth;
-  forth->SetSourceConnection(mesh->GetOutputPort());
-  forth->SetTargetConnection(same->GetOutputPort());
-  forth->SetDataConnection(other->GetOutputPort());
-  vtkNew<vtkDifferentiableHomeomorphism> back;
-  back->SetSourceConnection(mesh->GetOutputPort());
-  back->SetTargetConnection(same->GetOutputPort());
-  back->SetDataConnection(forth->GetOutputPort());
+  const auto forth = Connected<vtkDifferentiableHomeomorphism>(mesh, same, other);
+  const auto back = Connected<vtkDifferentiableHomeomorphism>(mesh, same, forth);
   back->InverseOn();
   const std::vector<vtkIdType> cells = counts(back);
   EXPECT_GT(cells[1], 0);
@@ -331,8 +325,7 @@ TEST(Pipelines, PointsOfOtherPiecesAreNotCounted)
     MakeCloud({ { 0, 0, 0 }, { 99, 0, 0 }, { 98, 0, 0 }, { 97, 0, 0 }, { 96, 2, 0 } });
   cloud->GetPointData()->AddArray(MakeGhosts(5, { 1, 4 }, vtkDataSetAttributes::DUPLICATEPOINT));
   const auto map = MakeFilter(Smooth, pair, cloud);
-  const auto coordinates = MakeCoordinates(pair);
-  coordinates->SetDataObject(cloud);
+  const auto coordinates = MakeCoordinates(Smooth, pair.Source, cloud);
   const auto resample = MakeAlgorithm<vtkResampleThroughHomeomorphism>(pair);
   resample->SetGridData(cloud);
   vtkNew<vtkDummyController> controller;

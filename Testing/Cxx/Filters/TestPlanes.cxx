@@ -6,7 +6,7 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkHomeomorphismTransform.h"
+#include "vtkCellLocator.h"
 
 namespace
 {
@@ -77,10 +77,7 @@ void ExpectHeightsKept(
 {
   const std::vector<double> heights{ 0.0, 0.25, -0.25, 3.0, -7.5 };
   const double rounding = 1000.0 * Ulp;
-  vtkNew<vtkHomeomorphismTransform> transform;
-  transform->SetSource(pair.Source);
-  transform->SetTarget(pair.Target);
-  SetSystem(transform.Get(), system);
+  const auto transform = MakeTransform(system, pair);
   transform->Update();
   for (const bool inverse : { false, true })
   {
@@ -110,14 +107,11 @@ void ExpectHeightsKept(
       // The image lies above the image of its foot, which is the first of these heights.
       const Point foot = PointOf(output, id - static_cast<vtkIdType>(i % heights.size()));
       ASSERT_LT(Distance(image, foot + height * to.Normal), 1e3 * rounding);
-      ASSERT_GT(PointArray(output, "JacobianDeterminant")->GetComponent(id, 0), 0.0);
-      ASSERT_LT(
-        Distance(MatrixOf(PointArray(output, "Jacobian"), id) * from.Normal, to.Normal), 1e-11);
+      ASSERT_GT(PointValue(output, "JacobianDeterminant", id), 0.0);
+      ASSERT_LT(Distance(JacobianOf(output, id) * from.Normal, to.Normal), 1e-11);
       vtkAbstractTransform* same = transform;
       same = inverse ? transform->GetInverse() : same;
-      Point transformed;
-      same->TransformPoint(samples[i].data(), transformed.data());
-      ASSERT_EQ(transformed, image);
+      ASSERT_EQ(Transformed(same, samples[i]), image);
     }
   }
 }
@@ -188,6 +182,29 @@ TEST_P(Planes, PlanesParallelToAxesInAllCombinations)
   }
 }
 
+TEST_P(Planes, TurnedByAxesTheMapHasTheSameBits)
+{
+  // x and y become y and z, or z and x.
+  const Matrix cyclic{ { { 0, 0, 1 }, { 1, 0, 0 }, { 0, 1, 0 } } };
+  const MeshPair pair = MakePlanarPair(10, 200);
+  const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 5000, 11));
+  const auto flat = MakeFilter(GetParam(), pair, cloud);
+  flat->ComputeJacobianOn();
+  for (const Matrix& turn : { cyclic, cyclic * cyclic })
+  {
+    const auto turned = [&turn](vtkPolyData* mesh) { return Tilted(mesh, turn, {}); };
+    const auto filter =
+      MakeFilter(GetParam(), { turned(pair.Source), turned(pair.Target) }, turned(cloud));
+    filter->ComputeJacobianOn();
+    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
+    {
+      ASSERT_EQ(PointOf(Output(filter), i), turn * PointOf(Output(flat), i));
+      ASSERT_EQ(
+        JacobianOf(Output(filter), i), turn * JacobianOf(Output(flat), i) * Transposed(turn));
+    }
+  }
+}
+
 vtkSmartPointer<vtkPolyData> AsFloats(vtkPolyData* mesh)
 {
   auto result = vtkSmartPointer<vtkPolyData>::New();
@@ -251,7 +268,7 @@ TEST(Planes, AThinHalfTubeIsNone)
       for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
       {
         const Point p = PointOf(cloud, i);
-        EXPECT_NEAR(PointArray(output, "JacobianDeterminant")->GetComponent(i, 0), 2.0, 2e-2);
+        EXPECT_NEAR(PointValue(output, "JacobianDeterminant", i), 2.0, 2e-2);
         EXPECT_LT(Distance(PointOf(output, i), { p[0], 2.0 * p[1], 2.0 * p[2] }), 1e-6);
       }
     }
@@ -259,28 +276,6 @@ TEST(Planes, AThinHalfTubeIsNone)
 }
 
 // --- Points near a surface -----------------------------------------------------------------------
-
-/// Distance of a point from the nearest triangle over or under it.
-double DistanceFromMesh(vtkPolyData* mesh, const Point& p)
-{
-  double least = Infinity;
-  for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
-  {
-    const std::array<Point, 3> c = CornersOf(mesh, t);
-    const Point ab = c[1] - c[0];
-    const Point ac = c[2] - c[0];
-    const Point ap = p - c[0];
-    const Point normal = Cross(ab, ac);
-    const double square = Dot(normal, normal);
-    const double u = Dot(Cross(ap, ac), normal) / square;
-    const double v = Dot(Cross(ab, ap), normal) / square;
-    if (u > -1e-12 && v > -1e-12 && u + v < 1.0 + 1e-12)
-    {
-      least = std::min(least, std::abs(Dot(ap, normal)) / std::sqrt(square));
-    }
-  }
-  return least;
-}
 
 TEST_P(Planes, PointsWithinTheToleranceOfASurfaceMapOntoTheOther)
 {
@@ -307,9 +302,17 @@ TEST_P(Planes, PointsWithinTheToleranceOfASurfaceMapOntoTheOther)
     }
     const auto filter = MakeFilter(GetParam(), pair, MakeCloud(samples));
     filter->SetTolerance(0.1);
+    vtkNew<vtkCellLocator> locator;
+    locator->SetDataSet(pair.Target);
+    locator->BuildLocator();
     for (const Point& image : PointsOf(Output(filter)))
     {
-      EXPECT_LT(DistanceFromMesh(pair.Target, image), 1e-13);
+      Point nearest;
+      vtkIdType cell;
+      int subId;
+      double squared;
+      locator->FindClosestPoint(image.data(), nearest.data(), cell, subId, squared);
+      EXPECT_LT(squared, 1e-26);
     }
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
     filter->SetTolerance(0.0);

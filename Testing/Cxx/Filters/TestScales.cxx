@@ -150,38 +150,4 @@ TEST_P(Scales, ATinyTriangleInAUnitMesh)
     Read(pair), { { Kind::DegenerateTriangle, Where::Source, { 0 } } }, Remedy::RepairOrMask);
 }
 
-TEST_P(Scales, CoordinatesFarFromTheOrigin)
-{
-  // Meters from the corner of a country, cells of ten meters, points to the millimeter.
-  const Point corner{ 4.5e6, 5.8e6, 0.0 };
-  const auto rounded = [](const Point& p) -> Point {
-    return { std::round(1e4 * p[0]) / 1e3, std::round(1e4 * p[1]) / 1e3, 0.0 };
-  };
-  const auto shifted = [&](vtkPolyData* mesh) {
-    return Moved(mesh, [&](const Point& p) { return corner + p; });
-  };
-  const MeshPair grid = MakePlanarPair(10, 34);
-  const MeshPair local{ Moved(grid.Source, rounded), Moved(grid.Target, rounded) };
-  const MeshPair far{ shifted(local.Source), shifted(local.Target) };
-  const auto points =
-    Moved(MakeCloud(grid.Source, InnerSamples(grid.Source, 2000, 34, 0.05)), rounded);
-  const auto expected = MakeFilter(GetParam(), local, points);
-  const auto mapped = MakeFilter(GetParam(), far, shifted(points));
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-  {
-    // An ulp is about a nanometer.
-    ASSERT_LT(Distance(PointOf(Output(mapped), i), corner + PointOf(Output(expected), i)), 1e-8);
-  }
-  EXPECT_EQ(mapped->GetNumberOfOutsidePoints(), 0);
-  for (const double off : { 1e-3, 1e-6 })
-  {
-    const std::vector<Point> beside{ corner + Point{ -off, 33.3, 0.0 },
-      corner + Point{ 100.0 + off, 1.0, 0.0 }, corner + Point{ 50.0, -off, 0.0 },
-      corner + Point{ 50.0, 100.0 + off, 0.0 } };
-    const auto outside = MakeFilter(GetParam(), far, MakeCloud(beside));
-    outside->Update();
-    EXPECT_EQ(outside->GetNumberOfOutsidePoints(), 4);
-  }
-}
-
 } // namespace

@@ -11,6 +11,8 @@
 #include "Meshes.h"
 
 #include "vtkDifferentiableHomeomorphism.h"
+#include "vtkHomeomorphismTransform.h"
+#include "vtkTriangularCoordinates.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -66,6 +68,27 @@ inline vtkDataArray* PointArray(vtkDataSet* data, const char* name)
 {
   return data->GetPointData()->GetArray(name);
 }
+inline vtkDataArray* CellArray(vtkDataSet* data, const char* name)
+{
+  return data->GetCellData()->GetArray(name);
+}
+/// The number of an array of points or of cells.
+inline double PointValue(vtkDataSet* data, const char* name, vtkIdType i)
+{
+  return PointArray(data, name)->GetComponent(i, 0);
+}
+inline double CellValue(vtkDataSet* data, const char* name, vtkIdType i)
+{
+  return CellArray(data, name)->GetComponent(i, 0);
+}
+inline bool IsValid(vtkDataSet* data, vtkIdType i)
+{
+  return PointValue(data, "vtkValidPointMask", i) != 0.0;
+}
+inline Matrix JacobianOf(vtkDataSet* data, vtkIdType i)
+{
+  return MatrixOf(PointArray(data, "Jacobian"), i);
+}
 
 /// Length of the diagonal of the bounding box of a mesh.
 inline double SizeOf(vtkDataSet* mesh)
@@ -118,25 +141,6 @@ inline vtkIdType CountDifferentPoints(vtkDataSet* a, vtkDataSet* b)
     different += !(SameBits(p[0], q[0]) && SameBits(p[1], q[1]) && SameBits(p[2], q[2]));
   }
   return different;
-}
-
-template <typename Algorithm>
-auto HasAbortedKey(int) -> decltype(Algorithm::ABORTED(), bool())
-{
-  return true;
-}
-template <typename Algorithm>
-bool HasAbortedKey(long)
-{
-  return false;
-}
-/// Whether the output of an aborted algorithm is @a whole in size. The executive empties it since
-/// VTK 9.3: then false is returned, and checked.
-inline bool KeepsAbortedOutput(vtkDataSet* output, vtkIdType whole)
-{
-  const bool empties = HasAbortedKey<vtkAlgorithm>(0);
-  EXPECT_EQ(output->GetNumberOfPoints(), empties ? 0 : whole);
-  return !empties && output->GetNumberOfPoints() == whole;
 }
 
 /// Number of values that differ in any bit; all of them if the arrays differ in type or size.
@@ -192,26 +196,6 @@ vtkSmartPointer<ArrayType> RandomArray(
   return array;
 }
 
-/// The largest of many errors divided by their bounds.
-class Worst
-{
-public:
-  void Take(double error, double bound)
-  {
-    // Negated so that NaN is the largest.
-    if (!(error / bound <= this->OverBound))
-    {
-      this->OverBound = std::isnan(error) ? std::numeric_limits<double>::infinity() : error / bound;
-    }
-    if (!(error <= this->Error))
-    {
-      this->Error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-    }
-  }
-  double OverBound = 0.0;
-  double Error = 0.0;
-};
-
 // --- Coordinate systems --------------------------------------------------------------------------
 
 /// A coordinate system with its options.
@@ -225,6 +209,11 @@ struct System
   {
     return this->CoordinateSystem == vtkDifferentiableHomeomorphism::CONTOUR;
   }
+  /// Whether discordant triangles have no coordinates of the system.
+  bool IsChoosy() const
+  {
+    return this->IsContour() && this->CenterPoint == vtkDifferentiableHomeomorphism::CENTROID;
+  }
 };
 
 inline void PrintTo(const System& system, std::ostream* os)
@@ -237,6 +226,8 @@ constexpr System Contour{ "Contour", vtkDifferentiableHomeomorphism::CONTOUR };
 constexpr System Incenter{ "ContourFromIncenter", vtkDifferentiableHomeomorphism::CONTOUR,
   vtkDifferentiableHomeomorphism::INCENTER };
 constexpr System Smooth{ "Smooth", vtkDifferentiableHomeomorphism::SMOOTH };
+/// Not among all systems: of planes only, and its inverse is not the map of exchanged meshes.
+constexpr System Cubic{ "Cubic", vtkDifferentiableHomeomorphism::CUBIC };
 
 inline std::vector<System> AllSystems()
 {
@@ -280,7 +271,44 @@ inline vtkSmartPointer<vtkDifferentiableHomeomorphism> MakeFilter(
   return filter;
 }
 
-/// The output of the filter after an update, as a point set.
+inline vtkSmartPointer<vtkHomeomorphismTransform> MakeTransform(
+  const System& system, const MeshPair& pair)
+{
+  auto transform = vtkSmartPointer<vtkHomeomorphismTransform>::New();
+  SetSystem(transform.Get(), system);
+  transform->SetSource(pair.Source);
+  transform->SetTarget(pair.Target);
+  return transform;
+}
+
+inline Point Transformed(vtkAbstractTransform* transform, const Point& p)
+{
+  Point image;
+  transform->TransformPoint(p.data(), image.data());
+  return image;
+}
+
+/// The coordinates in a mesh, without their lines.
+inline vtkSmartPointer<vtkTriangularCoordinates> MakeCoordinates(
+  const System& system, vtkPolyData* triangulation, vtkDataObject* data = nullptr)
+{
+  auto filter = vtkSmartPointer<vtkTriangularCoordinates>::New();
+  SetSystem(filter.Get(), system);
+  filter->SetSourceData(triangulation);
+  if (data)
+  {
+    filter->SetDataObject(data);
+  }
+  filter->GenerateLinesOff();
+  return filter;
+}
+
+/// The output after an update, as a data set: a point set, for the map.
+inline vtkDataSet* Output(vtkAlgorithm* filter)
+{
+  filter->Update();
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
 inline vtkPointSet* Output(vtkDifferentiableHomeomorphism* filter)
 {
   filter->Update();

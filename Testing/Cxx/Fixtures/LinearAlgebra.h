@@ -9,14 +9,9 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace fixtures
 {
-
-constexpr double Ulp = std::numeric_limits<double>::epsilon();
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 
 using Point = std::array<double, 3>;
 using Matrix = std::array<Point, 3>; // rows

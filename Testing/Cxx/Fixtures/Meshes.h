@@ -8,12 +8,15 @@
 #define fixtures_Meshes_h
 
 #include "LinearAlgebra.h"
+#include "Random.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
+#include "vtkLinearSubdivisionFilter.h"
 #include "vtkNew.h"
+#include "vtkPlatonicSolidSource.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -21,7 +24,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <random>
 #include <utility>
 #include <vector>
@@ -118,69 +120,6 @@ inline vtkSmartPointer<vtkPolyData> MakeSheet(int n, std::uint64_t seed, double 
   return MakeMesh(points, GridTriangles(n));
 }
 
-/// Two different closed surfaces: an octahedron subdivided @a divisions times, with its points on
-/// two ellipsoids and moved at random along them.
-inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
-{
-  std::vector<Point> points{ { 1, 0, 0 }, { 0, 1, 0 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 },
-    { 0, 0, -1 } };
-  std::vector<Triangle> triangles{ { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 }, { 1, 0, 5 },
-    { 2, 1, 5 }, { 3, 2, 5 }, { 0, 3, 5 } };
-  for (int division = 0; division < divisions; ++division)
-  {
-    std::map<std::pair<vtkIdType, vtkIdType>, vtkIdType> middles;
-    const auto middle = [&](vtkIdType a, vtkIdType b) {
-      const auto key = std::minmax(a, b);
-      const auto found = middles.find(key);
-      if (found != middles.end())
-      {
-        return found->second;
-      }
-      Point p;
-      for (int k = 0; k < 3; ++k)
-      {
-        p[k] = 0.5 * (points[a][k] + points[b][k]);
-      }
-      points.push_back(p);
-      return middles[key] = static_cast<vtkIdType>(points.size()) - 1;
-    };
-    std::vector<Triangle> finer;
-    for (const Triangle& t : triangles)
-    {
-      const vtkIdType ab = middle(t[0], t[1]);
-      const vtkIdType bc = middle(t[1], t[2]);
-      const vtkIdType ca = middle(t[2], t[0]);
-      finer.insert(
-        finer.end(), { { t[0], ab, ca }, { ab, t[1], bc }, { ca, bc, t[2] }, { ab, bc, ca } });
-    }
-    triangles = finer;
-  }
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> offset(-0.2, 0.2);
-  const double spacing = std::pow(0.5, divisions);
-  const auto surfacePoint = [&](const Point& axes) {
-    std::vector<Point> moved = points;
-    for (Point& p : moved)
-    {
-      for (double& x : p)
-      {
-        x += spacing * offset(generator);
-      }
-      const double length = std::hypot(p[0], p[1], p[2]);
-      for (int k = 0; k < 3; ++k)
-      {
-        p[k] *= axes[k] / length;
-      }
-    }
-    return MakeMesh(moved, triangles);
-  };
-  const auto source = surfacePoint({ 1.0, 1.0, 1.0 });
-  const auto target = surfacePoint({ 2.0, 1.2, 0.7 });
-  return { source, target };
-}
-
-// --- Changes to meshes ---------------------------------------------------------------------------
-
 inline Point PointOf(vtkDataSet* data, vtkIdType i)
 {
   Point p;
@@ -209,6 +148,33 @@ inline std::vector<Triangle> TrianglesOf(vtkPolyData* mesh)
   }
   return triangles;
 }
+
+/// Two different closed surfaces: an octahedron subdivided @a divisions times, with its points on
+/// two ellipsoids and moved at random along them.
+inline MeshPair MakeClosedPair(int divisions, std::uint64_t seed)
+{
+  vtkNew<vtkPlatonicSolidSource> octahedron;
+  octahedron->SetSolidTypeToOctahedron();
+  vtkNew<vtkLinearSubdivisionFilter> subdivision;
+  subdivision->SetInputConnection(octahedron->GetOutputPort());
+  subdivision->SetNumberOfSubdivisions(divisions);
+  subdivision->Update();
+  Random random(seed);
+  const double spacing = std::pow(0.5, divisions);
+  const auto surface = [&](const Point& axes) {
+    std::vector<Point> points = PointsOf(subdivision->GetOutput());
+    for (Point& p : points)
+    {
+      p = Unit(Unit(p) + 0.2 * spacing * random.Vector());
+      p = { axes[0] * p[0], axes[1] * p[1], axes[2] * p[2] };
+    }
+    return MakeMesh(points, TrianglesOf(subdivision->GetOutput()));
+  };
+  const auto source = surface({ 1.0, 1.0, 1.0 });
+  return { source, surface({ 2.0, 1.2, 0.7 }) };
+}
+
+// --- Changes to meshes ---------------------------------------------------------------------------
 
 inline void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& to)
 {
@@ -323,27 +289,6 @@ inline std::vector<Pairing> AllPairings(int n, int divisions, std::uint64_t seed
 }
 
 // --- Random points -------------------------------------------------------------------------------
-/// Random numbers that follow from the seed on every platform, unlike the distributions of the
-/// standard library.
-class Random
-{
-public:
-  explicit Random(std::uint64_t seed)
-    : Engine(seed)
-  {
-  }
-  /// Uniform in [0, 1).
-  double Uniform() { return std::ldexp(static_cast<double>(this->Engine() >> 11), -53); }
-  double Uniform(double lower, double upper) { return lower + (upper - lower) * this->Uniform(); }
-  vtkIdType Below(vtkIdType count)
-  {
-    return static_cast<vtkIdType>(this->Engine() % static_cast<std::uint64_t>(count));
-  }
-  Point Vector() { return { Uniform(-1.0, 1.0), Uniform(-1.0, 1.0), Uniform(-1.0, 1.0) }; }
-
-private:
-  std::mt19937_64 Engine;
-};
 
 /// A point of a mesh: a triangle and the weights of its three points.
 struct MeshPoint
@@ -351,20 +296,6 @@ struct MeshPoint
   vtkIdType Triangle;
   Point Weights;
 };
-
-/// Uniform in the triangle, with all weights at least @a margin.
-inline Point RandomWeights(Random& random, double margin = 0.0)
-{
-  double u = random.Uniform();
-  double v = random.Uniform();
-  if (u + v > 1.0)
-  {
-    u = 1.0 - u;
-    v = 1.0 - v;
-  }
-  const double room = 1.0 - 3.0 * margin;
-  return { margin + room * u, margin + room * v, margin + room * (1.0 - u - v) };
-}
 
 /// Everywhere in the triangles; one in four on an edge, or close to an edge or a vertex at any
 /// power of ten down to rounding.
@@ -375,7 +306,7 @@ inline std::vector<MeshPoint> RandomSamples(vtkPolyData* mesh, vtkIdType count, 
   for (MeshPoint& surfacePoint : samples)
   {
     surfacePoint.Triangle = random.Below(mesh->GetNumberOfCells());
-    surfacePoint.Weights = RandomWeights(random);
+    surfacePoint.Weights = random.Weights();
     const vtkIdType kind = random.Below(12);
     if (kind < 3)
     {
@@ -401,7 +332,7 @@ inline std::vector<MeshPoint> InnerSamples(
   std::vector<MeshPoint> samples(count);
   for (MeshPoint& surfacePoint : samples)
   {
-    surfacePoint = { random.Below(mesh->GetNumberOfCells()), RandomWeights(random, margin) };
+    surfacePoint = { random.Below(mesh->GetNumberOfCells()), random.Weights(margin) };
   }
   return samples;
 }
@@ -443,7 +374,7 @@ inline std::vector<Point> SamplePoints(
   {
     for (int n = 0; n < perTriangle; ++n)
     {
-      points.push_back(PointIn(mesh, triangle, RandomWeights(random, 1e-4)));
+      points.push_back(PointIn(mesh, triangle, random.Weights(1e-4)));
     }
   }
   return points;

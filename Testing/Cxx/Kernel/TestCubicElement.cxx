@@ -4,6 +4,8 @@
 // The cubic element and its certificate: against exact rational numbers computed from the element's
 // definition by Testing/Reference/cubic_element.py, and by what must hold of any element.
 
+#include "Fixtures/Random.h"
+
 #include "Kernel/CubicElement.h"
 #include "Kernel/LinearProgram.h"
 #include "Mesh/Vector3.h"
@@ -13,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -57,25 +58,13 @@ std::vector<std::vector<double>> ReadReference()
   return rows;
 }
 
-class Random
+/// Random elements and what they consist of.
+struct Elements : fixtures::Random
 {
-public:
-  explicit Random(std::uint64_t seed)
-    : Generator(seed)
-  {
-  }
-  double operator()(double low, double high)
-  {
-    return std::uniform_real_distribution<double>(low, high)(this->Generator);
-  }
-  Vector2 Vector(double size) { return { (*this)(-size, size), (*this)(-size, size) }; }
+  using fixtures::Random::Random;
+
+  Vector2 Vector(double size) { return { this->Uniform(-size, size), this->Uniform(-size, size) }; }
   Matrix2 Matrix(double size) { return { this->Vector(size), this->Vector(size) }; }
-  Barycentric Point()
-  {
-    Barycentric l{ (*this)(0.0, 1.0), (*this)(0.0, 1.0), (*this)(0.0, 1.0) };
-    const double sum = l[0] + l[1] + l[2];
-    return { l[0] / sum, l[1] / sum, l[2] / sum };
-  }
   std::array<Vector2, 3> Triangle()
   {
     while (true)
@@ -103,9 +92,6 @@ public:
     }
     return element;
   }
-
-private:
-  std::mt19937_64 Generator;
 };
 
 Vector2 PointAt(const std::array<Vector2, 3>& p, const Barycentric& l)
@@ -167,7 +153,7 @@ TEST(CubicElement, CertifiesNoneThatIsNotPositive)
 {
   // Elements all of whose coefficients are zero to rounding: the map x -> (L x) + u g(x) with L
   // singular in the direction of u, and a change by a few parts in 10^14.
-  Random random(1);
+  Elements random(1);
   int positive = 0;
   int certified = 0;
   for (int n = 0; n < 100000; ++n)
@@ -177,7 +163,7 @@ TEST(CubicElement, CertifiesNoneThatIsNotPositive)
     const Vector2 u = random.Vector(1.0);
     // Multiples of u by integers up to 2^20 over 2^20: exact in doubles.
     const auto multiple = [&] {
-      const double s = std::floor(random(-1048576.0, 1048576.0)) / 1048576.0;
+      const double s = std::floor(random.Uniform(-1048576.0, 1048576.0)) / 1048576.0;
       return Vector2{ s * std::ldexp(std::round(std::ldexp(u.x, 20)), -20),
         s * std::ldexp(std::round(std::ldexp(u.y, 20)), -20) };
     };
@@ -192,7 +178,7 @@ TEST(CubicElement, CertifiesNoneThatIsNotPositive)
     // An affine map next to it, whose determinant is known exactly.
     CubicElement affine;
     affine.Points = element.Points;
-    const double excess = (n % 2 == 0 ? 1.0 : -1.0) * std::exp2(random(-46.0, -33.0));
+    const double excess = (n % 2 == 0 ? 1.0 : -1.0) * std::exp2(random.Uniform(-46.0, -33.0));
     affine.Affine = { { 1.0, 1.0 }, { 1.0, 1.0 + excess } };
     const double exact = affine.Affine.ImageOfY.y - 1.0;
     const bool is = LeastDeterminant(affine, 0.0, 2) > 0.0;
@@ -208,7 +194,7 @@ TEST(CubicElement, CertifiesNoneThatIsNotPositive)
 
 TEST(CubicElement, ReproducesQuadraticMaps)
 {
-  Random random(3);
+  Elements random(3);
   for (int n = 0; n < 200; ++n)
   {
     const Vector2 xx = random.Vector(1.0);
@@ -227,7 +213,7 @@ TEST(CubicElement, ReproducesQuadraticMaps)
       element.Gradients[i] = derivative(element.Points[i]);
     }
     const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
-    const Barycentric l = random.Point();
+    const Barycentric l = random.Weights();
     const Vector2 p = PointAt(element.Points, l);
     Vector2 v;
     Matrix2 j;
@@ -261,7 +247,7 @@ TEST(CubicElement, ReproducesQuadraticMaps)
 
 TEST(CubicElement, DeterminantLiesAboveItsBound)
 {
-  Random random(4);
+  Elements random(4);
   int positive = 0;
   for (int n = 0; n < 2000; ++n)
   {
@@ -276,7 +262,7 @@ TEST(CubicElement, DeterminantLiesAboveItsBound)
     const double displacement = GreatestDisplacement(element);
     for (int sample = 0; sample < 50; ++sample)
     {
-      const Barycentric l = random.Point();
+      const Barycentric l = random.Weights();
       Vector2 value;
       Matrix2 derivative;
       Evaluate(element, ordinates, l, value, derivative);
@@ -289,7 +275,7 @@ TEST(CubicElement, DeterminantLiesAboveItsBound)
 
 TEST(CubicElement, NeighborsAgreeAlongTheirEdge)
 {
-  Random random(5);
+  Elements random(5);
   for (int n = 0; n < 500; ++n)
   {
     const std::array<Vector2, 3> p = random.Triangle();
@@ -310,7 +296,7 @@ TEST(CubicElement, NeighborsAgreeAlongTheirEdge)
       { gradients[0], gradients[1], gradients[2] } };
     const CubicElement second{ { across, p[2], p[1] }, {}, { values[3], values[2], values[1] },
       { gradients[3], gradients[2], gradients[1] } };
-    const double s = random(0.0, 1.0);
+    const double s = random.Uniform(0.0, 1.0);
     Vector2 v[2];
     Matrix2 j[2];
     Evaluate(first, GetOrdinates(first), { 0.0, 1.0 - s, s }, v[0], j[0]);
@@ -323,7 +309,7 @@ TEST(CubicElement, NeighborsAgreeAlongTheirEdge)
 TEST(LinearProgram, FindsTheBestCorner)
 {
   // Against all intersections of three planes.
-  Random random(6);
+  Elements random(6);
   int solved = 0;
   for (int n = 0; n < 300; ++n)
   {
@@ -331,11 +317,12 @@ TEST(LinearProgram, FindsTheBestCorner)
     for (int i = 0; i < 12; ++i)
     {
       const bool through = n % 3 == 0;
-      halfSpaces.push_back({ { random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0) },
-        through ? random(-0.3, 0.3) : random(0.0, 0.5) });
+      halfSpaces.push_back(
+        { { random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0) },
+          through ? random.Uniform(-0.3, 0.3) : random.Uniform(0.0, 0.5) });
     }
-    const std::array<double, 3> objective{ random(-1.0, 1.0), random(-1.0, 1.0),
-      random(-1.0, 1.0) };
+    const std::array<double, 3> objective{ random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0),
+      random.Uniform(-1.0, 1.0) };
     std::vector<HalfSpace<3>> all = halfSpaces;
     for (std::size_t i = 0; i < 3; ++i)
     {
@@ -392,12 +379,13 @@ TEST(LinearProgram, FindsTheBestCorner)
 
 TEST(CubicElement, RightAnglesChangeNothingButRounding)
 {
-  Random random(8);
+  Elements random(8);
   for (int n = 0; n < 500; ++n)
   {
-    const double leg = random(0.5, 2.0);
-    const double height = n % 2 == 0 ? random(0.3, 3.0) : std::exp2(random(-20.0, 0.0));
-    const double angle = random(-3.0, 3.0);
+    const double leg = random.Uniform(0.5, 2.0);
+    const double height =
+      n % 2 == 0 ? random.Uniform(0.3, 3.0) : std::exp2(random.Uniform(-20.0, 0.0));
+    const double angle = random.Uniform(-3.0, 3.0);
     const Vector2 tangent{ std::cos(angle), std::sin(angle) };
     const bool left = n % 4 < 2;
     const Vector2 normal =
@@ -427,7 +415,7 @@ TEST(CubicElement, RightAnglesChangeNothingButRounding)
     {
       EXPECT_NEAR(a[k], b[k], 1e-12 / height / height);
     }
-    const Barycentric l = random.Point();
+    const Barycentric l = random.Weights();
     Vector2 value[2];
     Matrix2 derivative[2];
     Evaluate(element, GetOrdinates(element), l, value[0], derivative[0]);
@@ -439,13 +427,13 @@ TEST(CubicElement, RightAnglesChangeNothingButRounding)
 
 TEST(CubicElement, NetsAgreeWithTheElement)
 {
-  Random random(21);
+  Elements random(21);
   for (int n = 0; n < 2000; ++n)
   {
     const CubicElement element = random.Element(0.5);
     const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
     const CubicNet net(element);
-    const Barycentric l = random.Point();
+    const Barycentric l = random.Weights();
     Vector2 value;
     Matrix2 gradient;
     Evaluate(element, ordinates, l, value, gradient);
@@ -469,7 +457,7 @@ TEST(CubicElement, NetsAgreeWithTheElement)
 
 TEST(CubicElement, BoundsByNormsAreBelowAllCoefficients)
 {
-  Random random(22);
+  Elements random(22);
   int bounded = 0;
   for (int n = 0; n < 20000; ++n)
   {

@@ -147,6 +147,54 @@ inline int Locate(
   return -1;
 }
 
+/// The triangle in which the piecewise linear map has an image, or else a hint.
+inline int LocateImage(const PlanarPair& pair, const Vector2& image, int hint)
+{
+  const int found = Locate(pair, pair.Target, hint, image);
+  return found < 0 ? hint : found;
+}
+
+/// A point of a triangle.
+struct Sample
+{
+  int Triangle;
+  homeomorphism::Barycentric Weights;
+
+  Vector2 In(const PlanarPair& pair, const std::vector<Vector2>& points) const
+  {
+    const auto& corners = pair.Triangles[this->Triangle];
+    const std::array<Vector2, 3> c = PlanarPair::GetCorners(points, corners);
+    return points[corners[0]] + (this->Weights[1] * c[1] + this->Weights[2] * c[2]);
+  }
+};
+
+/// Points of triangles, a third of them close to a corner and a third close to an edge.
+inline std::vector<Sample> RandomSamples(const PlanarPair& pair, std::uint64_t seed, int count)
+{
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Sample> samples(static_cast<std::size_t>(count));
+  for (int n = 0; n < count; ++n)
+  {
+    Sample& sample = samples[static_cast<std::size_t>(n)];
+    sample.Triangle =
+      static_cast<int>(random() % static_cast<std::uint64_t>(pair.GetNumberOfTriangles()));
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const bool isSmall = n % 3 != 0 && (i == 0) == (n % 3 == 2);
+      sample.Weights[i] = std::pow(uniform(random), isSmall ? 12.0 : 1.0) + 1e-30;
+      sum += sample.Weights[i];
+    }
+    std::rotate(sample.Weights.begin(), sample.Weights.begin() + n / 3 % 3, sample.Weights.end());
+    for (double& weight : sample.Weights)
+    {
+      weight /= sum;
+    }
+  }
+  return samples;
+}
+
 /// Two triangles on either side of an edge, heights from 1e-3 to 1e3, apexes sheared.
 inline PlanarPair RandomNeedles(std::mt19937_64& random, double shear)
 {

@@ -8,8 +8,6 @@
 
 #include "Mesh/Homeomorphism.h"
 
-#include <numeric>
-
 namespace
 {
 
@@ -229,57 +227,6 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
   }
   EXPECT_GT(found, 10000);
   EXPECT_GT(outside, 5000);
-}
-
-TEST(PointLocation, NoPointOfASquareFallsBetweenTriangles)
-{
-  const auto mesh = MakePlanarPair(30, 3).Source;
-  const auto map = Make({ mesh, nullptr });
-  Random random(3);
-  TriangleIndex hint = -1;
-  for (int n = 0; n < 100000; ++n)
-  {
-    Point p{ random.Uniform(0.0, 30.0), random.Uniform(0.0, 30.0), 0.0 };
-    if (n % 10 == 0)
-    {
-      p[n / 10 % 2] = n / 20 % 2 ? 0.0 : 30.0;
-    }
-    hint = Locate(*map, p, hint).Triangle;
-    ASSERT_GE(hint, 0) << p[0] << " " << p[1];
-  }
-  // Points of edges lie on either side by rounding.
-  for (const Triangle& t : GridTriangles(30))
-  {
-    for (const double w : { 0.5, 0.1, 0.37, 1e-3, 1e-15 })
-    {
-      for (const Point& weights :
-        { Point{ 1.0 - w, w, 0.0 }, { 0.0, 1.0 - w, w }, { w, 0.0, 1.0 - w } })
-      {
-        ASSERT_GE(Locate(*map, PointIn(mesh, t, weights)).Triangle, 0);
-      }
-    }
-  }
-}
-
-TEST(PointLocation, CornersAreFoundAndMappedExactly)
-{
-  const MeshPair planar = MakePlanarPair(12, 5);
-  for (const MeshPair& pair : { planar, MakeClosedPair(4, 5),
-         MeshPair{ Tilted(planar.Source, Tilt(), { 0.1, 0.2, 0.3 }), planar.Target } })
-  {
-    for (const MeshPair& one : { pair, MeshPair{ pair.Target, pair.Source } })
-    {
-      const auto map = Make(one);
-      for (vtkIdType i = 0; i < one.Source->GetNumberOfPoints(); ++i)
-      {
-        const SurfacePoint location = Locate(*map, PointOf(one.Source, i));
-        ASSERT_GE(location.Corner, 0);
-        Point image;
-        map->MapPoint(Domain::Source, location, image.data());
-        ASSERT_EQ(PointOf(one.Target, i), image);
-      }
-    }
-  }
 }
 
 // --- The boundary of the domain ------------------------------------------------------------------
@@ -546,38 +493,6 @@ TEST(PointLocation, HeightsCountIfOneOfTheMeshesIsASurface)
   {
     EXPECT_EQ(height == 0.0, Locate(*surface, { 1.3, 2.2, height }).Triangle >= 0);
     EXPECT_GE(Locate(*planes, { 1.3, 2.2, height }).Triangle, 0);
-  }
-}
-
-TEST(PointLocation, TheOrderOfPointsDoesNotMatter)
-{
-  for (const MeshPair& pair : { MakePlanarPair(15, 27), MakeClosedPair(3, 27) })
-  {
-    const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
-    std::vector<Point> points = SamplePoints(pair.Source, triangles, 20, 27);
-    // Also points on edges and at corners, which belong to several triangles.
-    for (const Triangle& t : triangles)
-    {
-      points.push_back(PointOf(pair.Source, t[0]));
-      points.push_back(PointIn(pair.Source, t, { 0.5, 0.5, 0.0 }));
-    }
-    MapOptions options;
-    options.Tolerance = 1e-12;
-    const MappedPoints straight = MapPoints(pair, points, options);
-    std::vector<std::size_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::shuffle(order.begin(), order.end(), std::mt19937_64(27));
-    std::vector<Point> shuffled;
-    for (const std::size_t i : order)
-    {
-      shuffled.push_back(points[i]);
-    }
-    const MappedPoints mixed = MapPoints(pair, shuffled, options);
-    for (std::size_t i = 0; i < order.size(); ++i)
-    {
-      ASSERT_EQ(straight.Triangles[order[i]], mixed.Triangles[i]);
-      ASSERT_EQ(straight.Images[order[i]], mixed.Images[i]);
-    }
   }
 }
 

@@ -27,6 +27,13 @@ namespace
 using namespace homeomorphism;
 using namespace cubic_test;
 
+CubicMapOptions Options(CubicBending bending)
+{
+  CubicMapOptions options;
+  options.Bending = bending;
+  return options;
+}
+
 double Share = 1.0;
 bool Failed = false;
 
@@ -69,33 +76,22 @@ void Measure(const CubicMap& map, int points, std::mt19937_64& random, Result& r
   {
     result.LeastCertificate = std::min(result.LeastCertificate, certificate);
   }
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
   double size = 0.0;
   for (const Vector2& p : pair.Target)
   {
     size = std::max({ size, std::abs(p.x), std::abs(p.y) });
   }
-  for (int n = 0; n < points; ++n)
+  result.Points += points;
+  for (const Sample& sample : RandomSamples(pair, random(), points))
   {
-    const int t =
-      static_cast<int>(random() % static_cast<std::uint64_t>(pair.GetNumberOfTriangles()));
-    // A third anywhere, a third beside edges, a third beside vertices.
-    Barycentric l{ uniform(random), std::pow(uniform(random), n % 3 == 2 ? 10.0 : 1.0),
-      std::pow(uniform(random), n % 3 > 0 ? 10.0 : 1.0) };
-    std::rotate(l.begin(), l.begin() + n / 3 % 3, l.end());
-    const double sum = l[0] + l[1] + l[2];
-    const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
-    const Vector2 point =
-      pair.Source[pair.Triangles[t][0]] + (1.0 / sum) * (l[1] * corners[1] + l[2] * corners[2]);
+    const int t = sample.Triangle;
     Vector2 image;
     Matrix2 derivative;
-    map.MapPoint(t, point, image, derivative);
-    ++result.Points;
+    map.MapPoint(t, sample.In(pair, pair.Source), image, derivative);
     const double determinant = derivative.Determinant();
     result.Folds += determinant > 0.0 ? 0 : 1;
     result.LeastRatio = std::min(result.LeastRatio, determinant / pair.GetAffine(t).Determinant());
-    int at = Locate(pair, pair.Target, t, image);
-    at = at < 0 ? t : at;
+    int at = LocateImage(pair, image, t);
     Vector2 back;
     if (!map.FindPreimage(image, at, back))
     {
@@ -138,9 +134,7 @@ void RunPairs()
       std::mt19937_64 random(1);
       for (int seed = 0; seed < Count(least ? 6 : 60); ++seed)
       {
-        CubicMapOptions options;
-        options.Bending = bending;
-        const CubicMap map(RandomPair(seed, strength, 11), options);
+        const CubicMap map(RandomPair(seed, strength, 11), Options(bending));
         Measure(map, 2000, random, result);
       }
       char name[64];
@@ -157,9 +151,7 @@ void RunNeedles()
   Result result;
   for (int n = 0; n < Count(10000); ++n)
   {
-    CubicMapOptions options;
-    options.Bending = CubicBending::Local;
-    const CubicMap map(RandomNeedles(random, 20.0), options);
+    const CubicMap map(RandomNeedles(random, 20.0), Options(CubicBending::Local));
     Measure(map, 20, random, result);
   }
   Print("two needles, LOCAL", result);
@@ -176,9 +168,7 @@ void RunStars()
   {
     double turn;
     PlanarPair pair = RandomStar(random, 3 + n % 7, 2.8, turn);
-    CubicMapOptions options;
-    options.Bending = CubicBending::Local;
-    const CubicMap map(std::move(pair), options);
+    const CubicMap map(std::move(pair), Options(CubicBending::Local));
     const CubicMapStatistics& statistics = map.GetStatistics();
     uncertified += statistics.UncertifiedTriangles;
     int* row = numbers[turn < 0.5 * 3.141592653589793 ? 0 : 1];
@@ -228,9 +218,7 @@ void RunFar()
           p = { 1e7 + std::round(1e7 * p.x) / 1000.0, 1e7 + std::round(1e7 * p.y) / 1000.0 };
         }
       }
-      CubicMapOptions options;
-      options.Bending = bending;
-      const CubicMap map(std::move(pair), options);
+      const CubicMap map(std::move(pair), Options(bending));
       Measure(map, 2000, random, result);
     }
     Print(bending == CubicBending::Least ? "at 10^7, LEAST" : "at 10^7, LOCAL", result);
@@ -260,9 +248,7 @@ void RunFar()
     }
     if (valid)
     {
-      CubicMapOptions options;
-      options.Bending = CubicBending::Local;
-      const CubicMap map(std::move(pair), options);
+      const CubicMap map(std::move(pair), Options(CubicBending::Local));
       Measure(map, 2000, random, result);
     }
   }
@@ -311,10 +297,8 @@ void RunBending()
   for (double strength : { 0.0, 0.5, 1.2, 2.0, 3.0 })
   {
     const PlanarPair pair = RandomPair(100, strength, cells);
-    CubicMapOptions options;
-    options.Bending = CubicBending::Local;
-    const CubicMap local(pair, options);
-    options.Bending = CubicBending::Least;
+    const CubicMap local(pair, Options(CubicBending::Local));
+    CubicMapOptions options = Options(CubicBending::Least);
     const double linear = SecondDifferences(local, true, cells);
     for (int level = 0; level < (Share < 1.0 ? 1 : 2); ++level)
     {

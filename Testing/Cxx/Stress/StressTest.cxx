@@ -6,11 +6,11 @@
 // number of points, not on the number of threads.
 //
 //   StressTest [--points N] [--seed N] [--system NAME] [--family NAME] [--threads N]
-//   StressTest --reproduce SYSTEM FAMILY CASE [--seed N]
+//   StressTest --system NAME --family NAME --case N [--seed N]
 
 #include "StressMeshes.h"
 
-#include "../Fixtures/Meshes.h"
+#include "Fixtures/Meshes.h"
 
 #include "Kernel/ExactSign.h"
 #include "Mesh/Homeomorphism.h"
@@ -20,9 +20,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <cstring>
 #include <iostream>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -143,13 +144,13 @@ class Case
 public:
   Case(const TestedSystem& system, int family, std::uint64_t seed, std::int64_t number)
     : System(system)
-    , Random(Mixed(seed, system, family, number))
+    , Numbers(Mixed(seed, system, family, number))
     , Number(number)
   {
     // Half of the pairs of some families overlap or lose a triangle to rounding.
     for (int i = 0; i < 64 && !this->Map; ++i)
     {
-      this->Pair = AnyPair(this->Random, family, system);
+      this->Pair = AnyPair(this->Numbers, family, system);
       const auto source = MakeMesh(this->Pair.Points[0], this->Pair.Cells);
       const auto target = MakeMesh(this->Pair.Points[1], this->Pair.Cells);
       HomeomorphismOptions options;
@@ -171,9 +172,9 @@ public:
     this->Result.Pairs = 1;
     for (int i = 0; i < PointsPerCase; ++i)
     {
-      const Domain from = this->Random.Chance(0.5) ? Domain::Source : Domain::Target;
+      const Domain from = this->Numbers.Chance(0.5) ? Domain::Source : Domain::Target;
       const auto triangle =
-        static_cast<TriangleIndex>(this->Random.Below(static_cast<int>(this->Pair.Cells.size())));
+        static_cast<TriangleIndex>(this->Numbers.Below(static_cast<int>(this->Pair.Cells.size())));
       const Vector3 point = this->AnyPoint(from, triangle);
       this->Log = i == told;
       this->Measure(i, from, triangle, point);
@@ -244,7 +245,7 @@ private:
   /// formulas change.
   Vector3 AnyPoint(Domain domain, TriangleIndex triangle)
   {
-    Random& random = this->Random;
+    Random& random = this->Numbers;
     const MeshGeometry& geometry = this->GeometryOf(domain);
     const Corners corners = this->CornersOf(domain, triangle);
     Vector2 normalized;
@@ -591,7 +592,7 @@ private:
       this->GeometryOf(from).GetShape(surfacePoint.Triangle);
     const Barycentric l = shape.ToBarycentric(surfacePoint.Point.InPlane);
     const double room = std::min({ l[0], l[1], l[2] });
-    const int turn = this->Random.Below(2);
+    const int turn = this->Numbers.Below(2);
     // The orientation of the frame is that of the corners, whatever their order in the plane.
     const double handedness = this->GeometryOf(Opposite(from)).GetHandedness(surfacePoint.Triangle);
     const double rounding = 64.0 * HalfUlp * targetSize;
@@ -677,7 +678,7 @@ private:
   }
 
   const TestedSystem& System;
-  Random Random;
+  Random Numbers;
   std::int64_t Number;
   PlanePair Pair;
   std::shared_ptr<const Homeomorphism> Map;
@@ -685,26 +686,26 @@ private:
   bool Log = false;
 };
 
-struct Options
+/// The options of the command line with their defaults. Empty names are those of all.
+std::map<std::string, std::string> Options{ { "--points", "0" }, { "--seed", "1" },
+  { "--system", "" }, { "--family", "" }, { "--case", "-1" },
+  { "--threads", std::to_string(std::max(1u, std::thread::hardware_concurrency())) } };
+
+std::uint64_t Seed()
 {
-  double Points = 0.0;
-  std::uint64_t Seed = 1;
-  std::string System;
-  std::string Family;
-  int Threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::int64_t Reproduce = -1;
-};
+  return std::stoull(Options["--seed"]);
+}
 
 /// Runs the cases of one system and family until their points are used up.
-Report RunCases(const Options& options, const TestedSystem& system, int family, double points)
+Report RunCases(const TestedSystem& system, int family, double points)
 {
   std::atomic<std::int64_t> next{ 0 };
-  std::vector<Report> reports(options.Threads);
+  std::vector<Report> reports(std::stoul(Options["--threads"]));
   std::vector<std::thread> threads;
   threads.reserve(reports.size());
   for (Report& report : reports)
   {
-    threads.emplace_back([&]() {
+    threads.emplace_back([&, seed = Seed()]() {
       for (;;)
       {
         const std::int64_t number = next++;
@@ -712,7 +713,7 @@ Report RunCases(const Options& options, const TestedSystem& system, int family, 
         {
           return;
         }
-        report.Take(Case(system, family, options.Seed, number).Run());
+        report.Take(Case(system, family, seed, number).Run());
       }
     });
   }
@@ -738,8 +739,8 @@ bool Print(const TestedSystem& system, int family, const Report& report)
             << " | " << report.Oriented
             << (report.Worsts[ORIENTATION].Value > 1.0 ? " NOT ALL KEPT" : "") << " |" << std::endl;
   const auto tell = [&](const char* what, std::int64_t number) {
-    std::cout << "LIMIT BROKEN: " << what << "; StressTest --reproduce " << system.Name << " "
-              << Families[family].Name << " " << number << "\n";
+    std::cout << "LIMIT BROKEN: " << what << "; StressTest --system " << system.Name << " --family "
+              << Families[family].Name << " --case " << number << "\n";
     good = false;
   };
   for (int q = 0; q < NUMBER_OF_QUANTITIES; ++q)
@@ -763,9 +764,8 @@ bool Print(const TestedSystem& system, int family, const Report& report)
 
 int Usage()
 {
-  std::cerr << "StressTest [--points N] [--seed N] [--system NAME] [--family NAME] "
-               "[--threads N]\n"
-               "StressTest --reproduce SYSTEM FAMILY CASE [--seed N]\nSystems:";
+  std::cerr << "StressTest [--points N] [--seed N] [--system NAME] [--family NAME] [--case N] "
+               "[--threads N]\nSystems:";
   for (const TestedSystem& system : Systems)
   {
     std::cerr << " " << system.Name;
@@ -778,93 +778,64 @@ int Usage()
   return EXIT_FAILURE;
 }
 
-bool Parse(int argc, char* argv[], Options& options)
+/// Prints the meshes of a case, and the points that are lost or the worst.
+Report Reproduce(const TestedSystem& system, int family, std::int64_t number)
 {
-  for (int i = 1; i < argc; ++i)
+  std::cout.precision(17);
+  const auto make = [&]() { return Case(system, family, Seed(), number); };
+  const Report report = make().Run();
+  std::set<int> points{ report.LostPoint };
+  for (const WorstCase& worst : report.Worsts)
   {
-    const std::string option = argv[i];
-    const int left = argc - i - 1;
-    if (option == "--reproduce" && left >= 3)
-    {
-      options.System = argv[++i];
-      options.Family = argv[++i];
-      options.Reproduce = std::atoll(argv[++i]);
-    }
-    else if (option == "--points" && left >= 1)
-    {
-      options.Points = std::atof(argv[++i]);
-    }
-    else if (option == "--seed" && left >= 1)
-    {
-      options.Seed = std::strtoull(argv[++i], nullptr, 10);
-    }
-    else if (option == "--threads" && left >= 1)
-    {
-      options.Threads = std::max(1, std::atoi(argv[++i]));
-    }
-    else if (option == "--system" && left >= 1)
-    {
-      options.System = argv[++i];
-    }
-    else if (option == "--family" && left >= 1)
-    {
-      options.Family = argv[++i];
-    }
-    else
-    {
-      return false;
-    }
+    points.insert(worst.Point);
   }
-  return options.Points > 0.0 || options.Reproduce >= 0;
+  make().PrintMeshes();
+  for (const int point : points)
+  {
+    make().Run(point);
+  }
+  return report;
 }
 
 } // namespace
 
 int main(int argc, char* argv[])
 {
-  Options options;
-  if (!Parse(argc, argv, options))
+  for (int i = 1; i < argc; i += 2)
   {
-    return Usage();
+    if (Options.count(argv[i]) == 0 || i + 1 == argc)
+    {
+      return Usage();
+    }
+    Options[argv[i]] = argv[i + 1];
   }
   // The threads are std::threads with separate cases. VTK's threads must not be started by several
   // threads at once.
   vtkSMPTools::SetBackend("Sequential");
   std::vector<std::pair<const TestedSystem*, int>> chosen;
+  const auto isChosen = [](const std::string& option, const char* name) {
+    return Options[option].empty() || Options[option] == name;
+  };
   for (const TestedSystem& system : Systems)
   {
     for (int family = 0; family < static_cast<int>(Families.size()); ++family)
     {
-      if ((options.System.empty() || options.System == system.Name) &&
-        (options.Family.empty() || options.Family == Families[family].Name))
+      if (isChosen("--system", system.Name) && isChosen("--family", Families[family].Name))
       {
         chosen.emplace_back(&system, family);
       }
     }
   }
-  if (chosen.empty())
+  const double points = std::stod(Options["--points"]);
+  const std::int64_t number = std::stoll(Options["--case"]);
+  if (chosen.empty() || (points <= 0.0 && number < 0))
   {
     return Usage();
   }
-  if (options.Reproduce >= 0)
+  if (number >= 0)
   {
-    std::cout.precision(17);
     const auto [system, family] = chosen.front();
-    const Report report = Case(*system, family, options.Seed, options.Reproduce).Run();
-    std::vector<int> points{ report.LostPoint };
-    for (const WorstCase& worst : report.Worsts)
-    {
-      if (std::find(points.begin(), points.end(), worst.Point) == points.end())
-      {
-        points.push_back(worst.Point);
-      }
-    }
-    Case(*system, family, options.Seed, options.Reproduce).PrintMeshes();
-    for (const int point : points)
-    {
-      Case(*system, family, options.Seed, options.Reproduce).Run(point);
-    }
-    return Print(*system, family, report) ? EXIT_SUCCESS : EXIT_FAILURE;
+    return Print(*system, family, Reproduce(*system, family, number)) ? EXIT_SUCCESS : EXIT_FAILURE;
   }
 
   std::cout.precision(3);
@@ -877,11 +848,11 @@ int main(int argc, char* argv[])
   Report total;
   for (const auto& [system, family] : chosen)
   {
-    const Report report = RunCases(options, *system, family, options.Points / share);
+    const Report report = RunCases(*system, family, points / share);
     total.Take(report);
     good = Print(*system, family, report) && good;
   }
-  std::cout << total.Points << " points in " << total.Pairs << " pairs of meshes, seed "
-            << options.Seed << ": " << (good ? "no limit broken" : "LIMITS BROKEN") << "\n";
+  std::cout << total.Points << " points in " << total.Pairs << " pairs of meshes, seed " << Seed()
+            << ": " << (good ? "no limit broken" : "LIMITS BROKEN") << "\n";
   return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }
