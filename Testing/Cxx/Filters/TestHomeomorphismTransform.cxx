@@ -47,25 +47,16 @@ std::vector<Point> PositionsAround(vtkPolyData* mesh, std::uint64_t seed)
 /// Image and derivative at a point; the input is also the output.
 struct Differential
 {
-  Differential(vtkAbstractTransform* transform, const Point& p)
-    : Image(p)
+  template <typename Real>
+  Differential(vtkAbstractTransform* transform, const Real* p)
   {
-    double rows[3][3];
-    transform->InternalTransformDerivative(this->Image.data(), this->Image.data(), rows);
-    for (std::size_t row = 0; row < 3; ++row)
-    {
-      this->Derivative[row] = { rows[row][0], rows[row][1], rows[row][2] };
-    }
-  }
-  Differential(vtkAbstractTransform* transform, const float p[3])
-  {
-    float image[3] = { p[0], p[1], p[2] };
-    float rows[3][3];
+    Real image[3] = { p[0], p[1], p[2] };
+    Real rows[3][3];
     transform->InternalTransformDerivative(image, image, rows);
-    this->Image = { image[0], image[1], image[2] };
+    std::copy_n(image, 3, this->Image.begin());
     for (std::size_t row = 0; row < 3; ++row)
     {
-      this->Derivative[row] = { rows[row][0], rows[row][1], rows[row][2] };
+      std::copy_n(rows[row], 3, this->Derivative[row].begin());
     }
   }
 
@@ -125,7 +116,7 @@ TEST_P(TransformInEverySystem, AgreesWithTheFilter)
           const float narrow[3] = { static_cast<float>(p[0]), static_cast<float>(p[1]),
             static_cast<float>(p[2]) };
           const Differential found =
-            isFloat ? Differential(transform, narrow) : Differential(transform, p);
+            isFloat ? Differential(transform, narrow) : Differential(transform, p.data());
           different += found.Image != expected(i);
           different += std::isnan(Norm(found.Derivative)) == isInside(i);
           if (isFloat)
@@ -234,8 +225,8 @@ TEST_P(TransformInEverySystem, Inverse)
   inverse->Update();
   for (const MeshPoint& surfacePoint : InnerSamples(pair.Source, 3000, 67, 1e-3))
   {
-    const Differential forward(transform, PositionOf(pair.Source, surfacePoint));
-    const Differential backward(inverse, forward.Image);
+    const Differential forward(transform, PositionOf(pair.Source, surfacePoint).data());
+    const Differential backward(inverse, forward.Image.data());
     const Matrix inverted = Inverted(forward.Derivative);
     ASSERT_LE(Distance(backward.Derivative, inverted),
       1e-11 * Norm(inverted) * Norm(inverted) * Norm(forward.Derivative));

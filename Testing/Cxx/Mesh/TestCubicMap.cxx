@@ -328,25 +328,22 @@ TEST_P(CubicMaps, BoundaryCornersStraightOnOneSideAreListed)
 TEST(CubicMap, StarsBeyondTheProgramHaveRings)
 {
   int rings = 0;
-  int exceptional = 0;
   std::mt19937_64 random(71);
   for (int n = 0; n < 60; ++n)
   {
     double range;
     const CubicMap map(RandomStar(random, 3 + n % 6, 0.5, range), Options(CubicBending::Local));
     EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
-    const bool isExceptional = !map.GetStatistics().ExceptionalInteriorPoints.empty();
-    exceptional += isExceptional ? 1 : 0;
-    if (map.GetStatistics().Rings > 0 && !isExceptional)
+    EXPECT_TRUE(map.GetStatistics().ExceptionalInteriorPoints.empty());
+    if (map.GetStatistics().Rings > 0)
     {
       ++rings;
       // Rings have small elements.
-      ExpectContinuouslyDifferentiable(map, 1e-6);
+      ExpectContinuouslyDifferentiable(map, 2e-7);
       ExpectRoundTrip(map, 100);
     }
   }
   EXPECT_GT(rings, 0);
-  EXPECT_LE(exceptional, 6);
 }
 
 TEST(CubicMap, DoesNotDependOnThreads)
@@ -493,7 +490,10 @@ TEST_P(CubicMaps, BatchesGiveTheBitsOfSinglePoints)
         }
       }
       const auto set = [](CubicBatch& batch, int i, const Sample& sample, const Vector2& point) {
-        batch.Triangles[i] = sample.Triangle;
+        if (i < CubicBatch::Capacity)
+        {
+          batch.Triangles[i] = sample.Triangle;
+        }
         batch.X[i] = point.x;
         batch.Y[i] = point.y;
         for (int k = 0; k < 3; ++k)
