@@ -149,7 +149,7 @@ def read(input):
 
 
 def _read_picture(input):
-    from PIL import Image
+    from PIL import Image, ImageOps
 
     # Larger ones by half are refused.
     Image.MAX_IMAGE_PIXELS = 2**31
@@ -160,7 +160,7 @@ def _read_picture(input):
         if image.mode not in ("L", "LA", "RGB", "RGBA", "I", "I;16", "F"):
             kinds = {"P": "RGBA" if "transparency" in image.info else "RGB", "1": "L", "PA": "RGBA"}
             image = image.convert(kinds.get(image.mode, "RGB"))
-        pixels = numpy.asarray(image)
+        pixels = numpy.asarray(ImageOps.exif_transpose(image))
     return Raster(pixels.astype(numpy.uint16) if pixels.dtype == numpy.int32 else pixels)
 
 

@@ -242,16 +242,23 @@ def _frame(grid, points):
     return points.min(axis=0), points.max(axis=0)
 
 
-def _between_images(points, frames, more):
-    """The pair within the images' rectangles. Landmarks close to a border in one image, but not on it in both, would make
-    thin triangles there: then the domain extends half the landmarks' spacing beyond the borders, with points around."""
+def _between_images(points, grids, more):
+    """The pair within the images' rectangles. Landmarks within a pixel of the same border in both images go onto it.
+    Others close to a border in one image would make thin triangles there: then the domain extends half the landmarks'
+    spacing beyond the borders, with points around."""
+    frames = [_frame(grid, p) for grid, p in zip(grids, points)]
+    snapped = points
+    for end in (0, 1):
+        near = numpy.all([numpy.abs(p - frame[end]) <= numpy.abs(grid.steps).sum(axis=1)
+                          for p, frame, grid in zip(points, frames, grids)], axis=0)
+        snapped = [numpy.where(near, frame[end], p) for p, frame in zip(snapped, frames)]
     spacings = [numpy.sqrt((high - low).prod() / len(points[0])) for low, high in frames]
-    gaps = [numpy.minimum(p - low, high - p).min(axis=1) for p, (low, high) in zip(points, frames)]
+    gaps = [numpy.minimum(p - low, high - p).min(axis=1) for p, (low, high) in zip(snapped, frames)]
     close = (gaps[0] < 0.1 * spacings[0]) | (gaps[1] < 0.1 * spacings[1])
     wider = [(low - 0.5 * s, high + 0.5 * s) for s, (low, high) in zip(spacings, frames)]
     if not close[(gaps[0] != 0) | (gaps[1] != 0)].any():
         try:
-            return isomorphic_triangulation(*points, frame=[numpy.column_stack(f).ravel() for f in frames], **more)
+            return isomorphic_triangulation(*snapped, frame=[numpy.column_stack(f).ravel() for f in frames], **more)
         except ValueError:
             # On different borders.
             pass
@@ -268,14 +275,14 @@ def triangulate(marks, name, grids, **more):
     for side, grid in enumerate(grids):
         if grid or (side == 0 and marks.image_coordinates):
             points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
-    frames = [grid and _frame(grid, p) for grid, p in zip(grids, points)]
     try:
-        if not frames[0] or more.get("outlines") or more.get("domain") not in (None, "automatic", "frame"):
+        if not grids[0] or more.get("outlines") or more.get("domain") not in (None, "automatic", "frame"):
             made = isomorphic_triangulation(*points, **more)
-        elif frames[1]:
-            made = _between_images(points, frames, more)
+        elif grids[1]:
+            made = _between_images(points, grids, more)
         else:
-            made = isomorphic_triangulation(*points, frame=(numpy.column_stack(frames[0]).ravel(), None), **more)
+            frame = numpy.column_stack(_frame(grids[0], points[0])).ravel()
+            made = isomorphic_triangulation(*points, frame=(frame, None), **more)
     except ValueError as error:
         raise Failure(f"{name}: {error}") from None
     angles, worst = made.report["smallest_angles"], made.suspicious()

@@ -33,10 +33,14 @@ def extent(grid):
 
 
 def fills_picture(grid):
-    """Whether the boundary is the rectangle from the origin to the largest x and y, up to one pixel."""
+    """Whether the boundary is the rectangle from the origin to the largest x and y, up to one pixel. Then it becomes
+    exactly that."""
     end = extent(grid)
     rims = ((grid[0, :, 1], 0), (grid[-1, :, 1], end[1]), (grid[:, 0, 0], 0), (grid[:, -1, 0], end[0]))
-    return all((numpy.abs(rim - value) <= 0.005 * end.max()).all() for rim, value in rims)
+    fills = all((numpy.abs(rim - value) <= 0.005 * end.max()).all() for rim, value in rims)
+    for rim, value in rims if fills else ():
+        rim[:] = value
+    return fills
 
 
 def _smallest_angle(grid, triangles):

@@ -46,6 +46,14 @@ def test_identity_keeps_all_pixels(dhm, pair, image):
         assert pixels.shape[2] == 3 or (pixels[:, :, 3] == 255).all()
 
 
+def test_photographs_are_upright(dhm, pair, image):
+    exif = Image.Exif()
+    exif[0x112] = 6  # to be turned clockwise by a quarter
+    Image.fromarray(numpy.rot90(image)).save(dhm.path("turned.png"), exif=exif)
+    same = pair._replace(target=pair.source)
+    numpy.testing.assert_array_equal(read(warp(dhm, same, image="turned.png", output="out.ppm")), image)
+
+
 def test_shift_alpha_and_background(dhm, pair, image):
     # Four pixels to the right and three up; rows are counted from above.
     moved = pair._replace(target=pair.source + [4, 3])
@@ -196,6 +204,13 @@ def test_xmorph_meshes(dhm, image):
     write_xmorph(dhm.path("a.mesh"), 4, points)
     dhm("warp", "a.mesh", "a.mesh", "image.png", "-o", "out.ppm")
     numpy.testing.assert_array_equal(read(dhm.path("out.ppm")), image)
+    # The second image has another size, and the first mesh ends a little before its image does.
+    rim = points.copy()
+    rim[1, 1] += 1
+    write_xmorph(dhm.path("rim.mesh"), 4, rim)
+    Image.fromarray(image[:-4, :-3]).save(dhm.path("small.png"))
+    dhm("morph", "rim.mesh", "a.mesh", "--source-image", "image.png", "--target-image", "small.png", "-n", "3", "-o", "f%d.png")
+    assert all((read(dhm.path(f"f{k}.png"))[:, :, 3] == 255).all() for k in range(3))
     inner = points.copy()
     inner[:4, 1] += 30
     write_xmorph(dhm.path("b.mesh"), 4, inner)

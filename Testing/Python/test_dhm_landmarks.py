@@ -109,13 +109,13 @@ def test_landmarks_of_images_have_y_down(dhm, form):
 
 
 def test_landmarks_close_to_a_border_make_no_slivers(dhm):
-    """On a border of one image and just beside it in the other; on both borders, they are the domain's."""
+    """On a border of one image and beside it in the other; on both borders, they are the domain's."""
     Image = pytest.importorskip("PIL.Image")
     Image.fromarray(numpy.zeros((60, 80), numpy.uint8)).save(dhm.path("image.png"))
     source, target = landmarks(60, (80, 60))
     rim = numpy.array([[0.5, y] for y in numpy.arange(0.5, 60, 5.9)] + [[79.5, y] for y in numpy.arange(0.5, 60, 5.9)])
     smallest = []
-    for gap in (0.0, 0.05):
+    for gap in (0.0, 1.5):
         moved = rim + [gap, 0] * (rim[:, :1] < 1)
         write_landmarks(dhm.path("marks.csv"), numpy.vstack((source, rim)), numpy.vstack((target, moved)))
         dhm("triangulate", "marks.csv", "--scan", "image.png", "--scan", "image.png", "-o", "pair.json", "--force")
@@ -127,6 +127,23 @@ def test_landmarks_close_to_a_border_make_no_slivers(dhm):
         angles = numpy.arccos((u * v).sum(axis=2) / numpy.hypot(*u.T).T / numpy.hypot(*v.T).T)
         smallest.append(angles.min())
     assert smallest[1] > 0.8 * smallest[0]
+
+
+@pytest.mark.parametrize("gap", [0, 2])
+def test_morphs_between_landmarks_on_corners_have_no_gaps(dhm, gap):
+    Image = pytest.importorskip("PIL.Image")
+    pixels = numpy.random.default_rng(2).integers(0, 256, (2, 60, 80, 3)).astype("u1")
+    for side in (0, 1):
+        Image.fromarray(pixels[side]).save(dhm.path(f"{side}.png"))
+    source, target = landmarks(12, (80, 60), 3)
+    corners = numpy.array([[gap, gap], [79 - gap, gap], [gap, 59 - gap], [79 - gap, 59 - gap]])
+    write_landmarks(dhm.path("marks.csv"), numpy.vstack((source, corners)), numpy.vstack((target, corners)))
+    dhm("morph", "marks.csv", "--scan", "0.png", "--scan", "1.png", "--source-image", "0.png", "--target-image", "1.png",
+        "-n", "3", "-o", "f%d.png")
+    frames = [numpy.asarray(Image.open(dhm.path(f"f{k}.png"))) for k in range(3)]
+    for side in (0, 1):
+        numpy.testing.assert_array_equal(frames[2 * side][:, :, :3], pixels[side])
+    assert all((frame[:, :, 3] == 255).all() for frame in frames)
 
 
 def test_outlines_lines_and_figures(dhm):

@@ -47,12 +47,23 @@ def make_meshes(both, mask_invalid, path, times):
     return result
 
 
-def blend(first, second, t):
+def grid_between(grids, size, t):
+    """The pixels of a frame, over the rectangle in between those of two images: their borders go to its borders."""
+    steps = [grid.steps * numpy.maximum(numpy.subtract(grid.size, 1), 1) / numpy.maximum(numpy.subtract(size, 1), 1)
+             for grid in grids]
+    first = grids[0].first + t * (grids[1].first - grids[0].first)
+    return replace(grids[0], width=size[0], height=size[1], first=first, steps=steps[0] + t * (steps[1] - steps[0]))
+
+
+def blend(first, second, masks, t):
+    """Pixels and mask. Where one of the images ends, the other is alone, except in the first and the last frame."""
     if first.dtype != second.dtype or first.shape != second.shape:
         raise Failure(f"The two images are not of the same kind: {first.shape[2]} bands of {first.dtype}, and "
                       f"{second.shape[2]} of {second.dtype}.")
-    mixed = (1 - t) * first.astype(float) + t * second.astype(float)
-    return (numpy.rint(mixed) if first.dtype.kind in "iu" else mixed).astype(first.dtype)
+    total = (1 - t) * masks[0] + t * masks[1]
+    weight = (t * masks[1] / numpy.where(total > 0, total, 1))[:, :, None]
+    mixed = (1 - weight) * first.astype(float) + weight * second.astype(float)
+    return (numpy.rint(mixed) if first.dtype.kind in "iu" else mixed).astype(first.dtype), total > 0
 
 
 @click.command("morph")
@@ -94,9 +105,9 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
     both = options.read_pair(inputs)
     if rasters:
         settings = choose_system(settings, both, "cubic")
-        grid = images.Grid(*size) if size else first.grid
-        both.fit([rasters[side].grid if side in rasters else grid for side in (0, 1)], rasters, names)
-        grid = grid.hanging() if both.landmarks else grid
+        both.fit(inputs.grids, rasters, names)
+        ends = [images.Grid(*size) if size and not both.extents else grid for grid in inputs.grids]
+        ends = [grid.hanging() if both.landmarks else grid for grid in ends]
     times = [k / (frames - 1) for k in range(frames)]
     steps = zip(times, outputs, make_meshes(both, settings["mask_invalid"], path, times))
     for t, frame, mesh in progress(list(steps), "Morphing"):
@@ -104,10 +115,11 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
             if not rasters:
                 meshes.write(mesh, frame)
                 continue
+            grid = grid_between(ends, size or ends[0].size, t)
             warped = [images.Warp(replace(both, meshes=[both.meshes[side], mesh]), settings).warp(raster, grid, "")
                       for side, raster in rasters.items()]
             pixels, mask = warped[0]
             if len(warped) == 2:
-                pixels, mask = blend(pixels, warped[1][0], t), mask & warped[1][1]
+                pixels, mask = blend(pixels, warped[1][0], (mask, warped[1][1]), t)
             has_alpha = all(raster.has_alpha for raster in rasters.values())
             images.write(images.finish(pixels, mask, has_alpha, color), frame, grid)
