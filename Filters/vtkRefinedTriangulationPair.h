@@ -12,9 +12,10 @@
  *
  * Output port 0 is the finer source, port 1 the finer target. Both have the same triangles. The
  * first points are those of the inputs, unchanged and with their ids. Added points bisect edges of
- * the source. In the target they are the images of those points or, on the boundary, which every
- * system maps linearly, the midpoints of edges. The finer meshes are conforming: no vertex lies
- * inside an edge of another triangle. The finer pair is validated like any pair.
+ * the source. In the target they are the images of those points. Points on the boundary stay on its
+ * edges, up to the rounding of coordinates, and exactly on edges parallel to an axis. The finer
+ * meshes are conforming: no vertex lies inside an edge of another triangle. The finer pair is
+ * validated like any pair.
  *
  * Point data of each mesh is interpolated at added points with their barycentric coordinates in the
  * original triangle. PROJ interpolates heights in the same way, so the heights of the finer pair

@@ -87,6 +87,23 @@ Vector3 Combine(const Weights& weights, Corner&& corner)
   return sum;
 }
 
+/// Moves a point that is on an edge, up to rounding, to the edge. Where the ends agree in a
+/// coordinate, the result has exactly that coordinate.
+Vector3 MoveToEdge(const Vector3& point, const Vector3& start, const Vector3& end)
+{
+  const Vector3 edge = Difference(end, start);
+  std::size_t axis = 0;
+  for (const std::size_t other : { 1, 2 })
+  {
+    axis = std::abs(edge[other]) > std::abs(edge[axis]) ? other : axis;
+  }
+  // Measured from the nearer end, so that points close to an end remain distinct.
+  const double fromStart = (point[axis] - start[axis]) / edge[axis];
+  const double fromEnd = (end[axis] - point[axis]) / edge[axis];
+  return fromStart <= fromEnd ? Sum(start, std::max(fromStart, 0.0), edge)
+                              : Sum(end, -std::max(fromEnd, 0.0), edge);
+}
+
 class Refiner
 {
 public:
@@ -406,23 +423,30 @@ private:
     const Weights weights = Middle(part, edge);
     const Triangulation::Corners& corners =
       this->Map.GetPair().GetTriangulation().GetCorners(part.Original);
+    // An edge without a second part lies on the boundary. There only Cubic is not linear.
+    const bool isOnBoundary = parts[0] == parts[1];
     std::array<Vector3, 2> positions;
     for (std::size_t side = 0; side < 2; ++side)
     {
-      positions[side] = Combine(
-        weights, [&](std::size_t k) -> const Vector3& { return this->GetPoint(side, corners[k]); });
-    }
-    // The boundary is mapped linearly. An edge without a second part lies on it.
-    if (parts[0] != parts[1])
-    {
-      positions[1] = this->MapInTriangle(part.Original, weights);
-    }
-    for (const vtkIdType end : ends)
-    {
-      if (positions[0] == this->GetPoint(0, end))
+      positions[side] = side == 1 && (!isOnBoundary || this->Map.GetCubic())
+        ? this->MapInTriangle(part.Original, weights)
+        : Combine(weights,
+            [&](std::size_t k) -> const Vector3& { return this->GetPoint(side, corners[k]); });
+      if (isOnBoundary)
       {
-        this->BelowRounding = true;
-        return;
+        const auto opposite = static_cast<std::size_t>(
+          std::find(weights.begin(), weights.end(), 0.0) - weights.begin());
+        positions[side] =
+          MoveToEdge(positions[side], this->GetPoint(side, corners[(opposite + 1) % 3]),
+            this->GetPoint(side, corners[(opposite + 2) % 3]));
+      }
+      for (const vtkIdType end : ends)
+      {
+        if (positions[side] == this->GetPoint(side, end))
+        {
+          this->BelowRounding = true;
+          return;
+        }
       }
     }
     const auto middle = static_cast<vtkIdType>(this->Points[0].size());

@@ -67,10 +67,10 @@ struct RefinedPair
 /// where the map bends in one direction only. Triangles with a height below 0.03 of their longest
 /// edge are not elongated further.
 ///
-/// Added points on the boundary stay on its edges; the others are mapped by the homeomorphism. @a
-/// source and @a target are the meshes from which @a map was made. Triangles are measured in
-/// parallel; the result does not depend on the number of threads. @a isAborted is called
-/// repeatedly.
+/// Added points are mapped by the homeomorphism; those on the boundary are then moved to its edges,
+/// from which rounding may have separated them. @a source and @a target are the meshes from which
+/// @a map was made. Triangles are measured in parallel; the result does not depend on the number of
+/// threads. @a isAborted is called repeatedly.
 RefinedPair Refine(const Homeomorphism& map, vtkPolyData* source, vtkPolyData* target,
   double maximumError, vtkIdType maximumTriangles, const std::function<bool()>& isAborted);
 

@@ -24,34 +24,74 @@ vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, do
 
 /// The images of points under the homeomorphism of a pair.
 vtkSmartPointer<vtkPointSet> MapPoints(
-  vtkPolyData* source, vtkPolyData* target, vtkPolyData* cloud, int coordinateSystem)
+  vtkPolyData* source, vtkPolyData* target, vtkPolyData* cloud, int system, double deviation)
 {
   vtkNew<vtkDifferentiableHomeomorphism> map;
   map->SetSourceData(source);
   map->SetTargetData(target);
   map->SetDataObject(cloud);
-  map->SetCoordinateSystem(coordinateSystem);
-  // On surfaces, points between corners are off the surface by rounding.
+  map->SetCoordinateSystem(system);
+  map->SetMaximumDeviation(deviation);
+  // On surfaces, and on the boundary, points between corners are off the mesh by rounding.
   map->SetTolerance(1e-12);
   map->Update();
   EXPECT_EQ(map->GetNumberOfOutsidePoints(), 0);
   return vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
 }
 
-/// The largest distance between the homeomorphism of a pair and the piecewise linear map of the
-/// finer pair at random points, some of them close to edges and vertices.
-double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter, int system)
+/// The largest distance between the homeomorphism of a pair, in the system of the filter, and the
+/// piecewise linear map of the finer pair at random points, some of them on edges, the boundary's
+/// too, or close to edges and vertices.
+double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter)
 {
   const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 5));
-  const auto exact = MapPoints(pair.Source, pair.Target, cloud, system);
-  const auto linear = MapPoints(
-    filter->GetOutput(), filter->GetTargetOutput(), cloud, vtkDifferentiableHomeomorphism::LINEAR);
+  const auto exact = MapPoints(
+    pair.Source, pair.Target, cloud, filter->GetCoordinateSystem(), filter->GetMaximumDeviation());
+  const auto linear = MapPoints(filter->GetOutput(), filter->GetTargetOutput(), cloud,
+    vtkDifferentiableHomeomorphism::LINEAR, VTK_DOUBLE_MAX);
   double largest = 0.0;
   for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
   {
     largest = std::max(largest, Distance(PointOf(exact, i), PointOf(linear, i)));
   }
   return largest;
+}
+
+/// Every edge has two triangles or lies exactly on the boundary of the square [0, size]^2, so no
+/// edge ends at a vertex inside another edge.
+void ExpectConforming(vtkPolyData* mesh, double size)
+{
+  std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+  for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c)
+  {
+    vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(c, ids);
+    for (int k = 0; k < 3; ++k)
+    {
+      ++edges[std::minmax(vtkIdType(ids->GetId(k)), vtkIdType(ids->GetId((k + 1) % 3)))];
+    }
+  }
+  for (const auto& edge : edges)
+  {
+    ASSERT_LE(edge.second, 2);
+    if (edge.second == 1)
+    {
+      const Point a = PointOf(mesh, edge.first.first);
+      const Point b = PointOf(mesh, edge.first.second);
+      EXPECT_TRUE((a[0] == b[0] && (a[0] == 0.0 || a[0] == size)) ||
+        (a[1] == b[1] && (a[1] == 0.0 || a[1] == size)));
+    }
+  }
+}
+
+/// A square of four triangles whose center is moved.
+MeshPair MakeSquare()
+{
+  const auto make = [](double x, double y) {
+    return MakeMesh({ { 0, 0, 0 }, { 3, 0, 0 }, { 3, 3, 0 }, { 0, 3, 0 }, { x, y, 0 } },
+      { { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 } });
+  };
+  return { make(1.5, 1.5), make(2.1, 1.8) };
 }
 
 TEST(RefinedTriangulationPair, KeepsTheMaximumErrorAtRandomPoints)
@@ -65,8 +105,7 @@ TEST(RefinedTriangulationPair, KeepsTheMaximumErrorAtRandomPoints)
     EXPECT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
     EXPECT_LE(filter->GetLargestError(), maximumError);
     EXPECT_GT(filter->GetNumberOfSamples(), 0);
-    EXPECT_LE(
-      LargestError(pair, filter, vtkDifferentiableHomeomorphism::SMOOTH), 1.05 * maximumError);
+    EXPECT_LE(LargestError(pair, filter), 1.05 * maximumError);
     EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), triangles);
     triangles = filter->GetOutput()->GetNumberOfCells();
   }
@@ -79,13 +118,47 @@ TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfContourAndOnSurfaces)
   contour->SetCoordinateSystem(vtkRefinedTriangulationPair::CONTOUR);
   contour->SetDiscordantTriangles(vtkRefinedTriangulationPair::REFUSE);
   contour->Update();
-  EXPECT_LE(LargestError(planar, contour, vtkDifferentiableHomeomorphism::CONTOUR), 0.00525);
+  EXPECT_LE(LargestError(planar, contour), 0.00525);
 
   const MeshPair closed = MakeClosedPair(1, 31);
   const auto surface = MakeFilter(closed, 0.01);
   surface->Update();
   EXPECT_EQ(surface->GetResult(), vtkRefinedTriangulationPair::REFINED);
-  EXPECT_LE(LargestError(closed, surface, vtkDifferentiableHomeomorphism::SMOOTH), 0.0105);
+  EXPECT_LE(LargestError(closed, surface), 0.0105);
+}
+
+TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfCubicUpToTheBoundary)
+{
+  for (const MeshPair& pair : { MakeSquare(), MakePlanarPair(3, 71) })
+  {
+    for (const double maximumDeviation : { VTK_DOUBLE_MAX, 0.05 })
+    {
+      const auto filter = MakeFilter(pair, 0.01);
+      filter->SetCoordinateSystem(vtkRefinedTriangulationPair::CUBIC);
+      filter->SetMaximumDeviation(maximumDeviation);
+      filter->SetMaximumNumberOfTriangles(20000);
+      filter->Update();
+      ASSERT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
+      EXPECT_LE(LargestError(pair, filter), 0.0105);
+      ExpectConforming(filter->GetOutput(), 3.0);
+      ExpectConforming(filter->GetTargetOutput(), 3.0);
+    }
+  }
+}
+
+TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfCubicAtObliqueBoundaries)
+{
+  const MeshPair upright = MakeSquare();
+  const auto turn = [](const Point& p) {
+    return Point{ 100.0 + 0.8 * p[0] - 0.7 * p[1], 0.6 * p[0] + 0.9 * p[1], 0.0 };
+  };
+  const MeshPair pair{ Moved(upright.Source, turn), Moved(upright.Target, turn) };
+  const auto filter = MakeFilter(pair, 0.01);
+  filter->SetCoordinateSystem(vtkRefinedTriangulationPair::CUBIC);
+  filter->SetMaximumNumberOfTriangles(20000);
+  filter->Update();
+  ASSERT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
+  EXPECT_LE(LargestError(pair, filter), 0.0105);
 }
 
 TEST(RefinedTriangulationPair, DividesNoTriangleOfALinearMap)
@@ -121,29 +194,8 @@ TEST(RefinedTriangulationPair, IsConformingAndKeepsPointsAndAreas)
     }
     EXPECT_NEAR(area, 16.0, 1e-11);
   }
-  // Every edge has two triangles or lies on the boundary of the square, so no edge ends at a vertex
-  // inside another edge.
-  std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
-  for (vtkIdType c = 0; c < meshes[0]->GetNumberOfCells(); ++c)
-  {
-    vtkNew<vtkIdList> ids;
-    meshes[0]->GetCellPoints(c, ids);
-    for (int k = 0; k < 3; ++k)
-    {
-      ++edges[std::minmax(vtkIdType(ids->GetId(k)), vtkIdType(ids->GetId((k + 1) % 3)))];
-    }
-  }
-  for (const auto& edge : edges)
-  {
-    ASSERT_LE(edge.second, 2);
-    if (edge.second == 1)
-    {
-      const Point a = PointOf(meshes[0], edge.first.first);
-      const Point b = PointOf(meshes[0], edge.first.second);
-      EXPECT_TRUE((a[0] == b[0] && (a[0] == 0.0 || a[0] == 4.0)) ||
-        (a[1] == b[1] && (a[1] == 0.0 || a[1] == 4.0)));
-    }
-  }
+  ExpectConforming(meshes[0], 4.0);
+  ExpectConforming(meshes[1], 4.0);
 }
 
 TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
