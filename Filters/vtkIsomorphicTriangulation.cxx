@@ -9,6 +9,7 @@
 #include "Pipeline/PointBlocks.h"
 #include "Pipeline/Requests.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -22,6 +23,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <array>
@@ -44,6 +46,8 @@ public:
   std::vector<vtkIdType> LineCells;
   std::vector<vtkIdType> LoopCells;
   std::vector<vtkIdType> Suspicious;
+  /// Pedigree ids of the source's points.
+  std::vector<std::string> Names;
 
   vtkIdType CellOf(const FigureProblem& problem) const
   {
@@ -331,11 +335,16 @@ int vtkIsomorphicTriangulation::RequestData(
   *this->Internal = Internals();
   this->NumberOfAddedPoints = 0;
   Internals& internal = *this->Internal;
+  vtkAbstractArray* names = figures[0]->GetPointData()->GetPedigreeIds();
+  for (vtkIdType i = 0; names && i < names->GetNumberOfTuples(); ++i)
+  {
+    internal.Names.push_back(names->GetVariantValue(i).ToString());
+  }
   const auto refuse = [&]() {
     std::string text;
     for (const FigureProblem& problem : internal.Problems)
     {
-      text += (text.empty() ? "" : "\n") + problem.Message();
+      text += (text.empty() ? "" : "\n") + problem.Message(internal.Names);
     }
     if (internal.Problems[0].What != FigureProblem::Kind::Aborted)
     {
@@ -569,7 +578,8 @@ int vtkIsomorphicTriangulation::GetProblemCount(int problem)
 
 std::string vtkIsomorphicTriangulation::GetProblemMessage(int problem)
 {
-  return this->Internal->Problems.at(static_cast<std::size_t>(problem)).Message();
+  return this->Internal->Problems.at(static_cast<std::size_t>(problem))
+    .Message(this->Internal->Names);
 }
 
 int vtkIsomorphicTriangulation::GetNumberOfLeftOutSegments()
@@ -584,7 +594,8 @@ vtkIdType vtkIsomorphicTriangulation::GetLeftOutCell(int segment)
 
 std::string vtkIsomorphicTriangulation::GetLeftOutMessage(int segment)
 {
-  return this->Internal->LeftOut.at(static_cast<std::size_t>(segment)).Message();
+  return this->Internal->LeftOut.at(static_cast<std::size_t>(segment))
+    .Message(this->Internal->Names);
 }
 
 void vtkIsomorphicTriangulation::GetSuspiciousLandmarks(vtkIdList* points)

@@ -188,7 +188,7 @@ public:
   /// ProblemKinds), the domain (0 source, 1 target, -1 if the two disagree), the points concerned
   /// (at most 10; the ends of two crossing segments, or a point and the ends of its segment), the
   /// id of the cell that could not be drawn (-1 if there is none), the number of occurrences, and a
-  /// message.
+  /// message. Messages name points by the source's pedigree ids, if it has any, not by their ids.
   int GetNumberOfProblems();
   int GetProblemKind(int problem);
   int GetProblemDomain(int problem);

@@ -8,12 +8,13 @@ namespace homeomorphism
 namespace
 {
 
-std::string List(const std::vector<int>& ids)
+std::string List(const std::vector<int>& ids, const std::vector<std::string>& names)
 {
   std::string list;
   for (const int id : ids)
   {
-    list += (list.empty() ? "" : ", ") + std::to_string(id);
+    const std::size_t i = static_cast<std::size_t>(id);
+    list += (list.empty() ? "" : ", ") + (i < names.size() ? names[i] : std::to_string(id));
   }
   return list;
 }
@@ -83,11 +84,11 @@ FigureProblem::Remedy FigureProblem::GetRemedy() const
   return Remedy::None;
 }
 
-std::string FigureProblem::Message() const
+std::string FigureProblem::Message(const std::vector<std::string>& names) const
 {
   const std::string where =
     this->Domain < 0 ? "" : (this->Domain == 0 ? " in the source" : " in the target");
-  const std::string points = List(this->Points);
+  const std::string points = List(this->Points, names);
   const std::string loop = this->Loop < 0 ? "A loop" : "Loop " + std::to_string(this->Loop);
   std::string text;
   switch (this->What)

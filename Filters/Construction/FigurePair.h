@@ -106,8 +106,9 @@ struct FigureProblem
   int Count = 1;
 
   Remedy GetRemedy() const;
-  /// One sentence: what is wrong, where, and what to do.
-  std::string Message() const;
+  /// One sentence: what is wrong, where, and what to do. Points have their names, if there are any,
+  /// or else their numbers.
+  std::string Message(const std::vector<std::string>& names = {}) const;
 };
 
 using FigureProblems = std::vector<FigureProblem>;

@@ -19,6 +19,7 @@ from .mapping import PointMap, run, set_up
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 
 TILE = 2048
+LARGEST = 2**32  # pixels of a result
 PILLOW_FORMATS = {"jpg": "JPEG", "jpeg": "JPEG", "png": "PNG", "bmp": "BMP", "webp": "WEBP"}
 OPAQUE = ("jpg", "jpeg", "ppm", "pgm", "pnm", "bmp")
 
@@ -101,6 +102,12 @@ class Raster:
     def window(self, columns, rows):
         return self.pixels[slice(*rows), slice(*columns)]
 
+    def means(self, columns, rows, factor):
+        """Means of squares of `factor` by `factor` pixels, where columns and rows count squares."""
+        pixels = self.window(*(numpy.multiply(ends, factor) for ends in (columns, rows)))
+        squares = pixels.reshape(len(pixels) // factor, factor, -1, factor, self.bands).mean(axis=(1, 3))
+        return (numpy.rint(squares) if self.dtype.kind in "iu" else squares).astype(self.dtype)
+
     def all(self):
         return self.window((0, self.grid.width), (0, self.grid.height))
 
@@ -128,6 +135,30 @@ class GdalRaster(Raster):
     def window(self, columns, rows):
         pixels = self.file.read(window=(rows, columns))
         return numpy.moveaxis(pixels, 0, 2) if self.palette is None else self.palette[pixels[0]]
+
+    def means(self, columns, rows, factor):
+        if self.palette is not None:
+            return super().means(columns, rows, factor)
+        window = tuple(tuple(int(end) * factor for end in ends) for ends in (rows, columns))
+        shape = self.bands, rows[1] - rows[0], columns[1] - columns[0]
+        average = import_extra("rasterio", "Reading a raster").enums.Resampling.average
+        return numpy.moveaxis(self.file.read(window=window, out_shape=shape, resampling=average), 0, 2)
+
+
+class ReducedRaster(Raster):
+    """A raster whose pixels are the means of squares of another's. Less than a square at the end repeats the last."""
+
+    def __init__(self, raster, factor):
+        vars(self).update(vars(raster), full=raster, factor=factor)
+        width, height = (-(-n // factor) for n in raster.grid.size)
+        self.grid = replace(raster.grid, width=width, height=height, steps=factor * raster.grid.steps,
+                            first=raster.grid.at(numpy.full(2, (factor - 1) / 2)))
+
+    def window(self, columns, rows):
+        whole = [n // self.factor for n in self.full.grid.size]
+        parts = [(min(begin, n - 1), min(end, n)) for (begin, end), n in zip((columns, rows), whole)]
+        missing = [(0, numpy.diff(asked)[0] - numpy.diff(part)[0]) for asked, part in zip((columns, rows), parts)]
+        return numpy.pad(self.full.means(*parts, self.factor), (*missing[::-1], (0, 0)), "edge")
 
 
 def read(input):
@@ -246,12 +277,18 @@ class Warp:
             if abs(factor - 1) >= 0.01 or not numpy.array_equal(numpy.abs(grid.steps), numpy.diag(spacing)):
                 spacing = numpy.full(2, factor * numpy.hypot(*(grid.size * spacing)) / numpy.hypot(*grid.size))
             spacing = numpy.full(2, resolution) if resolution else spacing
+            numbers = [length / step for length, step in zip((high - low).tolist(), spacing.tolist())]
+            if math.prod(numbers) > LARGEST:
+                raise Failure("The result would have {:.6g} x {:.6g} pixels, more than 2^32: use a larger "
+                              "--resolution, or --size.".format(*numbers), USAGE)
             # A rounding error must not add a pixel.
-            size = [int(math.ceil(n - 1e-6)) + 1 for n in (high - low) / spacing]
+            size = [int(math.ceil(n - 1e-6)) + 1 for n in numbers]
         return Grid(*size, numpy.array([low[0], high[1]]), numpy.diag(spacing * [1, -1]), crs, True)
 
     def tiles(self, raster, grid, text="Warping"):
         """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
+        factor = self._find_reduction(raster.grid, grid)
+        raster = ReducedRaster(raster, factor) if factor > 1 else raster
         tiles = [(c, r) for r in range(0, grid.height, TILE) for c in range(0, grid.width, TILE)]
         for column, row in progress(tiles, text) if text else tiles:
             tile = grid.part(column, row, min(TILE, grid.width - column), min(TILE, grid.height - row))
@@ -283,6 +320,16 @@ class Warp:
         if raster.nodata is not None:
             mask &= arrays["Known"][:, :, 0] > 1 - 1e-9
         return arrays["Pixels"], mask
+
+    def _find_reduction(self, own, grid):
+        """How many pixels of a raster are as wide as a pixel of a grid: the whole part of the median."""
+        ends = [(numpy.arange(32) + 0.5) / 32 * n - 0.5 for n in grid.size]
+        pixels = numpy.stack(numpy.meshgrid(*ends), axis=2).reshape(-1, 2)
+        corners = [own.pixels(self._map(grid.at(pixels + step), False)) for step in ([0, 0], [1, 0], [0, 1])]
+        (a, b), (c, d) = ((corner - corners[0]).T for corner in corners[1:])
+        areas = numpy.abs(a * d - b * c)
+        areas = areas[numpy.isfinite(areas)]
+        return int(min(numpy.sqrt(numpy.median(areas)) + 0.01, *own.size)) if len(areas) else 1
 
     def _find_window(self, grid, tile):
         """The first pixel (column, row) that a tile needs of a raster, and the end."""

@@ -9,6 +9,7 @@ from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from .arrays import as_cells, as_points, choose, points_of, update, values_of
@@ -125,6 +126,7 @@ def isomorphic_triangulation(
     maximum_added_points: Optional[int] = None,
     maximum_triangle_size: float = 0.0,
     leave_out_conflicting_segments: bool = False,
+    names: Sequence[str] = (),
 ) -> IsomorphicTriangulation:
     """Triangulates two drawings of a figure with the same triangles.
 
@@ -150,6 +152,8 @@ def isomorphic_triangulation(
         Triangles that are larger, as a share of their domain, are divided. 0: none is.
     leave_out_conflicting_segments : bool
         Leave out segments that do not agree with shorter ones instead of raising ValueError.
+    names : sequence of str
+        What messages call the first points; the others are called by their numbers.
 
     Raises ValueError with a message that names the points if the figures have no such triangulations.
     """
@@ -158,7 +162,7 @@ def isomorphic_triangulation(
             isomorphic_triangulation, segments=segments, quality=quality,
             target_minimum_angle=target_minimum_angle, maximum_added_points=maximum_added_points,
             maximum_triangle_size=maximum_triangle_size,
-            leave_out_conflicting_segments=leave_out_conflicting_segments))
+            leave_out_conflicting_segments=leave_out_conflicting_segments, names=names))
     if domain == "automatic":
         domain = "outline" if len(outlines) else "frame"
     algorithm = vtkIsomorphicTriangulation()
@@ -171,6 +175,10 @@ def isomorphic_triangulation(
         figure.SetPoints(vtk_points)
         figure.SetLines(_cells(segments, len(points), "segments"))
         figure.SetPolys(_cells(outlines, len(points), "outlines"))
+        called = vtkStringArray()
+        for name in names:
+            called.InsertNextValue(name)
+        figure.GetPointData().SetPedigreeIds(called)
         algorithm.SetInputData(port, figure)
     if frame is not None:
         algorithm.SetSourceFrame(*frame[0])

@@ -276,6 +276,7 @@ def triangulate(marks, name, grids, **more):
         if grid or (side == 0 and marks.image_coordinates):
             points[side] = (points[side] + (marks.origin if grid else 0)) * [1, -1]
     try:
+        more["names"] = marks.names
         if not grids[0] or more.get("outlines") or more.get("domain") not in (None, "automatic", "frame"):
             made = isomorphic_triangulation(*points, **more)
         elif grids[1]:

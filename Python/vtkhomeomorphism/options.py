@@ -12,7 +12,7 @@ import click
 from . import pair
 from .arrays import BENDINGS, CENTERS, SYSTEMS
 from .files import PICTURES, USAGE, VECTORS, Failure, Input, Output, format_of, set_quiet
-from .images import read
+from .images import LARGEST, read
 from .landmarks import is_landmark_file
 
 
@@ -34,7 +34,10 @@ class Size(click.ParamType):
     def convert(self, value, param, context):
         if not re.fullmatch(r"[1-9]\d{0,4}x[1-9]\d{0,4}", value):
             self.fail(f"{value} is not WIDTHxHEIGHT in pixels, each from 1 to 99999, such as 640x480", param, context)
-        return tuple(map(int, value.split("x")))
+        width, height = map(int, value.split("x"))
+        if width * height > LARGEST:
+            self.fail(f"{value} are more than 2^32 pixels", param, context)
+        return width, height
 
 
 POSITIVE = Number(min=0, min_open=True)

@@ -105,6 +105,19 @@ def test_pixels_own_their_area(dhm, image):
         assert numpy.abs(rgba[:, :, :3] - expected)[inside].max() <= 0.5 + 1e-6
 
 
+@pytest.mark.parametrize("name", ["image.png", "image.tif"])
+def test_smaller_images_have_means(dhm, pair, image, name):
+    Image.fromarray(image).save(dhm.path("image.tif"))
+    smaller = pair._replace(target=(pair.source - 1) / 3)
+    out = read(warp(dhm, smaller, "--size", "8x6", image=name, output="out.ppm"))
+    numpy.testing.assert_allclose(out, image.reshape(6, 3, 8, 3, 3).mean(axis=(1, 3)), rtol=0, atol=1)
+    # Parts of squares at the end.
+    out = read(warp(dhm, pair._replace(target=(pair.source - [2, 0]) / 5), "--size", "5x4", image=name, output="out.png"))
+    assert out.shape == (4, 5, 4)
+    numpy.testing.assert_allclose(out[:3, :4, :3].astype(float),
+                                  image[:15, :20].reshape(3, 5, 4, 5, 3).mean(axis=(1, 3)), rtol=0, atol=1)
+
+
 def test_tiles_are_seamless(dhm, monkeypatch):
     """A warp in small tiles, each from its own window of the image, is that of the whole image."""
     from vtkhomeomorphism import images, meshes, pair as pairs
@@ -365,5 +378,10 @@ def test_geotiff_refusals(dhm, shift):
     write_geotiff(dhm.path("rgb.tif"), rgb, 3384500, 6673000, 10)
     dhm.refuse(USAGE, "warp", "shift.json", "rgb.tif", "-o", "new.png", says=".tif")
     dhm.refuse(USAGE, "warp", "shift.json", "rgb.tif", "-o", "new.tif", "--crs", "EPSG:0", says="EPSG:0")
+    dhm.refuse(USAGE, "warp", "shift.json", "rgb.tif", "-o", "new.tif", "--size", "70000x70000", says="2^32")
+    for tiny in ("1e-3", "1e-9", "1e-320"):
+        dhm.refuse(USAGE, "warp", "shift.json", "rgb.tif", "-o", "new.tif", "--resolution", tiny, says="--resolution")
+    write_geotiff(dhm.path("other.tif"), rgb, 3384500, 6673000, 10, crs="EPSG:3067")
+    dhm.refuse(REFUSED, "warp", "shift.json", "other.tif", "-o", "new.tif", says=("EPSG:3067", "EPSG:2393"))
     write_geotiff(dhm.path("away.tif"), rgb, 0, 0, 10)
     dhm.refuse(REFUSED, "warp", "shift.json", "away.tif", "-o", "new.tif", says="do not overlap")

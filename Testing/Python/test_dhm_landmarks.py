@@ -185,6 +185,8 @@ def test_conflicts_and_necessary_points_are_named(dhm):
     dhm.path("lines.txt").write_text("0 1\n2 3\n")
     words = ("triangulate", "marks.csv", "--lines", "lines.txt", "-o", "pair.json")
     dhm.refuse(REFUSED, *words, says=("marks.csv", "cross"))
+    write_landmarks(dhm.path("twice.csv"), *2 * [source[[0, 1, 2, 3, 1]]], ["a", "b", "c", "d", "e"])
+    dhm.refuse(REFUSED, "triangulate", "twice.csv", "--without", "a", "-o", "new.json", says=": b, e.")
     assert "line 1 is left out" in dhm(*words, "--leave-out-conflicts").err
     # Landmarks that change places on a line, between others: not without a point.
     random = numpy.random.default_rng(2)

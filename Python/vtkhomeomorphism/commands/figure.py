@@ -79,7 +79,7 @@ def command(inputs, output, settings, all_systems, grid, image, close_up, width)
                     x, y = PointMap(both, panels[1][2], inverse=True).map_points(numpy.array([[x, y]]))[0][0]
                 panel.set(xlim=(x - r, x + r), ylim=(y - r, y + r))
             if picture:
-                panel.imshow(picture[0], extent=picture[1], interpolation="nearest", cmap="gray", vmin=0,
+                panel.imshow(picture[0], extent=picture[1], interpolation="antialiased", cmap="gray", vmin=0,
                              vmax=images.brightest(picture[0].dtype))
             plots.draw_polygons(panel, both.meshes[side], points[side], facecolors="none", edgecolors=mesh_color,
                                 linewidths=0.7 * (1 + row))

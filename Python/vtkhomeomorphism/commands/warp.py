@@ -61,6 +61,10 @@ def command(inputs, output, settings, inverse, size, resolution, like, crs, back
         if placed and output.format not in ("tif", "tiff"):
             raise Failure(f"A georeferenced raster becomes a .tif, not a .{output.format}.", USAGE)
         grid = scan or (own if placed else sized or own)
+        expected = both.crs(inverse)[0]
+        if own.crs and expected and own.crs != expected:
+            raise Failure(f"{file.name} is in the coordinate reference system {own.crs.to_string()}, but the map is from "
+                          f"{expected}: reproject it first.")
         if like:
             with Input(like) as model:
                 grid = images.read(model).grid
