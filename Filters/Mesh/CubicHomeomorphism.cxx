@@ -134,9 +134,8 @@ void CubicHomeomorphism::SetPoints(Domain from, TriangleIndex triangle, int begi
   std::fill(batch.Triangles + begin, batch.Triangles + end, number);
 }
 
-void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch) const
+void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch, CubicTriangle& prepared) const
 {
-  CubicTriangle prepared = this->Map->Prepare();
   if (from == Domain::Target)
   {
     this->Map->FindPreimages(batch, prepared);
@@ -173,7 +172,8 @@ bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Bar
   const double* const arrays[3] = { coordinates[0], coordinates[1], coordinates[2] };
   const double* const frames[2] = { coordinates[3], coordinates[4] };
   this->SetPoints(from, triangle, 0, 1, arrays, frames, batch);
-  this->MapPoints(from, batch);
+  CubicTriangle prepared = this->Map->Prepare();
+  this->MapPoints(from, batch, prepared);
   image = { batch.ImageX[0], batch.ImageY[0] };
   return batch.Triangles[0] >= 0;
 }

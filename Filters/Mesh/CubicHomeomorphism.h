@@ -48,8 +48,8 @@ public:
     const double* const inFrame[2], CubicBatch& batch) const;
 
   /// Maps the points of a batch to the plane of the other mesh. Their triangles become the map's,
-  /// -1 where there is no image.
-  void MapPoints(Domain from, CubicBatch& batch) const;
+  /// -1 where there is no image. @a prepared is the map's.
+  void MapPoints(Domain from, CubicBatch& batch, CubicTriangle& prepared) const;
 
   /// The image of one point, to the same bits. Returns false if there is none.
   bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,

@@ -77,11 +77,13 @@ void CubicTriangle::Set(int triangle)
   {
     return;
   }
-  if (!this->Triangles)
+  std::unique_ptr<Triangle>& kept =
+    this->Triangles[static_cast<std::size_t>(triangle % NumberOfTriangles)];
+  if (!kept)
   {
-    this->Triangles = std::make_unique<std::array<Triangle, NumberOfTriangles>>();
+    kept = std::make_unique<Triangle>();
   }
-  this->Now = &(*this->Triangles)[static_cast<std::size_t>(triangle % NumberOfTriangles)];
+  this->Now = kept.get();
   if (this->Now->Number == triangle)
   {
     return;
@@ -104,6 +106,8 @@ void CubicTriangle::Set(int triangle)
   }
   for (int c = 0; c < 3; ++c)
   {
+    this->Now->Corners[c].IsMade = false;
+    this->Now->Sides[c][0].IsMade = this->Now->Sides[c][1].IsMade = false;
     this->Now->InRings[c] =
       this->Template.GetKind(pair.Triangles[triangle][c]) != VertexKind::Differentiable;
   }
@@ -272,75 +276,106 @@ Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2*
 }
 
 //------------------------------------------------------------------------------
+const CubicTriangle::CornerTurn& CubicTriangle::GetCorner(int c)
+{
+  CornerTurn& corner = this->Now->Corners[c];
+  if (corner.IsMade)
+  {
+    return corner;
+  }
+  constexpr double eighteenth = 1.0 / 18.0;
+  corner.IsMade = true;
+  const TriangleCut& cut = this->Now->Cut;
+  const int id = this->Template.GetPair().Triangles[this->Now->Number][c];
+  const Matrix2 turn = this->Template.GetDerivative(id) - this->Now->Affine;
+  const Vector2 a = cut.GetNode(9 + 2 * PreviousCorner(c), c);
+  const Vector2 b = cut.GetNode(10 + 2 * NextCorner(c), c);
+  const double inverse = 1.0 / Cross(a, b);
+  const Vector2 imageOfA = turn * a;
+  const Vector2 imageOfB = turn * b;
+  const double product = 3.0 * Dot(a, b);
+  corner.Turn = turn;
+  corner.ByFirst = { inverse * b.y, -inverse * b.x };
+  corner.BySecond = { -inverse * a.y, inverse * a.x };
+  corner.BesideFirst = eighteenth * (imageOfB + (2.0 - product / Dot(a, a)) * imageOfA);
+  corner.BesideSecond = eighteenth * (imageOfA + (2.0 - product / Dot(b, b)) * imageOfB);
+  return corner;
+}
+
+//------------------------------------------------------------------------------
+const CubicTriangle::SideTurn& CubicTriangle::GetSide(int c, bool isFirst)
+{
+  SideTurn& side = this->Now->Sides[c][isFirst ? 0 : 1];
+  if (side.IsMade)
+  {
+    return side;
+  }
+  side.IsMade = true;
+  const TriangleCut& cut = this->Now->Cut;
+  const int k = isFirst ? PreviousCorner(c) : NextCorner(c);
+  const EdgeTurn& edge = this->GetEdge(k);
+  const int id = this->Template.GetPair().Triangles[this->Now->Number][c];
+  const Vector2 tangent = (isFirst ? 1.0 : -1.0) * cut.Along[k];
+  const Vector2 normal = Normal(cut.Along[k]);
+  const double inverseRadius = 1.0 / cut.Radii[c];
+  const double mu = cut.Heights[k] * inverseRadius;
+  const double share = 1.0 / (1.0 + mu * mu);
+  side.Turn = this->Template.GetDerivative(id) - this->Now->Affine;
+  const Vector2 along = cut.Radii[c] * (side.Turn * tangent);
+  const Vector2 across = cut.Heights[k] * (side.Turn * normal);
+  side.ByS = inverseRadius * tangent;
+  side.ByT = edge.InverseHeight * normal;
+  side.BesideDiagonal = ((mu * mu * share) / 6.0) * along + (1.0 / 9.0 - share / 6.0) * across;
+  side.BesideEdge = (1.0 / 18.0) * (across + edge.Turn);
+  side.OfEdge = edge.Turn;
+  return side;
+}
+
+//------------------------------------------------------------------------------
 // Beside a corner whose derivative differs from L by B, the map is L x + l_0^2 B x with bubbles
 // that make the normal derivatives on the corner's edges linear. Elements with a right angle have
 // the part of the edge besides.
 Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2* derivative)
 {
-  constexpr double eighteenth = 1.0 / 18.0;
   const int c = number / 3;
-  const TriangleCut& cut = this->Now->Cut;
-  const Vector2 x = point - cut.Corners[c];
-  const int id = this->Template.GetPair().Triangles[this->Now->Number][c];
-  const Matrix2 turn = this->Template.GetDerivative(id) - this->Now->Affine;
-  const Vector2 linear = turn * x;
+  const Vector2 x = point - this->Now->Cut.Corners[c];
   if (number % 3 == 1)
   {
-    const Vector2 a = cut.GetNode(9 + 2 * PreviousCorner(c), c);
-    const Vector2 b = cut.GetNode(10 + 2 * NextCorner(c), c);
-    const double inverse = 1.0 / Cross(a, b);
-    const double first = inverse * Cross(x, b);
-    const double second = inverse * Cross(a, x);
+    const CornerTurn& corner = this->GetCorner(c);
+    const double first = Dot(corner.ByFirst, x);
+    const double second = Dot(corner.BySecond, x);
     const double l = 1.0 - first - second;
-    const Vector2 imageOfA = turn * a;
-    const Vector2 imageOfB = turn * b;
-    const double product = 3.0 * Dot(a, b);
-    const Vector2 besideA = eighteenth * (imageOfB + (2.0 - product / Dot(a, a)) * imageOfA);
-    const Vector2 besideB = eighteenth * (imageOfA + (2.0 - product / Dot(b, b)) * imageOfB);
+    const Vector2 linear = corner.Turn * x;
     const EdgeBubbles bubbles({ l, first, second });
     if (derivative)
     {
-      const Vector2 byFirst{ inverse * b.y, -inverse * b.x };
-      const Vector2 bySecond{ -inverse * a.y, inverse * a.x };
-      const std::array<Vector2, 3> by{ -1.0 * (byFirst + bySecond), byFirst, bySecond };
-      *derivative = *derivative + (l * l) * turn + OuterProduct((2.0 * l) * linear, by[0]) +
-        OuterProduct(besideA, bubbles.GetGradient(2, by)) +
-        OuterProduct(besideB, bubbles.GetGradient(1, by));
+      const std::array<Vector2, 3> by{ -1.0 * (corner.ByFirst + corner.BySecond), corner.ByFirst,
+        corner.BySecond };
+      *derivative = *derivative + (l * l) * corner.Turn + OuterProduct((2.0 * l) * linear, by[0]) +
+        OuterProduct(corner.BesideFirst, bubbles.GetGradient(2, by)) +
+        OuterProduct(corner.BesideSecond, bubbles.GetGradient(1, by));
     }
-    return (l * l) * linear + bubbles[2] * besideA + bubbles[1] * besideB;
+    return (l * l) * linear + bubbles[2] * corner.BesideFirst + bubbles[1] * corner.BesideSecond;
   }
   // The vertex, the edge point and the inner point are corners 0, 1 and 2; s runs along the edge
   // and t across, from 0 to 1.
-  const bool isFirst = number % 3 == 0;
-  const int k = isFirst ? PreviousCorner(c) : NextCorner(c);
-  const EdgeTurn& edge = this->GetEdge(k);
-  const Vector2 tangent = (isFirst ? 1.0 : -1.0) * cut.Along[k];
-  const Vector2 normal = Normal(cut.Along[k]);
-  const double inverseRadius = 1.0 / cut.Radii[c];
-  const double s = Dot(tangent, x) * inverseRadius;
-  const double t = Dot(normal, x) * edge.InverseHeight;
-  const double mu = cut.Heights[k] * inverseRadius;
-  const double share = 1.0 / (1.0 + mu * mu);
-  const Vector2 along = cut.Radii[c] * (turn * tangent);
-  const Vector2 across = cut.Heights[k] * (turn * normal);
-  const Vector2 besideDiagonal =
-    ((mu * mu * share) / 6.0) * along + (1.0 / 9.0 - share / 6.0) * across;
-  const Vector2 besideEdge = eighteenth * (across + edge.Turn);
+  const SideTurn& side = this->GetSide(c, number % 3 == 0);
+  const double s = Dot(side.ByS, x);
+  const double t = Dot(side.ByT, x);
   const double l = 1.0 - s;
+  const Vector2 linear = side.Turn * x;
   const EdgeBubbles bubbles({ l, s - t, t });
   if (derivative)
   {
-    const Vector2 byS = inverseRadius * tangent;
-    const Vector2 byT = edge.InverseHeight * normal;
-    const std::array<Vector2, 3> by{ -1.0 * byS, byS - byT, byT };
-    const Vector2 own =
-      (s - t) * ((2.0 * t) * byS + (s - 3.0 * t) * byT) + (1.0 / 9.0) * bubbles.GetGradient(0, by);
-    *derivative = *derivative + (l * l) * turn + OuterProduct((2.0 * l) * linear, by[0]) +
-      OuterProduct(besideDiagonal, bubbles.GetGradient(1, by)) +
-      OuterProduct(besideEdge, bubbles.GetGradient(2, by)) + OuterProduct(edge.Turn, own);
+    const std::array<Vector2, 3> by{ -1.0 * side.ByS, side.ByS - side.ByT, side.ByT };
+    const Vector2 own = (s - t) * ((2.0 * t) * side.ByS + (s - 3.0 * t) * side.ByT) +
+      (1.0 / 9.0) * bubbles.GetGradient(0, by);
+    *derivative = *derivative + (l * l) * side.Turn + OuterProduct((2.0 * l) * linear, by[0]) +
+      OuterProduct(side.BesideDiagonal, bubbles.GetGradient(1, by)) +
+      OuterProduct(side.BesideEdge, bubbles.GetGradient(2, by)) + OuterProduct(side.OfEdge, own);
   }
-  return (l * l) * linear + bubbles[1] * besideDiagonal + bubbles[2] * besideEdge +
-    ((s - t) * (s - t) * t + (1.0 / 9.0) * bubbles[0]) * edge.Turn;
+  return (l * l) * linear + bubbles[1] * side.BesideDiagonal + bubbles[2] * side.BesideEdge +
+    ((s - t) * (s - t) * t + (1.0 / 9.0) * bubbles[0]) * side.OfEdge;
 }
 
 } // namespace homeomorphism

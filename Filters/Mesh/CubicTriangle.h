@@ -69,12 +69,43 @@ private:
     double StripShare = 0.0;
   };
 
+  /// What it needs in the middle element of a corner. The vertex is corner 0 of the element.
+  struct CornerTurn
+  {
+    bool IsMade = false;
+    /// By how much the derivative at the vertex differs from the affine one.
+    Matrix2 Turn;
+    /// The gradients of the barycentric coordinates of corners 1 and 2.
+    Vector2 ByFirst;
+    Vector2 BySecond;
+    /// The factors of the bubbles beside the edges from the vertex to them.
+    Vector2 BesideFirst;
+    Vector2 BesideSecond;
+  };
+
+  /// What it needs in an element of a corner with a right angle.
+  struct SideTurn
+  {
+    bool IsMade = false;
+    Matrix2 Turn;
+    /// The gradients of s along the edge and t across, from 0 to 1.
+    Vector2 ByS;
+    Vector2 ByT;
+    /// The factors of the bubbles beside the diagonal and beside the edge, and that of the part
+    /// that the edge has.
+    Vector2 BesideDiagonal;
+    Vector2 BesideEdge;
+    Vector2 OfEdge;
+  };
+
   void Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin);
   /// Sets LastElement to that which contains a point. Null if the map is in closed form there.
   const Element* Find(const Vector2& point);
   /// Where there is no element. @a derivative may be null.
   Vector2 MapInClosedForm(const Vector2& point, Matrix2* derivative);
   const EdgeTurn& GetEdge(int k);
+  const CornerTurn& GetCorner(int c);
+  const SideTurn& GetSide(int c, bool isFirst);
   /// The template's map less the affine one. Adds its derivative to @a derivative unless null.
   Vector2 DeviateInStrip(const Vector2& point, int number, Matrix2* derivative);
   Vector2 DeviateInCorner(const Vector2& point, int number, Matrix2* derivative);
@@ -88,19 +119,22 @@ private:
     TriangleCut Cut;
     std::array<std::uint8_t, 3> InRings{};
     std::array<EdgeTurn, 3> Edges;
+    std::array<CornerTurn, 3> Corners;
+    /// Beside the edge that leaves each corner, and beside that which arrives at it.
+    std::array<std::array<SideTurn, 2>, 3> Sides;
     /// Those that are made, a whole triangle's alone, and where each of a cut one's is, -1 if
     /// nowhere.
     std::vector<Element> Elements;
     std::array<std::int8_t, TriangleCut::NumberOfElements> Made;
   };
-  /// Points in a row, and Newton's steps, come back to the same few triangles.
-  static constexpr int NumberOfTriangles = 8;
+  /// Points in a row, Newton's steps, and the next rows come back to the same triangles.
+  static constexpr int NumberOfTriangles = 64;
 
   const CubicTemplate& Template;
   const BendingSolution* Bending;
   int LastElement = 0;
-  /// The last triangles that were set, by the ends of their numbers; made when the first is set.
-  std::unique_ptr<std::array<Triangle, NumberOfTriangles>> Triangles;
+  /// The last triangles that were set, by the ends of their numbers; made when they are set.
+  std::array<std::unique_ptr<Triangle>, NumberOfTriangles> Triangles;
   Triangle* Now = nullptr;
 };
 

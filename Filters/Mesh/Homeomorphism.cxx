@@ -435,7 +435,12 @@ int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
       batch.Triangles[other] = -1;
       batch.ImageX[other] = batch.ImageY[other] = heights[other] = 0.0;
     });
-  this->Cubic->MapPoints(this->ToCubic(from), batch);
+  if (block.Cubic != this->Cubic)
+  {
+    block.Cubic = this->Cubic;
+    block.PreparedCubics = std::make_shared<CubicTriangle>(this->Cubic->GetMap().Prepare());
+  }
+  this->Cubic->MapPoints(this->ToCubic(from), batch, *block.PreparedCubics);
   target.FromNormalized(batch.ImageX, batch.ImageY, heights, block.Count, block.Images);
   int missing = 0;
   for (int i = 0; i < block.Count; ++i)

@@ -13,8 +13,13 @@
 #include "Kernel/Simd/Vectorize.h"
 #include "Kernel/SmoothChart.h"
 
+#include <memory>
+
 namespace homeomorphism
 {
+
+class CubicHomeomorphism;
+class CubicTriangle;
 
 /// A point of a triangulation.
 struct SurfacePoint
@@ -66,6 +71,10 @@ struct PointBlock
   double Second[Size];
 
   double PointBuffer[Capacity][3];
+
+  /// The Cubic map of the last points, and what is kept of triangles for those in the next block.
+  std::shared_ptr<const CubicHomeomorphism> Cubic;
+  std::shared_ptr<CubicTriangle> PreparedCubics;
 
   SurfacePoint GetSurfacePoint(int i) const
   {
