@@ -97,6 +97,9 @@ public:
     }
     else
     {
+      // A last step out of the bracket is one to its end, up to rounding.
+      below = done > 0.0 ? lower : middle;
+      above = done > 0.0 ? upper : middle;
       done = middle == lower ? 1.0 : done;
     }
     done = middle == upper ? 1.0 : done;

@@ -777,7 +777,8 @@ bool CubicMap::FindByWalking(
   {
     prepared.Set(at);
     Vector2 move;
-    residual = prepared.GetResidual(from, image - pair.Target[pair.Triangles[at][0]], move);
+    residual = prepared.GetResidual(
+      from, image - pair.Target[pair.Triangles[at][0]], at == lastTriangle, move);
     const double now = MaxNorm(residual);
     if (!(now < size))
     {
@@ -800,12 +801,13 @@ bool CubicMap::FindByWalking(
     }
     lastTriangle = at;
     lastElement = prepared.GetLastElement();
-    const Vector2 aim = from + move;
-    from = aim;
-    this->Walk(at, from);
-    // Not where the walk ended at the boundary.
-    const bool isInside = at == t && from.x == aim.x && from.y == aim.y;
-    if (isInside && isShort && next <= 1e-3 * this->ResidualTolerance)
+    from = from + move;
+    const bool isInside = FindExit(prepared.GetCorners(), from) < 0;
+    if (!isInside)
+    {
+      this->Walk(at, from);
+    }
+    if (isInside && isShort && next <= 0.05 * this->ResidualTolerance)
     {
       x = from;
       size = next;

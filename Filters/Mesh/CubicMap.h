@@ -75,7 +75,10 @@ public:
   const std::vector<double>& GetCertificates() const { return this->Certificates; }
 
   /// What the functions below need to be fast for many points, one triangle after another.
-  CubicTriangle Prepare() const { return CubicTriangle(*this->Template, this->Bending.get()); }
+  CubicTriangle Prepare(std::size_t kept = CubicTriangle::FewTriangles) const
+  {
+    return CubicTriangle(*this->Template, this->Bending.get(), kept);
+  }
 
   /// What MapPoints reads of a triangle, null if little.
   const CubicNet* GetNet(int triangle) const

@@ -23,8 +23,7 @@ class EdgeBubbles
 {
 public:
   explicit EdgeBubbles(const Barycentric& l)
-    : Least(l[0] <= l[1] ? (l[0] <= l[2] ? 0 : 2) : (l[1] <= l[2] ? 1 : 2))
-    , M(l[Least])
+    : M(std::min(std::min(l[0], l[1]), l[2]))
     , N{ l[0] - M, l[1] - M, l[2] - M }
   {
   }
@@ -36,20 +35,27 @@ public:
     return this->M * (18.0 * i * j + this->M * (9.0 * (i + j) + 6.0 * this->M));
   }
 
-  /// By the barycentric coordinates, which have the gradients @a by.
-  Vector2 GetGradient(int k, const std::array<Vector2, 3>& by) const
+  /// By the barycentric coordinates, as if they were independent.
+  Barycentric GetDerivatives(int k) const
   {
     const double i = this->N[NextCorner(k)];
     const double j = this->N[PreviousCorner(k)];
     const double byI = this->M * (18.0 * j + 9.0 * this->M);
     const double byJ = this->M * (18.0 * i + 9.0 * this->M);
-    const double byM = 18.0 * (i * j + this->M * (i + j + this->M));
-    return byI * by[NextCorner(k)] + byJ * by[PreviousCorner(k)] +
-      (byM - byI - byJ) * by[this->Least];
+    const double rest = 18.0 * (i * j + this->M * (i + j + this->M)) - byI - byJ;
+    // The least coordinate is subtracted from the others.
+    const bool is0 = this->N[0] <= 0.0;
+    const bool is1 = !is0 && this->N[1] <= 0.0;
+    Barycentric by{ is0 ? rest : 0.0, is1 ? rest : 0.0, is0 || is1 ? 0.0 : rest };
+    by[NextCorner(k)] += byI;
+    by[PreviousCorner(k)] += byJ;
+    return by;
   }
 
+  /// Negative outside the element.
+  double GetLeastCoordinate() const { return this->M; }
+
 private:
-  int Least;
   double M;
   std::array<double, 3> N;
 };
@@ -78,7 +84,7 @@ void CubicTriangle::Set(int triangle)
     return;
   }
   std::unique_ptr<Triangle>& kept =
-    this->Triangles[static_cast<std::size_t>(triangle % NumberOfTriangles)];
+    this->Triangles[static_cast<std::size_t>(triangle) % this->Triangles.size()];
   if (!kept)
   {
     kept = std::make_unique<Triangle>();
@@ -169,19 +175,31 @@ Vector2 CubicTriangle::Map(const Vector2& point)
 }
 
 //------------------------------------------------------------------------------
-Vector2 CubicTriangle::GetResidual(const Vector2& point, const Vector2& image, Vector2& step)
+Vector2 CubicTriangle::GetResidual(
+  const Vector2& point, const Vector2& image, bool isNear, Vector2& step)
 {
-  const Element* element = this->Find(point);
-  if (element)
-  {
-    return element->Net.GetResidual(element->Frame(point - element->SourceOrigin), element->Points,
-      image - element->TargetOrigin, step);
-  }
   Matrix2 derivative;
-  const Vector2 residual = image - this->MapInClosedForm(point, &derivative);
-  const double determinant = derivative.Determinant();
-  step = { Cross(residual, derivative.ImageOfY) / determinant,
-    Cross(derivative.ImageOfX, residual) / determinant };
+  Vector2 residual;
+  const int last = this->LastElement;
+  const bool isTried = isNear && !this->Bending && last < TriangleCut::FirstMiddle &&
+    !(last < TriangleCut::FirstStrip && this->Now->InRings[TriangleCut::GetOrigin(last)]);
+  if (isTried)
+  {
+    residual = image - this->MapInClosedForm(point, &derivative);
+  }
+  if (!isTried || !(this->LeastCoordinate >= 0.0))
+  {
+    const Element* element = this->Find(point);
+    if (element)
+    {
+      return element->Net.GetResidual(element->Frame(point - element->SourceOrigin),
+        element->Points, image - element->TargetOrigin, step);
+    }
+    residual = image - this->MapInClosedForm(point, &derivative);
+  }
+  const double inverse = 1.0 / derivative.Determinant();
+  step = { inverse * Cross(residual, derivative.ImageOfY),
+    inverse * Cross(derivative.ImageOfX, residual) };
   return residual;
 }
 
@@ -261,16 +279,19 @@ Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2*
   const bool isUpper = (number - TriangleCut::FirstStrip) % 2 == 1;
   const EdgeBubbles bubbles(
     isUpper ? Barycentric{ 1.0 - t, t - s, s } : Barycentric{ 1.0 - s, s - t, t });
+  this->LeastCoordinate = bubbles.GetLeastCoordinate();
   const double factor = (isUpper ? 1.0 : -1.0) / 6.0 * edge.StripShare;
   const double rest = 1.0 - t;
   if (derivative)
   {
-    const Vector2 byS = edge.InverseStrip * cut.Along[k];
-    const Vector2 byT = edge.InverseHeight * Normal(cut.Along[k]);
-    const Vector2 bubble = isUpper ? bubbles.GetGradient(1, { -1.0 * byT, byT - byS, byS })
-                                   : bubbles.GetGradient(1, { -1.0 * byS, byS - byT, byT });
+    const Barycentric by = bubbles.GetDerivatives(1);
+    const double first = by[1] - by[0];
+    const double second = by[2] - by[1];
+    const double byS = factor * (isUpper ? second : first) * edge.InverseStrip;
+    const double byT =
+      (rest * (1.0 - 3.0 * t) + factor * (isUpper ? first : second)) * edge.InverseHeight;
     *derivative =
-      *derivative + OuterProduct(edge.Turn, rest * (1.0 - 3.0 * t) * byT + factor * bubble);
+      *derivative + OuterProduct(edge.Turn, byS * cut.Along[k] + byT * Normal(cut.Along[k]));
   }
   return (t * rest * rest + factor * bubbles[1]) * edge.Turn;
 }
@@ -347,13 +368,18 @@ Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2
     const double l = 1.0 - first - second;
     const Vector2 linear = corner.Turn * x;
     const EdgeBubbles bubbles({ l, first, second });
+    this->LeastCoordinate = bubbles.GetLeastCoordinate();
     if (derivative)
     {
-      const std::array<Vector2, 3> by{ -1.0 * (corner.ByFirst + corner.BySecond), corner.ByFirst,
-        corner.BySecond };
-      *derivative = *derivative + (l * l) * corner.Turn + OuterProduct((2.0 * l) * linear, by[0]) +
-        OuterProduct(corner.BesideFirst, bubbles.GetGradient(2, by)) +
-        OuterProduct(corner.BesideSecond, bubbles.GetGradient(1, by));
+      const Barycentric besideFirst = bubbles.GetDerivatives(2);
+      const Barycentric besideSecond = bubbles.GetDerivatives(1);
+      const Vector2 common = (-2.0 * l) * linear;
+      const Vector2 byFirst = common + (besideFirst[1] - besideFirst[0]) * corner.BesideFirst +
+        (besideSecond[1] - besideSecond[0]) * corner.BesideSecond;
+      const Vector2 bySecond = common + (besideFirst[2] - besideFirst[0]) * corner.BesideFirst +
+        (besideSecond[2] - besideSecond[0]) * corner.BesideSecond;
+      *derivative = *derivative + (l * l) * corner.Turn + OuterProduct(byFirst, corner.ByFirst) +
+        OuterProduct(bySecond, corner.BySecond);
     }
     return (l * l) * linear + bubbles[2] * corner.BesideFirst + bubbles[1] * corner.BesideSecond;
   }
@@ -365,14 +391,20 @@ Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2
   const double l = 1.0 - s;
   const Vector2 linear = side.Turn * x;
   const EdgeBubbles bubbles({ l, s - t, t });
+  this->LeastCoordinate = bubbles.GetLeastCoordinate();
   if (derivative)
   {
-    const std::array<Vector2, 3> by{ -1.0 * side.ByS, side.ByS - side.ByT, side.ByT };
-    const Vector2 own = (s - t) * ((2.0 * t) * side.ByS + (s - 3.0 * t) * side.ByT) +
-      (1.0 / 9.0) * bubbles.GetGradient(0, by);
-    *derivative = *derivative + (l * l) * side.Turn + OuterProduct((2.0 * l) * linear, by[0]) +
-      OuterProduct(side.BesideDiagonal, bubbles.GetGradient(1, by)) +
-      OuterProduct(side.BesideEdge, bubbles.GetGradient(2, by)) + OuterProduct(side.OfEdge, own);
+    const Barycentric diagonal = bubbles.GetDerivatives(1);
+    const Barycentric beside = bubbles.GetDerivatives(2);
+    const Barycentric across = bubbles.GetDerivatives(0);
+    const Vector2 byS = (-2.0 * l) * linear + (diagonal[1] - diagonal[0]) * side.BesideDiagonal +
+      (beside[1] - beside[0]) * side.BesideEdge +
+      (2.0 * t * (s - t) + (1.0 / 9.0) * (across[1] - across[0])) * side.OfEdge;
+    const Vector2 byT = (diagonal[2] - diagonal[1]) * side.BesideDiagonal +
+      (beside[2] - beside[1]) * side.BesideEdge +
+      ((s - t) * (s - 3.0 * t) + (1.0 / 9.0) * (across[2] - across[1])) * side.OfEdge;
+    *derivative =
+      *derivative + (l * l) * side.Turn + OuterProduct(byS, side.ByS) + OuterProduct(byT, side.ByT);
   }
   return (l * l) * linear + bubbles[1] * side.BesideDiagonal + bubbles[2] * side.BesideEdge +
     ((s - t) * (s - t) * t + (1.0 / 9.0) * bubbles[0]) * side.OfEdge;

@@ -25,14 +25,27 @@ namespace homeomorphism
 class CubicTriangle
 {
 public:
-  /// @a bending is null for the template itself. Both must outlive this.
-  CubicTriangle(const CubicTemplate& cubicTemplate, const BendingSolution* bending)
+  /// Points in a row, Newton's steps, and the next rows come back to as many triangles.
+  static constexpr std::size_t ManyTriangles = 64;
+  /// Newton's steps for one point come back to as many.
+  static constexpr std::size_t FewTriangles = 3;
+
+  /// @a bending is null for the template itself. Both must outlive this. @a kept is how many
+  /// triangles are kept.
+  CubicTriangle(
+    const CubicTemplate& cubicTemplate, const BendingSolution* bending, std::size_t kept)
     : Template(cubicTemplate)
     , Bending(bending)
+    , Triangles(kept)
   {
   }
 
   void Set(int triangle);
+  /// Of the triangle, relative to corner 0.
+  const std::array<Vector2, 3>& GetCorners() const
+  {
+    return this->Now->Whole ? this->Now->Elements[0].Points : this->Now->Cut.Corners;
+  }
   /// The element in which the last point was, as a number of the cut's.
   int GetLastElement() const { return this->LastElement; }
   /// The length of a whole triangle, or the least height of the inner points of a cut one: second
@@ -42,8 +55,9 @@ public:
   /// The image of a point relative to that of corner 0, both relative to it.
   Vector2 Map(const Vector2& point);
 
-  /// How far the image of a point is from @a image, and Newton's step towards its preimage.
-  Vector2 GetResidual(const Vector2& point, const Vector2& image, Vector2& step);
+  /// How far the image of a point is from @a image, and Newton's step towards its preimage. If the
+  /// last point in this triangle @a isNear, its element is tried first.
+  Vector2 GetResidual(const Vector2& point, const Vector2& image, bool isNear, Vector2& step);
 
 private:
   struct Element
@@ -127,14 +141,13 @@ private:
     std::vector<Element> Elements;
     std::array<std::int8_t, TriangleCut::NumberOfElements> Made;
   };
-  /// Points in a row, Newton's steps, and the next rows come back to the same triangles.
-  static constexpr int NumberOfTriangles = 64;
-
   const CubicTemplate& Template;
   const BendingSolution* Bending;
   int LastElement = 0;
+  /// Of the last point in its element, by the map in closed form.
+  double LeastCoordinate = 0.0;
   /// The last triangles that were set, by the ends of their numbers; made when they are set.
-  std::array<std::unique_ptr<Triangle>, NumberOfTriangles> Triangles;
+  std::vector<std::unique_ptr<Triangle>> Triangles;
   Triangle* Now = nullptr;
 };
 

@@ -438,7 +438,8 @@ int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
   if (block.Cubic != this->Cubic)
   {
     block.Cubic = this->Cubic;
-    block.PreparedCubics = std::make_shared<CubicTriangle>(this->Cubic->GetMap().Prepare());
+    block.PreparedCubics =
+      std::make_shared<CubicTriangle>(this->Cubic->GetMap().Prepare(CubicTriangle::ManyTriangles));
   }
   this->Cubic->MapPoints(this->ToCubic(from), batch, *block.PreparedCubics);
   target.FromNormalized(batch.ImageX, batch.ImageY, heights, block.Count, block.Images);

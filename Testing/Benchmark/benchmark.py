@@ -28,12 +28,12 @@ from workloads import Workload, few_lines, grid_in_scan_order, picture, random_p
 SYSTEMS = ("Linear", "Contour", "Smooth")
 # The two maps of the Cubic system, on small meshes only: its pairs at random bend least after many rounds.
 CUBIC = ("CubicLocal", "CubicLeast")
-PARTS = ("small", "large", "threads", "image", "construction")
+PARTS = ("small", "large", "threads", "image", "construction", "cubic")
 
 FULL = {"small": 21, "large": 1000, "side": 800, "many": (4000, 2500), "dense": (4000, 2500), "image": 4096,
-        "construction": (100, 316, 1000), "repetitions": (5, 15)}
+        "construction": (100, 316, 1000), "cubic": (316, 1000), "repetitions": (5, 15)}
 QUICK = {"small": 21, "large": 300, "side": 400, "many": (1000, 1000), "dense": (1000, 1000), "image": 512,
-         "construction": (30, 95, 300), "repetitions": (3, 5)}
+         "construction": (30, 95, 300), "cubic": (95, 300), "repetitions": (3, 5)}
 # Tens of rounding errors at the width of the domain: agreement to the last digits.
 TOLERANCE = 1e-13
 
@@ -193,6 +193,23 @@ class Benchmark:
             for size in counts:
                 measurements += measure([row for s, row in rows if s == size], counts, self.repetitions, size, keep=False)
         self.record("construction", measurements)
+
+    def cubic(self):
+        """Preparation of Smooth and of both maps of the Cubic system, for a smooth displacement."""
+        self.results["cubic memory"] = {}
+        measurements = []
+        for n in self.settings["cubic"]:
+            workload = Workload(self.folder / f"cubic-{n}", n, smooth=True)
+            triangles = len(workload.triangles)
+            workload.add_points(str(triangles), workload.source[:1])
+            print(f"cubic: {triangles} triangles", flush=True)
+            with Program(self.program, workload) as program:
+                rows = [ProgramRow(program, f"construct/{system}") for system in ("Smooth", *CUBIC)]
+                for row in rows:
+                    kept, peak = program.ask("memory", row.name)
+                    self.results["cubic memory"][f"{row.name}/{triangles}"] = [kept / triangles, peak / triangles]
+                measurements += measure(rows, {str(triangles): triangles}, self.repetitions, str(triangles), keep=False)
+        self.record("cubic", measurements)
 
     def check_delaunay(self, part, workload):
         from scipy.spatial import Delaunay

@@ -25,7 +25,12 @@ class Results:
             (part, m["name"], m["threads"]): [1e9 * s / m["points"] for s in m["seconds"]]
             for part, measurements in results["measurements"].items()
             for m in measurements
-            if part != "construction"
+            if part not in ("construction", "cubic")
+        }
+        # By row and number of triangles: processor time, since these rows run for seconds.
+        self.cubic = {
+            (m["name"], m["points"]): statistics.median(m["processors"]) * 1e9 / m["points"]
+            for m in results["measurements"].get("cubic", [])
         }
         self.construction = {
             (m["name"], m["threads"], m["points"]): [1e9 * s / m["points"] for s in m["seconds"]]
@@ -101,6 +106,17 @@ def goals(r):
         for system in SYSTEMS:
             kept = r.results["memory"][f"{system}/{last}"][0]
             found.append((f"bytes kept per triangle pair, {system}", kept, "≤", 400.0, kept <= 400.0))
+    cubic_sizes = sorted({size for _, size in r.cubic})
+    for name, time, space in (("CubicLocal", 3.0, 100.0), ("CubicLeast", 6.0, 500.0)):
+        for size in cubic_sizes:
+            add(f"preparation, {name} / Smooth, smooth displacement, {size:,} triangle pairs",
+                r.cubic[f"construct/{name}", size], r.cubic["construct/Smooth", size], time)
+            own, other = (r.results["cubic memory"][f"construct/{n}/{size}"][0] for n in (name, "Smooth"))
+            found.append((f"bytes kept per triangle pair, {name} - Smooth, {size:,} triangle pairs", own - other, "≤",
+                          space, own - other <= space))
+        if len(cubic_sizes) > 1:
+            add(f"preparation per triangle, {name}, {cubic_sizes[-1]:,} triangle pairs / {cubic_sizes[0]:,}",
+                r.cubic[f"construct/{name}", cubic_sizes[-1]], r.cubic[f"construct/{name}", cubic_sizes[0]], 1.25)
     add("Smooth forward / the affine map with the triangle known", r.median("small", "transform/Smooth/forward"),
         r.median("small", "affine/forward"), 6.0)
     return found
@@ -141,6 +157,14 @@ def tables(results):
                 kept, peak = (number(b) for b in memory) if memory else ("", "")
                 lines.append(f"| {name.split('/')[1]} | {size:,} | {number(r.built(name, size))} | "
                              f"{number(r.built(name, size, 2))} | {kept} | {peak} |")
+        lines.append("")
+    if r.cubic:
+        lines += ["## Preparation for a smooth displacement", "", "Nanoseconds of processor time per triangle pair; bytes "
+                  "per triangle pair that are kept, and at the peak.", "",
+                  "| | triangles | ns | bytes kept | bytes at peak |", "|---|---:|---:|---:|---:|"]
+        for (name, size), time in r.cubic.items():
+            kept, peak = results["cubic memory"][f"{name}/{size}"]
+            lines.append(f"| {name.split('/')[1]} | {size:,} | {number(time)} | {number(kept)} | {number(peak)} |")
         lines.append("")
     lines += ["## Agreement", "", "| | largest difference | tolerance | |", "|---|---:|---:|---|"]
     for check in results["checks"]:

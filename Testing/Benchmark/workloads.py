@@ -17,6 +17,15 @@ def grid_points(n, seed):
     return points.reshape(-1, 2)
 
 
+def displaced(points, width):
+    """Points of [0, width]^2, moved by up to 3 % of the width, and along the boundary on it."""
+    x, y = numpy.pi * points.T / width
+    moves = numpy.column_stack([numpy.sin(x) * numpy.sin(2.0 * y), numpy.sin(2.0 * x) * numpy.sin(y)])
+    # Sines of multiples of pi are not exactly 0.
+    inside = (points > 0.0) & (points < width)
+    return points + 0.03 * width * moves * inside.all(axis=1)[:, None]
+
+
 def delaunay_triangles(points, n):
     """The squares of the grid, each divided along its Delaunay diagonal.
 
@@ -62,13 +71,15 @@ def picture(size):
 
 
 class Workload:
-    """A pair of meshes of the square [0, n] x [0, n], scaled, in a folder for the C++ program."""
+    """A pair of meshes of the square [0, n] x [0, n], scaled, in a folder for the C++ program.
 
-    def __init__(self, folder, n, scale=1.0):
+    The target is another grid whose points are moved at random, or the source displaced smoothly."""
+
+    def __init__(self, folder, n, scale=1.0, smooth=False):
         self.folder = folder
         self.width = n * scale
         self.source = grid_points(n, 1) * scale
-        self.target = grid_points(n, 2) * scale
+        self.target = displaced(self.source, n * scale) if smooth else grid_points(n, 2) * scale
         self.triangles = delaunay_triangles(self.source, n)
         self.points = {}
         self.image = None

@@ -67,6 +67,7 @@ TEST(RootFinding, FindsRootsAtTheEnds)
     for (const double power : { 1.0, 3.0 })
     {
       EXPECT_EQ(Solve<true>(1.0, guess, power), 1.0);
+      EXPECT_NEAR(Solve<false>(1.0, guess, power), 1.0, 2.0 * Ulp);
       EXPECT_LE(Solve<true>(0.0, guess, power), 0x1p-50);
     }
   }

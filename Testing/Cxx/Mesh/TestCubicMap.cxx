@@ -446,7 +446,7 @@ TEST(CubicMap, ClosedFormsAgreeWithTheElements)
   {
     const PlanarPair pair = RandomPair(16, strength, 8);
     const CubicTemplate cubicTemplate(pair, {});
-    CubicTriangle triangle(cubicTemplate, nullptr);
+    CubicTriangle triangle(cubicTemplate, nullptr, CubicTriangle::ManyTriangles);
     for (const Sample& sample : RandomSamples(pair, 17, 20000))
     {
       const std::array<Vector2, 3> corners = pair.GetSourceCorners(sample.Triangle);
@@ -459,9 +459,14 @@ TEST(CubicMap, ClosedFormsAgreeWithTheElements)
       EXPECT_LT(Norm(triangle.Map(point) - image), strength < 2.0 ? 1e-14 : 1e-12);
       Vector2 step;
       const Vector2 wanted = image + Vector2{ 1e-3, -2e-3 };
-      const Vector2 residual = triangle.GetResidual(point, wanted, step);
+      const Vector2 residual = triangle.GetResidual(point, wanted, false, step);
       EXPECT_LT(Norm(derivative * step - residual),
         (strength < 2.0 ? 1e-9 : 1e-7) * Norm(derivative) * (1e-3 + Norm(step)));
+      // Whether the element of the last point is tried first does not matter.
+      const Vector2 near = 0.97 * point;
+      EXPECT_LT(Norm(triangle.GetResidual(near, wanted, true, step) -
+                  triangle.GetResidual(near, wanted, false, step)),
+        strength < 2.0 ? 1e-14 : 1e-12);
     }
   }
 }
