@@ -17,8 +17,10 @@
 #include "vtkPolyData.h"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 
 using namespace homeomorphism;
@@ -70,6 +72,8 @@ private:
   std::shared_ptr<const Homeomorphism> Map;
 };
 
+/// With the Jacobians, which are added up, or without.
+template <bool WithJacobian>
 void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
 {
   const double* in = Coordinates(task.In);
@@ -78,14 +82,28 @@ void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
   const double tolerance =
     map.GetAbsoluteTolerance(from, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
   TriangleIndex hint = -1;
+  double sum = 0.0;
   for (vtkIdType i = 0; i < count; ++i)
   {
     const SurfacePoint surfacePoint = map.Locate(from, in + 3 * i, tolerance, hint);
     hint = surfacePoint.Triangle;
     if (surfacePoint.Triangle >= 0)
     {
-      map.MapPoint(from, surfacePoint, out + 3 * i);
+      if constexpr (WithJacobian)
+      {
+        Jacobian jacobian;
+        map.MapPoint(from, surfacePoint, out + 3 * i, jacobian);
+        sum = std::accumulate(jacobian.Matrix.begin(), jacobian.Matrix.end(), sum);
+      }
+      else
+      {
+        map.MapPoint(from, surfacePoint, out + 3 * i);
+      }
     }
+  }
+  if (!std::isfinite(sum))
+  {
+    throw std::runtime_error("a Jacobian is not finite");
   }
 }
 
@@ -158,7 +176,10 @@ void AddHomeomorphismRows(const Workload& workload, Rows& rows)
       const Domain from = inverse ? Domain::Target : Domain::Source;
       Row& row = rows[std::string("pointwise/") + system.Name + Direction(inverse)];
       row.Before = [map](Task&) { map->Get(); };
-      row.Run = [map, from](Task& task) { MapPointByPoint(map->Get(), from, task); };
+      row.Run = [map, from](Task& task) { MapPointByPoint<false>(map->Get(), from, task); };
+      Row& jacobianRow = rows[std::string("jacobian/") + system.Name + Direction(inverse)];
+      jacobianRow.Before = row.Before;
+      jacobianRow.Run = [map, from](Task& task) { MapPointByPoint<true>(map->Get(), from, task); };
     }
   }
 }

@@ -23,16 +23,17 @@ import numpy
 import baseline
 import report
 from rows import DIRECTIONS, Program, ProgramRow, image_row, measure, python_rows
-from workloads import Workload, few_lines, grid_in_scan_order, picture, random_points
+from workloads import (Workload, displaced_mesh, fan_mesh, few_lines, grid_in_scan_order, grid_mesh, picture,
+                       random_points, sliver_mesh)
 
 SYSTEMS = ("Linear", "Contour", "Smooth")
 # The two maps of the Cubic system, on small meshes only: its pairs at random bend least after many rounds.
 CUBIC = ("CubicLocal", "CubicLeast")
-PARTS = ("small", "large", "threads", "image", "construction", "cubic")
+PARTS = ("small", "large", "thin", "threads", "image", "construction", "cubic")
 
-FULL = {"small": 21, "large": 1000, "side": 800, "many": (4000, 2500), "dense": (4000, 2500), "image": 4096,
+FULL = {"small": 21, "large": 1000, "thin": 224, "side": 800, "many": (4000, 2500), "dense": (4000, 2500), "image": 4096,
         "construction": (100, 316, 1000), "cubic": (316, 1000), "repetitions": (5, 15)}
-QUICK = {"small": 21, "large": 300, "side": 400, "many": (1000, 1000), "dense": (1000, 1000), "image": 512,
+QUICK = {"small": 21, "large": 300, "thin": 50, "side": 400, "many": (1000, 1000), "dense": (1000, 1000), "image": 512,
          "construction": (30, 95, 300), "cubic": (95, 300), "repetitions": (3, 5)}
 # Tens of rounding errors at the width of the domain: agreement to the last digits.
 TOLERANCE = 1e-13
@@ -75,7 +76,7 @@ class Benchmark:
             for peer in ("tinshift", "FindCell", "vtkProbeFilter", "affine"):
                 self.compare(part, single, linear, f"{peer}/{direction}", tolerance)
             for system in (*SYSTEMS, *CUBIC):
-                for way in ("pointwise", "filter"):
+                for way in ("pointwise", "jacobian", "filter"):
                     self.compare(part, single, f"transform/{system}/{direction}", f"{way}/{system}/{direction}", 0.0)
         # In the inverse direction these peers use another triangulation.
         for peer in ("LinearNDInterpolator", "PiecewiseAffineTransform"):
@@ -101,7 +102,7 @@ class Benchmark:
         names = [("copy", 1)]
         for direction in DIRECTIONS:
             names += [(f"{way}/{system}/{direction}", 1)
-                      for way in ("transform", "pointwise", "filter") for system in (*SYSTEMS, *CUBIC)]
+                      for way in ("transform", "pointwise", "jacobian", "filter") for system in (*SYSTEMS, *CUBIC)]
             names += [(f"{peer}/{direction}", 1)
                       for peer in ("affine", "tinshift", "FindCell", "vtkProbeFilter", "vtkThinPlateSplineTransform")]
             names += [(f"vtkProbeFilter/{direction}", 2), (f"transform/Smooth/{direction}", 2)]
@@ -130,6 +131,16 @@ class Benchmark:
             dense = [("affine/forward", 1)] + [(f"transform/{s}/{d}", 1) for d in DIRECTIONS for s in SYSTEMS]
             self.points("large, dense", workload, program, dense, (), "dense", None, others=False)
         self.results["preparation"] = {row.name: row.preparation for row in workload.python_rows}
+
+    def thin(self):
+        n = self.settings["thin"]
+        for name, mesh in (("grid", grid_mesh), ("fan", fan_mesh), ("slivers", sliver_mesh)):
+            workload = Workload(self.folder / f"thin-{name}", n, mesh=mesh)
+            workload.add_points("all", random_points(workload.width, 2 * n * n))
+            names = [(f"{way}/{system}/{d}", 1)
+                     for way in ("transform", "pointwise") for system in ("Linear", "Smooth") for d in DIRECTIONS]
+            with Program(self.program, workload) as program:
+                self.points(f"thin, {name}", workload, program, names, points="all", few=None, others=False)
 
     def threads(self):
         workload = Workload(self.folder / "threads", self.settings["small"])
@@ -199,7 +210,7 @@ class Benchmark:
         self.results["cubic memory"] = {}
         measurements = []
         for n in self.settings["cubic"]:
-            workload = Workload(self.folder / f"cubic-{n}", n, smooth=True)
+            workload = Workload(self.folder / f"cubic-{n}", n, mesh=displaced_mesh)
             triangles = len(workload.triangles)
             workload.add_points(str(triangles), workload.source[:1])
             print(f"cubic: {triangles} triangles", flush=True)

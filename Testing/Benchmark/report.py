@@ -6,12 +6,16 @@
 import statistics
 
 SYSTEMS = ("Linear", "Contour", "Smooth")
+CUBIC = ("CubicLocal", "CubicLeast")
 DIRECTIONS = ("forward", "inverse")
 PARTS = {
     "small": "{triangles} triangles, points row by row",
     "large, scan": "{triangles} triangles, points row by row, fewer points than triangles",
     "large, dense": "{triangles} triangles, points row by row, more points than triangles",
     "large, random": "{triangles} triangles, points in random order",
+    "thin, grid": "{triangles} triangles of a grid, points in random order",
+    "thin, fan": "{triangles} triangles of a fan, points in random order",
+    "thin, slivers": "{triangles} triangles as long as the domain, points in random order",
     "threads": "{triangles} triangles, many points",
     "image": "warping an image",
     "construction": "preparation, per triangle",
@@ -68,11 +72,15 @@ def goals(r):
 
     for d in DIRECTIONS:
         smooth = r.median("small", f"transform/Smooth/{d}")
-        add(f"Smooth {d} / SciPy LinearNDInterpolator", smooth, r.median("small", f"LinearNDInterpolator/{d}"), 1.0)
-        add(f"Smooth {d} / PROJ tinshift", smooth, r.median("small", f"tinshift/{d}"), 1.0 / 3.0)
+        add(f"Smooth {d}, through the filter / SciPy LinearNDInterpolator", r.median("small", f"filter/Smooth/{d}"),
+            r.median("small", f"LinearNDInterpolator/{d}"), 0.9)
+        add(f"Smooth {d} / PROJ tinshift", smooth, r.median("small", f"tinshift/{d}"), 0.3)
         add(f"Contour {d} / SciPy CloughTocher2DInterpolator", r.median("small", f"transform/Contour/{d}"),
             r.median("small", f"CloughTocher2DInterpolator/{d}"), 1.0)
-    for name in ("CubicLocal", "CubicLeast"):
+    for system in (*SYSTEMS, *CUBIC):
+        add(f"{system} forward, point by point with the Jacobian / without", r.median("small", f"jacobian/{system}/forward"),
+            r.median("small", f"pointwise/{system}/forward"), 1.3)
+    for name in CUBIC:
         forward = r.median("small", f"transform/{name}/forward")
         add(f"{name} forward / Smooth forward", forward, r.median("small", "transform/Smooth/forward"), 1.0)
         add(f"{name} forward / SciPy CloughTocher2DInterpolator", forward,
@@ -85,6 +93,11 @@ def goals(r):
                 r.median(part, f"transform/Smooth/{d}"), small, 2.0)
         add(f"Smooth {d}, large meshes, random order / vtkStaticCellLocator::FindCell",
             r.median("large, random", f"transform/Smooth/{d}"), r.median("large, random", f"FindCell/{d}"), 1.0 / 3.0)
+    for mesh in ("fan", "slivers"):
+        for way in ("transform", "pointwise"):
+            name = f"{way}/Smooth/forward"
+            add(f"{name}, random points in {mesh} / in a grid", r.median(f"thin, {mesh}", name),
+                r.median("thin, grid", name), 5.0)
     for system in SYSTEMS:
         for d in DIRECTIONS:
             name = f"transform/{system}/{d}"
@@ -93,7 +106,7 @@ def goals(r):
         name = f"{way}/Smooth"
         words = {"resample": "vtkResampleThroughHomeomorphism", "reslice": "vtkImageReslice with Smooth"}[way]
         add_faster(f"image, {words} on two threads faster than scikit-image's piecewise affine warp",
-                   r.median("image", name, 2), r.median("image", "warp/PiecewiseAffineTransform"), 20.0)
+                   r.median("image", name, 2), r.median("image", "warp/PiecewiseAffineTransform"), 25.0)
         add_faster(f"image, {words} on two threads faster than vtkImageReslice with a thin plate spline on two",
                    r.median("image", name, 2), r.median("image", "reslice/ThinPlateSpline", 2), 5.0)
     sizes = r.sizes()
@@ -118,7 +131,7 @@ def goals(r):
             add(f"preparation per triangle, {name}, {cubic_sizes[-1]:,} triangle pairs / {cubic_sizes[0]:,}",
                 r.cubic[f"construct/{name}", cubic_sizes[-1]], r.cubic[f"construct/{name}", cubic_sizes[0]], 1.25)
     add("Smooth forward / the affine map with the triangle known", r.median("small", "transform/Smooth/forward"),
-        r.median("small", "affine/forward"), 6.0)
+        r.median("small", "affine/forward"), 9.0)
     return found
 
 
@@ -137,7 +150,7 @@ def tables(results):
         measurements = results["measurements"].get(part)
         if not measurements or part == "construction":
             continue
-        triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
+        triangles = 2 * results["settings"][part.split(",")[0] if "," in part else "small"] ** 2
         lines += [f"## {title.format(triangles=f'{triangles:,}').capitalize()}", ""]
         lines += ["| | threads | points | ns per point | fastest and slowest run | runs | processors |",
                   "|---|---:|---:|---:|---:|---:|---:|"]

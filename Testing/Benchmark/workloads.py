@@ -44,6 +44,56 @@ def delaunay_triangles(points, n):
     return numpy.stack([first, second], axis=1).reshape(-1, 3)
 
 
+def grid_mesh(n):
+    """n x n squares: source points, target points and triangles."""
+    source = grid_points(n, 1)
+    return source, grid_points(n, 2), delaunay_triangles(source, n)
+
+
+def displaced_mesh(n):
+    """A grid whose points are moved at random, and the same displaced smoothly."""
+    source = grid_points(n, 1)
+    return source, displaced(source, n), delaunay_triangles(source, n)
+
+
+def moved_numbers(count, seed):
+    """The numbers from 0 to count, in order, those between moved at random."""
+    numbers = numpy.arange(count + 1.0)
+    numbers[1:-1] += numpy.random.default_rng(seed).uniform(-JITTER, JITTER, count - 1)
+    return numbers
+
+
+def fan_mesh(n):
+    """As many triangles around a point of the square as the grid has."""
+    quarter = n * n // 2
+
+    def points(seed, center):
+        along = numpy.concatenate([moved_numbers(quarter, seed + k)[:-1] / quarter for k in range(4)])
+        side = numpy.arange(4).repeat(quarter)
+        rising, falling = along, 1.0 - along
+        x = numpy.choose(side, [rising, numpy.ones_like(along), falling, numpy.zeros_like(along)])
+        y = numpy.choose(side, [numpy.zeros_like(along), rising, numpy.ones_like(along), falling])
+        return n * numpy.column_stack([numpy.append(x, center[0]), numpy.append(y, center[1])])
+
+    i = numpy.arange(4 * quarter)
+    triangles = numpy.column_stack([i, numpy.roll(i, -1), numpy.full_like(i, 4 * quarter)])
+    return points(1, (0.5, 0.5)), points(11, (0.52, 0.49)), triangles
+
+
+def sliver_mesh(n):
+    """As many triangles as the grid has, each as long as the square is wide."""
+
+    def points(seed):
+        y = moved_numbers(n * n, seed) / n
+        return numpy.concatenate([numpy.column_stack([numpy.full_like(y, x), y]) for x in (0.0, n)])
+
+    left = numpy.arange(n * n)
+    right = left + n * n + 1
+    triangles = numpy.concatenate(
+        [numpy.column_stack([left, right, right + 1]), numpy.column_stack([left, right + 1, left + 1])])
+    return points(1), points(2), triangles
+
+
 def grid_in_scan_order(n, columns, rows):
     """The centers of the pixels of an image of [0, n] x [0, n]."""
     x, y = numpy.meshgrid((numpy.arange(columns) + 0.5) * n / columns, (numpy.arange(rows) + 0.5) * n / rows)
@@ -73,14 +123,13 @@ def picture(size):
 class Workload:
     """A pair of meshes of the square [0, n] x [0, n], scaled, in a folder for the C++ program.
 
-    The target is another grid whose points are moved at random, or the source displaced smoothly."""
+    The meshes are those of mesh(n); see grid_mesh."""
 
-    def __init__(self, folder, n, scale=1.0, smooth=False):
+    def __init__(self, folder, n, scale=1.0, mesh=grid_mesh):
         self.folder = folder
         self.width = n * scale
-        self.source = grid_points(n, 1) * scale
-        self.target = displaced(self.source, n * scale) if smooth else grid_points(n, 2) * scale
-        self.triangles = delaunay_triangles(self.source, n)
+        source, target, self.triangles = mesh(n)
+        self.source, self.target = source * scale, target * scale
         self.points = {}
         self.image = None
         folder.mkdir()
