@@ -147,6 +147,7 @@ set(pipeline_headers
   Pipeline/GhostArrays.h
   Pipeline/HomeomorphismCache.h
   Pipeline/ImageSampling.h
+  Pipeline/MappedRow.h
   Pipeline/Options.h
   Pipeline/PointBlocks.h
   Pipeline/PointsOffSurface.h

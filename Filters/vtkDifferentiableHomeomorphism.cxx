@@ -209,19 +209,19 @@ private:
     const auto isHidden = [ghosts](vtkIdType i) {
       return ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0;
     };
-    const vtkIdType done =
-      MapInBlocks(this->Self, this->Map, this->From, this->Input, this->GetAbsoluteTolerance(), 0.1,
-        0.9, isHidden, [&](vtkIdType first, const PointBlock& block) {
-          WritePoints(block.Images, block.Count, first, outPoints->GetData());
-          for (int i = 0; i < block.Count; ++i)
+    const vtkIdType done = MapInBlocks(this->Self, this->Map, this->From, this->Input,
+      this->GetAbsoluteTolerance(), 0.1, 0.9, isHidden, outPoints->GetData(),
+      this->Jacobians || this->Determinants, [&](vtkIdType first, const PointBlock& block) {
+        WritePoints(block.Images, block.Count, first, outPoints->GetData());
+        for (int i = 0; i < block.Count; ++i)
+        {
+          if (block.Triangles[i] >= 0)
           {
-            if (block.Triangles[i] >= 0)
-            {
-              this->Mask->SetValue(first + i, 1);
-              this->SetDerived(first + i, block.GetSurfacePoint(i));
-            }
+            this->Mask->SetValue(first + i, 1);
+            this->SetDerived(first + i, block, i);
           }
-        });
+        }
+      });
     // Aborted: points that were not reached keep their coordinates and are marked as outside.
     for (vtkIdType i = done; i < this->NumberOfPoints; ++i)
     {
@@ -230,21 +230,21 @@ private:
     this->Output->SetPoints(outPoints);
   }
 
-  void SetDerived(vtkIdType i, const SurfacePoint& surfacePoint)
+  void SetDerived(vtkIdType i, const PointBlock& block, int numberInBlock)
   {
+    const TriangleIndex triangle = block.Triangles[numberInBlock];
     if (this->Triangles)
     {
-      this->Triangles->SetValue(
-        i, this->Map.GetPair().GetTriangulation().GetCellId(surfacePoint.Triangle));
+      this->Triangles->SetValue(i, this->Map.GetPair().GetTriangulation().GetCellId(triangle));
     }
     if (this->Systems)
     {
       this->Systems->SetValue(
-        i, static_cast<int>(this->Map.GetCharts(this->From).GetSystemOf(surfacePoint.Triangle)));
+        i, static_cast<int>(this->Map.GetCharts(this->From).GetSystemOf(triangle)));
     }
     if (this->Jacobians || this->Determinants)
     {
-      const Jacobian jacobian = this->Map.GetJacobian(this->From, surfacePoint);
+      const Jacobian jacobian = this->Map.GetJacobian(this->From, block, numberInBlock);
       if (this->Jacobians)
       {
         std::copy(

@@ -6,6 +6,7 @@
 #include "Pipeline/AttributeTransformation.h"
 #include "Pipeline/DiagnosticMessages.h"
 #include "Pipeline/HomeomorphismCache.h"
+#include "Pipeline/MappedRow.h"
 #include "Pipeline/Options.h"
 #include "Pipeline/PointBlocks.h"
 
@@ -16,7 +17,13 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
 
 using namespace homeomorphism;
 
@@ -34,46 +41,81 @@ public:
                      : SurfacePoint{};
   }
 
-  /// Points without an image become outside ones.
-  void MapSurfacePoint(Domain from, SurfacePoint& surfacePoint, double image[3]) const
+  /// Maps a point, one of a row if callers ask for the points of rows one by one.
+  template <typename Real>
+  void MapPoint(Domain from, const Real in[3], Real out[3]) const
   {
-    if (surfacePoint.Triangle < 0 || !this->Map->MapPoint(from, surfacePoint, image))
+    const double point[3] = { in[0], in[1], in[2] };
+    thread_local const auto row = std::make_unique<MappedRow>();
+    const std::uint64_t key =
+      4 * this->Version + 2 * std::uint64_t(from) + std::uint64_t(std::is_same_v<Real, double>);
+    const int i =
+      !this->Map ? -1 : row->Find(point, key, [this, from](PointBlock& block, LocationHint& hint) {
+        this->Map->LocateBlock(from, block, this->GetTolerance<Real>(from), hint);
+        this->Map->MapBlock(from, block);
+      });
+    if (i < 0)
     {
-      surfacePoint.Triangle = -1;
+      this->MapPoint(from, in, out, nullptr);
+      return;
+    }
+    double image[3];
+    std::copy_n(row->GetBlock().Images[i], 3, image);
+    if (row->GetBlock().Triangles[i] < 0)
+    {
       std::fill_n(image, 3, this->OutsideCoordinate);
     }
+    Store(image, out);
   }
 
-  /// Maps a point; returns its surface point.
+  /// Maps a point, and sets the derivative of the map from @a from there, NaN outside, unless it is
+  /// null.
   template <typename Real>
-  SurfacePoint MapPoint(Domain from, const Real in[3], Real out[3]) const
+  void MapPoint(Domain from, const Real in[3], Real out[3], double (*derivative)[3][3]) const
   {
     const double point[3] = { in[0], in[1], in[2] };
     // Callers that map point by point, such as vtkImageReslice, usually stay in a triangle. Each
     // thread remembers its last one. A hint from another mesh or domain only costs time.
     thread_local TriangleIndex last = -1;
-    const bool isHint = this->Map && last >= 0 &&
-      last < this->Map->GetPair().GetTriangulation().GetNumberOfTriangles();
-    SurfacePoint surfacePoint = this->Locate(from, point,
-      0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon()), isHint ? last : -1);
+    const TriangleIndex hint = last < this->NumberOfTriangles ? last : -1;
+    const SurfacePoint surfacePoint = this->Map
+      ? this->Map->Locate(from, point, this->GetTolerance<Real>(from), hint)
+      : SurfacePoint{};
     last = surfacePoint.Triangle;
     double image[3];
-    this->MapSurfacePoint(from, surfacePoint, image);
+    Jacobian jacobian;
+    const bool exists = surfacePoint.Triangle >= 0 &&
+      (derivative ? this->Map->MapPoint(from, surfacePoint, image, jacobian)
+                  : this->Map->MapPoint(from, surfacePoint, image));
+    if (!exists)
+    {
+      std::fill_n(image, 3, this->OutsideCoordinate);
+      jacobian.Matrix.fill(vtkMath::Nan());
+    }
+    if (derivative)
+    {
+      std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), &(*derivative)[0][0]);
+    }
+    Store(image, out);
+  }
+
+  template <typename Real>
+  static void Store(const double image[3], Real out[3])
+  {
     const auto largest = static_cast<double>(std::numeric_limits<Real>::max());
     std::transform(image, image + 3, out,
       [largest](double x) { return static_cast<Real>(std::max(-largest, std::min(largest, x))); });
-    return surfacePoint;
   }
 
-  /// The derivative of the map from @a from at a surface point; NaN outside.
-  void GetDerivative(Domain from, const SurfacePoint& surfacePoint, double derivative[3][3]) const
+  /// The derivative of the map from @a from at a point of a mapped block; NaN outside.
+  void GetDerivative(Domain from, const PointBlock& block, int i, double derivative[3][3]) const
   {
-    if (surfacePoint.Triangle < 0)
+    if (block.Triangles[i] < 0)
     {
       std::fill_n(&derivative[0][0], 9, vtkMath::Nan());
       return;
     }
-    const Jacobian jacobian = this->Map->GetJacobian(from, surfacePoint);
+    const Jacobian jacobian = this->Map->GetJacobian(from, block, i);
     std::copy(jacobian.Matrix.begin(), jacobian.Matrix.end(), &derivative[0][0]);
   }
 
@@ -83,7 +125,7 @@ public:
     Domain from, const Real in[3], Real out[3], Real derivative[3][3]) const
   {
     double matrix[3][3];
-    this->GetDerivative(from, this->MapPoint(from, in, out), matrix);
+    this->MapPoint(from, in, out, &matrix);
     if (from == Domain::Target)
     {
       vtkMath::Invert3x3(matrix, matrix);
@@ -92,10 +134,21 @@ public:
       [](double x) { return static_cast<Real>(x); });
   }
 
+  template <typename Real>
+  double GetTolerance(Domain from) const
+  {
+    return this->Tolerances[std::is_same_v<Real, double> ? 1 : 0][int(from)];
+  }
+
   HomeomorphismCache Cache;
   std::shared_ptr<const Homeomorphism> Map;
   double Tolerance = 0.0;
   double OutsideCoordinate = 1e30;
+  TriangleIndex NumberOfTriangles = 0;
+  /// Different for each update of any transform.
+  std::uint64_t Version = 0;
+  /// The absolute tolerances of float and double points, in each domain.
+  std::array<std::array<double, 2>, 2> Tolerances{};
 };
 
 vtkHomeomorphismTransform::vtkHomeomorphismTransform()
@@ -136,6 +189,8 @@ vtkMTimeType vtkHomeomorphismTransform::GetMTime()
 
 void vtkHomeomorphismTransform::InternalUpdate()
 {
+  static std::atomic<std::uint64_t> versions{ 0 };
+  this->Internal->Version = ++versions;
   this->Internal->Map.reset();
   this->Internal->Tolerance = this->Tolerance;
   this->Internal->OutsideCoordinate = 1e30;
@@ -164,6 +219,15 @@ void vtkHomeomorphismTransform::InternalUpdate()
     this->Internal->OutsideCoordinate = std::max(this->Internal->OutsideCoordinate,
       std::min(VTK_DOUBLE_MAX, 1e3 * geometry.GetLargestCoordinate() / geometry.GetScale()));
   }
+  for (const Domain domain : { Domain::Source, Domain::Target })
+  {
+    for (const int type : { VTK_FLOAT, VTK_DOUBLE })
+    {
+      this->Internal->Tolerances[type == VTK_DOUBLE ? 1 : 0][int(domain)] =
+        map->GetAbsoluteTolerance(domain, this->Tolerance, PrecisionOfType(type));
+    }
+  }
+  this->Internal->NumberOfTriangles = map->GetPair().GetTriangulation().GetNumberOfTriangles();
   this->Internal->Map = map;
 }
 
@@ -249,9 +313,11 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
     LocationHint hint;
     PointBlock block;
+    block.KeepsReferences = !arrays.empty();
     for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
     {
       block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
+      SetImages(outPts->GetData(), firstPoint + first, firstPoint + end, block);
       int outside = block.Count;
       std::fill_n(block.Triangles, block.Count, -1);
       if (internals.Map)
@@ -271,7 +337,7 @@ void vtkHomeomorphismTransform::TransformPointsNormalsVectors(vtkPoints* inPts, 
       for (int i = 0; i < block.Count && !arrays.empty(); ++i)
       {
         double derivative[3][3];
-        internals.GetDerivative(from, block.GetSurfacePoint(i), derivative);
+        internals.GetDerivative(from, block, i, derivative);
         const TensorTransformation transformation(&derivative[0][0]);
         for (const TransformedArray& array : arrays)
         {

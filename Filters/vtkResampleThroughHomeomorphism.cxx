@@ -498,7 +498,7 @@ void vtkResampleThroughHomeomorphism::SampleImage(const Homeomorphism& map, vtkI
   static_assert(ImageSampling::Capacity == PointBlock::Capacity, "block by block");
   MapInBlocks(this, map, from, output,
     map.GetAbsoluteTolerance(from, this->Tolerance, PrecisionOfPoints(output)), 0.1, 0.9, isHidden,
-    [&](vtkIdType first, const PointBlock& block) {
+    nullptr, false, [&](vtkIdType first, const PointBlock& block) {
       bool isInside[PointBlock::Capacity];
       std::transform(block.Triangles, block.Triangles + block.Count, isInside,
         [](TriangleIndex t) { return t >= 0; });
@@ -521,7 +521,7 @@ bool vtkResampleThroughHomeomorphism::Probe(const Homeomorphism& map, vtkPolyDat
   MapInBlocks(
     this, map, from, output,
     map.GetAbsoluteTolerance(from, this->Tolerance, PrecisionOfPoints(output)), 0.0, 0.3,
-    [](vtkIdType) { return false; },
+    [](vtkIdType) { return false; }, preimages->GetData(), false,
     [&](vtkIdType first, const PointBlock& block) {
       WritePoints(block.Images, block.Count, first, preimages->GetData());
       std::copy_n(block.Triangles, block.Count, triangles.begin() + first);

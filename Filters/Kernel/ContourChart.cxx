@@ -606,22 +606,19 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
   return { toTriangle(byC), rate * toTriangle(bySOverC) };
 }
 
-Vector2 ContourChart::Pushforward(const Reference& coordinates, const Direction& direction) const
+Vector2 ContourChart::Differential::Pushforward(const Direction& direction) const
 {
-  const Matrix2 columns = this->Columns(coordinates);
-  return this->Unit * (direction.x * columns.ImageOfX + direction.y * columns.ImageOfY);
+  return this->Unit * (direction.x * this->Columns.ImageOfX + direction.y * this->Columns.ImageOfY);
 }
 
-ContourChart::Direction ContourChart::Pullback(
-  const Reference& coordinates, const Vector2& vectorInFrame) const
+ContourChart::Direction ContourChart::Differential::Pullback(const Vector2& vectorInFrame) const
 {
   const Vector2 vector = (1.0 / this->Unit) * vectorInFrame;
-  const Matrix2 columns = this->Columns(coordinates);
   // Scaling by powers of two avoids underflow of the products.
-  const double scaleX = PowerOfTwoNear(columns.ImageOfX);
-  const double scaleY = PowerOfTwoNear(columns.ImageOfY);
-  const Vector2 x = (1.0 / scaleX) * columns.ImageOfX;
-  const Vector2 y = (1.0 / scaleY) * columns.ImageOfY;
+  const double scaleX = PowerOfTwoNear(this->Columns.ImageOfX);
+  const double scaleY = PowerOfTwoNear(this->Columns.ImageOfY);
+  const Vector2 x = (1.0 / scaleX) * this->Columns.ImageOfX;
+  const Vector2 y = (1.0 / scaleY) * this->Columns.ImageOfY;
   const double determinant = Cross(x, y);
   return { Cross(vector, y) / determinant / scaleX, Cross(x, vector) / determinant / scaleY };
 }

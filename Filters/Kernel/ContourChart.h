@@ -52,8 +52,35 @@ public:
 
   /// The derivatives of ToReference and ToPoint. At the center, where the map is not
   /// differentiable, they are the limits along the contour given by the reference.
-  Direction Pullback(const Reference& coordinates, const Vector2& vector) const;
-  Vector2 Pushforward(const Reference& coordinates, const Direction& direction) const;
+  class Differential
+  {
+  public:
+    Differential(const Matrix2& columns, double unit)
+      : Columns(columns)
+      , Unit(unit)
+    {
+    }
+    Direction Pullback(const Vector2& vector) const;
+    Vector2 Pushforward(const Direction& direction) const;
+
+  private:
+    /// The images of the two unit directions of the reference, in units of Unit.
+    Matrix2 Columns;
+    double Unit;
+  };
+
+  Differential DifferentialAt(const Reference& coordinates) const
+  {
+    return { this->Columns(coordinates), this->Unit };
+  }
+  Direction Pullback(const Reference& coordinates, const Vector2& vector) const
+  {
+    return this->DifferentialAt(coordinates).Pullback(vector);
+  }
+  Vector2 Pushforward(const Reference& coordinates, const Direction& direction) const
+  {
+    return this->DifferentialAt(coordinates).Pushforward(direction);
+  }
 
   TriangularCoordinates ToCoordinates(const Reference& coordinates) const { return coordinates; }
   Reference FromCoordinates(const TriangularCoordinates& coordinates) const { return coordinates; }
@@ -136,6 +163,8 @@ private:
   Barycentric CenterWeights;
   std::array<Edge, 3> Edges;
 };
+
+static_assert(IsChart<ContourChart>::value, "See CoordinateSystem.h");
 
 } // namespace homeomorphism
 

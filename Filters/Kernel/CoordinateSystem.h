@@ -9,9 +9,11 @@
 ///
 ///     using Reference = ...; // a point of the reference
 ///     using Direction = ...; // a tangent vector of the reference
+///     class Differential; // Pullback(vector) and Pushforward(direction) at one reference
 ///     Reference ToReference(const Vector2& point) const;
 ///     Vector2 ToPoint(const Reference& reference) const;
-///     // The derivatives of ToReference and ToPoint.
+///     // The derivatives of ToReference and ToPoint at a reference.
+///     Differential DifferentialAt(const Reference& reference) const;
 ///     Direction Pullback(const Reference& reference, const Vector2& vector) const;
 ///     Vector2 Pushforward(const Reference& reference, const Direction& direction) const;
 ///     TriangularCoordinates ToCoordinates(const Reference& reference) const;
@@ -26,6 +28,9 @@
 #define homeomorphism_CoordinateSystem_h
 
 #include "Geometry.h"
+
+#include <type_traits>
+#include <utility>
 
 namespace homeomorphism
 {
@@ -72,14 +77,48 @@ Vector2 MapPoint(const Chart& from, const Chart& to, const Vector2& point)
   return to.ToPoint(from.ToReference(point));
 }
 
+/// The derivative of the homeomorphism at a point, from the derivatives of both charts.
+template <typename Differential>
+Matrix2 MapDerivative(const Differential& from, const Differential& to)
+{
+  return { to.Pushforward(from.Pullback({ 1.0, 0.0 })),
+    to.Pushforward(from.Pullback({ 0.0, 1.0 })) };
+}
+
 /// The derivative of the homeomorphism at the point with this reference in both triangles.
 template <typename Chart>
 Matrix2 MapDerivative(
   const Chart& from, const Chart& to, const typename Chart::Reference& reference)
 {
-  return { to.Pushforward(reference, from.Pullback(reference, { 1.0, 0.0 })),
-    to.Pushforward(reference, from.Pullback(reference, { 0.0, 1.0 })) };
+  return MapDerivative(from.DifferentialAt(reference), to.DifferentialAt(reference));
 }
+
+/// Whether a class is a chart. Its file asserts this.
+template <typename Chart, typename = void>
+struct IsChart : std::false_type
+{
+};
+template <typename Chart>
+struct IsChart<Chart,
+  std::enable_if_t<std::is_same_v<decltype(std::declval<const Chart&>().ToReference(Vector2())),
+                     typename Chart::Reference> &&
+    std::is_same_v<decltype(std::declval<const Chart&>().ToPoint(
+                     std::declval<const typename Chart::Reference&>())),
+      Vector2> &&
+    std::is_same_v<decltype(std::declval<const Chart&>()
+                              .DifferentialAt(std::declval<const typename Chart::Reference&>())
+                              .Pullback(Vector2())),
+      typename Chart::Direction> &&
+    std::is_same_v<decltype(std::declval<const Chart&>()
+                              .DifferentialAt(std::declval<const typename Chart::Reference&>())
+                              .Pushforward(std::declval<const typename Chart::Direction&>())),
+      Vector2> &&
+    std::is_same_v<decltype(std::declval<const Chart&>().FromCoordinates(
+                     std::declval<const Chart&>().ToCoordinates(
+                       std::declval<const typename Chart::Reference&>()))),
+      typename Chart::Reference>>> : std::true_type
+{
+};
 
 } // namespace homeomorphism
 

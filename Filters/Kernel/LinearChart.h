@@ -29,13 +29,34 @@ public:
   Reference ToReference(const Vector2& point) const { return this->Shape.ToBarycentric(point); }
   Vector2 ToPoint(const Reference& l) const { return this->Shape.FromBarycentric(l); }
 
-  Direction Pullback(const Reference&, const Vector2& vector) const
+  class Differential
   {
-    return this->Shape.VectorToBarycentric(vector);
+  public:
+    explicit Differential(const TriangleShape& shape)
+      : Shape(shape)
+    {
+    }
+    Direction Pullback(const Vector2& vector) const
+    {
+      return this->Shape.VectorToBarycentric(vector);
+    }
+    Vector2 Pushforward(const Direction& direction) const
+    {
+      return this->Shape.FromBarycentric(direction);
+    }
+
+  private:
+    TriangleShape Shape;
+  };
+
+  Differential DifferentialAt(const Reference&) const { return Differential(this->Shape); }
+  Direction Pullback(const Reference& l, const Vector2& vector) const
+  {
+    return this->DifferentialAt(l).Pullback(vector);
   }
-  Vector2 Pushforward(const Reference&, const Direction& direction) const
+  Vector2 Pushforward(const Reference& l, const Direction& direction) const
   {
-    return this->Shape.FromBarycentric(direction);
+    return this->DifferentialAt(l).Pushforward(direction);
   }
 
   /// e is the edge with the smallest barycentric coordinate (the first of equals), c = 1 - 3 l_e,
@@ -72,6 +93,8 @@ public:
 private:
   TriangleShape Shape;
 };
+
+static_assert(IsChart<LinearChart>::value, "See CoordinateSystem.h");
 
 } // namespace homeomorphism
 

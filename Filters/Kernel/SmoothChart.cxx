@@ -189,16 +189,28 @@ StripFunction FunctionAt(const Barycentric& l, int k, const SmoothStrip& strip)
   return StripFunction(l[k], l[NextCorner(k)], l[PreviousCorner(k)], strip.Tau);
 }
 
-/// The derivative of B along a direction whose components sum to 0.
-double DerivativeAlong(const StripFunction& function, int k, const Barycentric& direction)
+bool Contains(const SmoothStrip& strip, const Barycentric& l, int k)
 {
-  return (1.0 - function.OneMinusSlope()) * direction[k] +
-    function.AlongSides(direction[NextCorner(k)], direction[PreviousCorner(k)]);
+  return strip.Contains(l[k], l[NextCorner(k)], l[PreviousCorner(k)]);
 }
 
-double DeterminantRatioOf(const StripFunction& function, const SmoothStrip& strip)
+/// The chart maps each strip onto itself, so the affine coordinates determine whether the point
+/// with the least coordinate for k is in the strip opposite k.
+Barycentric ToReferenceOf(const Barycentric& affine, int k, const SmoothStrip& strip)
 {
-  return function.DeterminantRatio(strip.Kappa, strip.OffsetNext, strip.OffsetPrevious);
+  if (!Contains(strip, affine, k))
+  {
+    return affine;
+  }
+  StripEquation<1> equation;
+  SolveBatch<1>(equation, &affine[k], &affine[NextCorner(k)], &affine[PreviousCorner(k)],
+    &strip.Kappa, &strip.OffsetNext, &strip.OffsetPrevious, &strip.Tau);
+  return Moved(affine, k, strip, -equation.Root[0]);
+}
+
+Barycentric FromReferenceOf(const Barycentric& l, int k, const SmoothStrip& strip)
+{
+  return Contains(strip, l, k) ? Moved(l, k, strip, FunctionAt(l, k, strip).Value()) : l;
 }
 
 } // namespace
@@ -247,7 +259,7 @@ namespace
 
 /// For few points, this loads less of the strips than the vectorized loops do.
 void SetSmoothPoint(SmoothBatch& batch, int i, const double* const coordinates[3],
-  const SmoothStrips& source, const SmoothStrips& target)
+  const SmoothStripsView& source, const SmoothStripsView& target)
 {
   const double l[3] = { coordinates[0][i], coordinates[1][i], coordinates[2][i] };
   const int corner = LeastCorner(l[0], l[1], l[2]);
@@ -255,7 +267,7 @@ void SetSmoothPoint(SmoothBatch& batch, int i, const double* const coordinates[3
   batch.L[0][i] = l[corner];
   batch.L[1][i] = l[NextCorner(corner)];
   batch.L[2][i] = l[PreviousCorner(corner)];
-  const SmoothStrips* domains[2] = { &source, &target };
+  const SmoothStripsView* domains[2] = { &source, &target };
   for (int domain = 0; domain < 2; ++domain)
   {
     const SmoothStrip& strip = (*domains[domain])[corner];
@@ -270,7 +282,7 @@ void SetSmoothPoint(SmoothBatch& batch, int i, const double* const coordinates[3
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const coordinates[3],
-  const SmoothStrips& source, const SmoothStrips& target)
+  const SmoothStripsView& source, const SmoothStripsView& target)
 {
   if (end - begin < LeastVector)
   {
@@ -297,7 +309,7 @@ void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const 
     batch.L[1][i] = corner == 0 ? b : (corner == 1 ? c : a);
     batch.L[2][i] = corner == 0 ? c : (corner == 1 ? a : b);
   }
-  const SmoothStrips* domains[2] = { &source, &target };
+  const SmoothStripsView* domains[2] = { &source, &target };
   for (int domain = 0; domain < 2; ++domain)
   {
     const SmoothStrip s0 = (*domains[domain])[0];
@@ -337,7 +349,7 @@ void FillSmoothBatch(SmoothBatch& batch, int begin, int end)
 }
 
 HOMEOMORPHISM_FOR_WIDE_VECTORS
-void MapSmoothBatch(SmoothBatch& batch, int count)
+void MapSmoothBatch(SmoothBatch& batch, int count, double (*references)[SmoothBatch::Size])
 {
   constexpr int width = 32;
   static_assert(SmoothBatch::Capacity % width == 0, "whole groups of batch");
@@ -363,6 +375,12 @@ void MapSmoothBatch(SmoothBatch& batch, int count)
         previous[i] -= offsetPrevious[i] * equation.Root[i];
       }
     }
+    if (references)
+    {
+      std::copy_n(k, width, references[0] + first);
+      std::copy_n(next, width, references[1] + first);
+      std::copy_n(previous, width, references[2] + first);
+    }
     const double* offsetNext = batch.OffsetNext[1] + first;
     const double* offsetPrevious = batch.OffsetPrevious[1] + first;
     const double* kappa = batch.Kappa[1] + first;
@@ -378,65 +396,72 @@ void MapSmoothBatch(SmoothBatch& batch, int count)
   }
 }
 
-int SmoothChart::StripAt(const Barycentric& l) const
-{
-  const int k = LeastCorner(l[0], l[1], l[2]);
-  return this->Strips[k].Contains(l[k], l[NextCorner(k)], l[PreviousCorner(k)]) ? k : -1;
-}
-
 SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
 {
-  // The chart maps each strip onto itself, so the affine coordinates determine the strip.
   const Barycentric affine = this->Shape.ToBarycentric(point);
-  const int k = this->StripAt(affine);
-  if (k < 0)
-  {
-    return affine;
-  }
-  const SmoothStrip& strip = this->Strips[k];
-  StripEquation<1> equation;
-  SolveBatch<1>(equation, &affine[k], &affine[NextCorner(k)], &affine[PreviousCorner(k)],
-    &strip.Kappa, &strip.OffsetNext, &strip.OffsetPrevious, &strip.Tau);
-  return Moved(affine, k, strip, -equation.Root[0]);
+  const int k = LeastCorner(affine[0], affine[1], affine[2]);
+  return ToReferenceOf(affine, k, this->Strips[k]);
+}
+
+SmoothPoint MapSmoothPoint(
+  const Barycentric& affine, const SmoothStripsView& source, const SmoothStripsView& target)
+{
+  const int k = LeastCorner(affine[0], affine[1], affine[2]);
+  SmoothPoint point;
+  point.Reference = ToReferenceOf(affine, k, source[k]);
+  point.Image = FromReferenceOf(point.Reference, k, target[k]);
+  return point;
 }
 
 Vector2 SmoothChart::ToPoint(const Reference& l) const
 {
-  const int k = this->StripAt(l);
-  if (k < 0)
-  {
-    return this->Shape.FromBarycentric(l);
-  }
-  const SmoothStrip& strip = this->Strips[k];
-  return this->Shape.FromBarycentric(Moved(l, k, strip, FunctionAt(l, k, strip).Value()));
+  const int k = LeastCorner(l[0], l[1], l[2]);
+  return this->Shape.FromBarycentric(FromReferenceOf(l, k, this->Strips[k]));
 }
 
-Vector2 SmoothChart::Pushforward(const Reference& l, const Direction& direction) const
+SmoothChart::Differential::Differential(
+  const TriangleShape& shape, const SmoothStripsView& strips, const Reference& l)
+  : Shape(shape)
+  , Edge(LeastCorner(l[0], l[1], l[2]))
+  , Strip(strips[this->Edge])
 {
-  const int k = this->StripAt(l);
-  if (k < 0)
+  if (!Contains(this->Strip, l, this->Edge))
   {
-    return this->Shape.FromBarycentric(direction);
+    this->Edge = -1;
+    return;
   }
-  const SmoothStrip& strip = this->Strips[k];
-  return this->Shape.FromBarycentric(
-    Moved(direction, k, strip, DerivativeAlong(FunctionAt(l, k, strip), k, direction)));
+  const StripFunction function = FunctionAt(l, this->Edge, this->Strip);
+  this->ByOwn = 1.0 - function.OneMinusSlope();
+  this->ByNext = function.AlongSides(1.0, 0.0);
+  this->ByPrevious = function.AlongSides(0.0, 1.0);
+  this->DeterminantRatio = function.DeterminantRatio(
+    this->Strip.Kappa, this->Strip.OffsetNext, this->Strip.OffsetPrevious);
 }
 
-SmoothChart::Direction SmoothChart::Pullback(const Reference& l, const Vector2& vector) const
+double SmoothChart::Differential::Along(const Barycentric& direction) const
+{
+  return this->ByOwn * direction[this->Edge] +
+    (this->ByNext * direction[NextCorner(this->Edge)] +
+      this->ByPrevious * direction[PreviousCorner(this->Edge)]);
+}
+
+Vector2 SmoothChart::Differential::Pushforward(const Direction& direction) const
+{
+  return this->Shape.FromBarycentric(this->Edge < 0
+      ? direction
+      : homeomorphism::Moved(direction, this->Edge, this->Strip, this->Along(direction)));
+}
+
+SmoothChart::Direction SmoothChart::Differential::Pullback(const Vector2& vector) const
 {
   const Barycentric direction = this->Shape.VectorToBarycentric(vector);
-  const int k = this->StripAt(l);
-  if (k < 0)
+  if (this->Edge < 0)
   {
     return direction;
   }
-  // The derivative of the chart is the identity plus a matrix of rank one (Sherman-Morrison
-  // formula).
-  const SmoothStrip& strip = this->Strips[k];
-  const StripFunction function = FunctionAt(l, k, strip);
-  return Moved(direction, k, strip,
-    -DerivativeAlong(function, k, direction) / DeterminantRatioOf(function, strip));
+  // Sherman-Morrison formula.
+  return homeomorphism::Moved(
+    direction, this->Edge, this->Strip, -this->Along(direction) / this->DeterminantRatio);
 }
 
 TriangularCoordinates SmoothChart::ToCoordinates(const Reference& l) const
@@ -449,12 +474,6 @@ SmoothChart::Reference SmoothChart::FromCoordinates(const TriangularCoordinates&
 {
   return ContourChart::EquilateralShape().ToBarycentric(
     ContourChart::Equilateral().ToPoint(coordinates));
-}
-
-double SmoothChart::DeterminantRatio(const Reference& l) const
-{
-  const int k = this->StripAt(l);
-  return k < 0 ? 1.0 : DeterminantRatioOf(FunctionAt(l, k, this->Strips[k]), this->Strips[k]);
 }
 
 double SmoothChart::DeterminantBound() const

@@ -95,6 +95,16 @@ void LimitDeviation(
 /// The strips of the edges of a triangle. Element k belongs to the edge opposite corner k.
 using SmoothStrips = std::array<SmoothStrip, 3>;
 
+/// The strips of a triangle where they are stored, at a distance from each other.
+struct SmoothStripsView
+{
+  const SmoothStrip* First;
+  int Stride;
+
+  const SmoothStrip& operator[](int edge) const { return this->First[edge * this->Stride]; }
+  SmoothStrips All() const { return { (*this)[0], (*this)[1], (*this)[2] }; }
+};
+
 /// The strips of a triangle. views[k] is the view of this triangle from the edge opposite corner k,
 /// neighbors[k] its twin triangle. Both triangles at an edge must be given the same two views (one
 /// reversed).
@@ -131,14 +141,27 @@ inline int LeastCorner(double first, double second, double third)
 /// coordinates[corner] points to arrays of the barycentric coordinates of the affine chart of the
 /// source, one per point. Overwrites up to WidestVector - 1 elements after the last.
 void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const coordinates[3],
-  const SmoothStrips& source, const SmoothStrips& target);
+  const SmoothStripsView& source, const SmoothStripsView& target);
 
 /// Fills elements with a fixed point of the map.
 void FillSmoothBatch(SmoothBatch& batch, int begin, int end);
 
 /// Maps the first @a count points from the source's chart to the target's, to the same bits as
-/// SmoothChart::ToReference and ToPoint. Fills elements up to the next multiple of 32.
-void MapSmoothBatch(SmoothBatch& batch, int count);
+/// SmoothChart::ToReference and ToPoint. Fills elements up to the next multiple of 32. Copies the
+/// references to @a references, in the order of L, unless it is null.
+void MapSmoothBatch(SmoothBatch& batch, int count, double (*references)[SmoothBatch::Size]);
+
+/// Barycentric coordinates of a point in the affine charts of both triangles, and its reference.
+struct SmoothPoint
+{
+  Barycentric Reference;
+  Barycentric Image;
+};
+
+/// Maps a point with these barycentric coordinates in the affine chart of the source, to the same
+/// bits as MapSmoothBatch.
+SmoothPoint MapSmoothPoint(
+  const Barycentric& affine, const SmoothStripsView& source, const SmoothStripsView& target);
 
 /// The chart of the Smooth system.
 class SmoothChart
@@ -161,8 +184,45 @@ public:
 
   Reference ToReference(const Vector2& point) const;
   Vector2 ToPoint(const Reference& l) const;
-  Direction Pullback(const Reference& l, const Vector2& vector) const;
-  Vector2 Pushforward(const Reference& l, const Direction& direction) const;
+
+  /// The derivative of the chart is that of the affine chart, times the identity plus a matrix of
+  /// rank one in a strip.
+  class Differential
+  {
+  public:
+    /// Of the strips, only one is read.
+    Differential(const TriangleShape& shape, const SmoothStripsView& strips, const Reference& l);
+    Direction Pullback(const Vector2& vector) const;
+    Vector2 Pushforward(const Direction& direction) const;
+    /// See SmoothChart.
+    double GetDeterminantRatio() const { return this->DeterminantRatio; }
+
+  private:
+    /// The derivative of B along a direction whose components sum to 0.
+    double Along(const Barycentric& direction) const;
+
+    TriangleShape Shape;
+    /// The edge whose strip contains l, or -1.
+    int Edge;
+    SmoothStrip Strip;
+    double ByOwn = 0.0;
+    double ByNext = 0.0;
+    double ByPrevious = 0.0;
+    double DeterminantRatio = 1.0;
+  };
+
+  Differential DifferentialAt(const Reference& l) const
+  {
+    return { this->Shape, { this->Strips.data(), 1 }, l };
+  }
+  Direction Pullback(const Reference& l, const Vector2& vector) const
+  {
+    return this->DifferentialAt(l).Pullback(vector);
+  }
+  Vector2 Pushforward(const Reference& l, const Direction& direction) const
+  {
+    return this->DifferentialAt(l).Pushforward(direction);
+  }
 
   /// The Contour coordinates of the point of the equilateral triangle with barycentric coordinates
   /// l.
@@ -172,7 +232,10 @@ public:
   /// The determinant of the chart at l divided by that of the affine chart. Positive everywhere: 1
   /// + d_k K'(u) + 12 tau u^3 (1 - u)^2 (d_i (l_j / (l_i + l_j))^2 + d_j (l_i / (l_i + l_j))^2),
   /// where K = u W and d are the barycentric components of D_k.
-  double DeterminantRatio(const Reference& l) const;
+  double DeterminantRatio(const Reference& l) const
+  {
+    return this->DifferentialAt(l).GetDeterminantRatio();
+  }
 
   /// A lower bound of DeterminantRatio over the triangle: the least min(2 a* / (a + a*), 0.28) over
   /// its interior edges, 1 if it has none.
@@ -182,12 +245,11 @@ public:
   double StripWidth(int edge) const { return this->Strips[edge].Tau; }
 
 private:
-  /// The edge whose strip contains l, or -1.
-  int StripAt(const Barycentric& l) const;
-
   TriangleShape Shape;
   SmoothStrips Strips;
 };
+
+static_assert(IsChart<SmoothChart>::value, "See CoordinateSystem.h");
 
 } // namespace homeomorphism
 

@@ -25,11 +25,12 @@ EdgeView Unfolded(const EdgeView& view, const Twin& across)
 class StripMaker
 {
 public:
-  StripMaker(const Triangulation& triangulation, const MeshGeometry& geometry,
-    LargeArray<SmoothStrips>& strips)
+  StripMaker(
+    const Triangulation& triangulation, const MeshGeometry& geometry, StripArray& strips, int mesh)
     : Topology(triangulation)
     , Geometry(geometry)
     , Strips(strips)
+    , Mesh(mesh)
   {
   }
 
@@ -56,9 +57,9 @@ public:
     this->First.Look(this->Turned, this->Count);
     this->Second.Look(this->Turned, this->Count);
     MakeSmoothStrips(this->First.Views, this->Second.Unfolded, this->Count, this->Made);
-    this->First.Write(this->Made, this->Count, this->Strips);
+    this->First.Write(this->Made, this->Count, this->Strips, this->Mesh);
     MakeSmoothStrips(this->Second.Views, this->First.Unfolded, this->Count, this->Made);
-    this->Second.Write(this->Made, this->Count, this->Strips);
+    this->Second.Write(this->Made, this->Count, this->Strips, this->Mesh);
     this->Count = 0;
   }
 
@@ -97,18 +98,19 @@ private:
       }
     }
 
-    void Write(const SmoothStrip* made, int count, LargeArray<SmoothStrips>& strips) const
+    void Write(const SmoothStrip* made, int count, StripArray& strips, int mesh) const
     {
       for (int i = 0; i < count; ++i)
       {
-        strips[this->Triangles[i]][this->Edges[i]] = made[i];
+        strips.Get(this->Triangles[i], mesh)[this->Edges[i] * strips.GetStride()] = made[i];
       }
     }
   };
 
   const Triangulation& Topology;
   const MeshGeometry& Geometry;
-  LargeArray<SmoothStrips>& Strips;
+  StripArray& Strips;
+  int Mesh;
   int Count = 0;
   bool Turned[EdgeBatchSize];
   OneSide First;
@@ -117,19 +119,21 @@ private:
 };
 
 /// Computes the strips of all triangles. Each edge is visited once, for both of its triangles.
-LargeArray<SmoothStrips> MakeStrips(
-  const Triangulation& triangulation, const MeshGeometry& geometry)
+void MakeStrips(
+  const Triangulation& triangulation, const MeshGeometry& geometry, StripArray& strips, int mesh)
 {
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  LargeArray<SmoothStrips> strips(count);
+  const auto strip = [&](TriangleIndex t, int edge) -> SmoothStrip& {
+    return strips.Get(t, mesh)[edge * strips.GetStride()];
+  };
   const auto makeBoth = [&](TriangleIndex t, int k, const Twin& across) {
     const EdgeView own = geometry.GetView(triangulation.GetCorners(t), k);
     const EdgeView other = geometry.GetView(triangulation.GetCorners(across.Triangle), across.Edge);
-    strips[t][k] = SmoothStrip(own, Unfolded(other, across));
-    strips[across.Triangle][across.Edge] = SmoothStrip(other, Unfolded(own, across));
+    strip(t, k) = SmoothStrip(own, Unfolded(other, across));
+    strip(across.Triangle, across.Edge) = SmoothStrip(other, Unfolded(own, across));
   };
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
-    StripMaker maker(triangulation, geometry, strips);
+    StripMaker maker(triangulation, geometry, strips, mesh);
     for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
     {
       for (int k = 0; k < 3; ++k)
@@ -137,7 +141,7 @@ LargeArray<SmoothStrips> MakeStrips(
         const Twin across = triangulation.GetTwin(t, k);
         if (across.Triangle < 0)
         {
-          strips[t][k] = SmoothStrip();
+          strip(t, k) = SmoothStrip();
         }
         else if (across.Triangle > t)
         {
@@ -154,7 +158,6 @@ LargeArray<SmoothStrips> MakeStrips(
     }
     maker.Finish();
   });
-  return strips;
 }
 
 } // namespace
@@ -192,11 +195,13 @@ std::vector<TriangleIndex> FindDiscordant(
 
 ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   const MeshGeometry& geometry, CoordinateSystem system, CenterPoint center,
-  std::vector<std::uint8_t> mappedByLinear)
+  std::vector<std::uint8_t> mappedByLinear, std::shared_ptr<StripArray> strips, int mesh)
   : Geometry(geometry)
   , System(system)
   , Center(center)
   , MappedByLinear(std::move(mappedByLinear))
+  , Strips(std::move(strips))
+  , Mesh(mesh)
 {
   if (system == CoordinateSystem::Contour)
   {
@@ -212,22 +217,26 @@ ChartedTriangulation::ChartedTriangulation(const Triangulation& triangulation,
   }
   else if (system == CoordinateSystem::Smooth)
   {
-    this->Strips = MakeStrips(triangulation, geometry);
+    MakeStrips(triangulation, geometry, *this->Strips, mesh);
   }
 }
 
-void ChartedTriangulation::LimitDeviation(
-  ChartedTriangulation& source, ChartedTriangulation& target, double maximumDeviation)
+void ChartedTriangulation::LimitDeviation(TriangleIndex count, ChartedTriangulation& source,
+  ChartedTriangulation& target, double maximumDeviation)
 {
-  const auto count = static_cast<vtkIdType>(source.Strips.size());
+  if (source.System != CoordinateSystem::Smooth)
+  {
+    return;
+  }
   vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
     for (auto t = static_cast<TriangleIndex>(begin); t < end; ++t)
     {
       const TriangleShape& shape = target.Geometry.GetShape(t);
       for (int k = 0; k < 3; ++k)
       {
-        homeomorphism::LimitDeviation(
-          source.Strips[t][k], target.Strips[t][k], k, shape, maximumDeviation);
+        const int stride = k * source.Strips->GetStride();
+        homeomorphism::LimitDeviation(source.Strips->Get(t, source.Mesh)[stride],
+          target.Strips->Get(t, target.Mesh)[stride], k, shape, maximumDeviation);
       }
     }
   });

@@ -16,7 +16,9 @@
 #include "Kernel/LinearChart.h"
 #include "Kernel/SmoothChart.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace homeomorphism
@@ -30,20 +32,52 @@ std::array<Neighbor, 3> UnfoldNeighbors(
 std::vector<TriangleIndex> FindDiscordant(
   const Triangulation& triangulation, const MeshGeometry& geometry);
 
+/// The strips of all triangles of one mesh or of both meshes of a pair. Those of an edge of a
+/// triangle in both meshes are in one line of the processor's cache.
+class StripArray
+{
+public:
+  StripArray(TriangleIndex triangles, int meshes)
+    : Strips(std::size_t(3) * triangles * meshes)
+    , Meshes(meshes)
+  {
+  }
+
+  /// The strip of a triangle's first edge in a mesh; those of the other two follow at a distance of
+  /// GetStride.
+  SmoothStrip* Get(TriangleIndex triangle, int mesh)
+  {
+    return &this->Strips[std::size_t(3) * triangle * this->Meshes + mesh];
+  }
+  const SmoothStrip* Get(TriangleIndex triangle, int mesh) const
+  {
+    return &this->Strips[std::size_t(3) * triangle * this->Meshes + mesh];
+  }
+  int GetStride() const { return this->Meshes; }
+
+private:
+  LargeArray<SmoothStrip> Strips;
+  int Meshes;
+};
+
 /// The charts of all triangles of one geometry. Stores the data that is expensive to compute, and
 /// constructs charts from it on request. Immutable; any number of threads may use it.
 class ChartedTriangulation
 {
 public:
   /// Keeps a reference to the geometry. @a mappedByLinear marks the triangles that the Linear
-  /// system maps (empty: none), the same in both meshes of a pair.
+  /// system maps (empty: none), the same in both meshes of a pair. The Smooth system stores its
+  /// strips in @a strips, which both meshes of a pair share, as those of the mesh with number @a
+  /// mesh there.
   ChartedTriangulation(const Triangulation& triangulation, const MeshGeometry& geometry,
-    CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> mappedByLinear);
+    CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> mappedByLinear,
+    std::shared_ptr<StripArray> strips, int mesh);
 
   /// Keeps the Smooth map from @a source to @a target within @a maximumDeviation of the piecewise
-  /// linear map, in the target's normalized coordinates. Does nothing in other systems.
-  static void LimitDeviation(
-    ChartedTriangulation& source, ChartedTriangulation& target, double maximumDeviation);
+  /// linear map, in the target's normalized coordinates, in all @a count triangles. Does nothing in
+  /// other systems.
+  static void LimitDeviation(TriangleIndex count, ChartedTriangulation& source,
+    ChartedTriangulation& target, double maximumDeviation);
 
   const MeshGeometry& GetGeometry() const { return this->Geometry; }
   CoordinateSystem GetSystem() const { return this->System; }
@@ -79,26 +113,29 @@ public:
   }
   SmoothChart GetSmoothChart(TriangleIndex triangle) const
   {
-    return SmoothChart(this->Geometry.GetShape(triangle), this->Strips[triangle]);
+    return SmoothChart(this->Geometry.GetShape(triangle), this->GetStrips(triangle).All());
   }
-  const SmoothStrips& GetSmoothStrips(TriangleIndex triangle) const
+  SmoothStripsView GetStrips(TriangleIndex triangle) const
   {
-    return this->Strips[triangle];
+    return { this->Strips->Get(triangle, this->Mesh), this->Strips->GetStride() };
   }
 
   /// Calls visit(chart) with the chart of the triangle, whatever its type, and returns the result.
   template <typename Visit>
   auto VisitChart(TriangleIndex triangle, Visit&& visit) const
   {
-    switch (this->GetSystemOf(triangle))
-    {
-      case CoordinateSystem::Contour:
-        return visit(this->GetContourChart(triangle));
-      case CoordinateSystem::Smooth:
-        return visit(this->GetSmoothChart(triangle));
-      default:
-        return visit(this->GetLinearChart(triangle));
-    }
+    return Dispatch(this->GetSystemOf(triangle),
+      [this, triangle, &visit](auto getChart) { return visit((this->*getChart)(triangle)); });
+  }
+
+  /// Calls visit(chart, otherChart) with the charts of the triangle here and in the other mesh of
+  /// the pair.
+  template <typename Visit>
+  auto VisitCharts(const ChartedTriangulation& other, TriangleIndex triangle, Visit&& visit) const
+  {
+    return Dispatch(this->GetSystemOf(triangle), [this, &other, triangle, &visit](auto getChart) {
+      return visit((this->*getChart)(triangle), (other.*getChart)(triangle));
+    });
   }
 
   /// Converts between points in the frame of a triangle and their triangular coordinates.
@@ -106,13 +143,31 @@ public:
   Vector2 FromCoordinates(TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
 private:
+  /// Calls use with the function that makes the charts of a system.
+  template <typename Use>
+  static auto Dispatch(CoordinateSystem system, Use&& use)
+  {
+    switch (system)
+    {
+      case CoordinateSystem::Contour:
+        return use(&ChartedTriangulation::GetContourChart);
+      case CoordinateSystem::Smooth:
+        return use(&ChartedTriangulation::GetSmoothChart);
+      case CoordinateSystem::Linear:
+      case CoordinateSystem::Cubic:
+        break;
+    }
+    return use(&ChartedTriangulation::GetLinearChart);
+  }
+
   const MeshGeometry& Geometry;
   CoordinateSystem System;
   CenterPoint Center;
   std::vector<std::uint8_t> MappedByLinear;
   // A third of the size of the charts, which are constructed quickly from it.
   LargeArray<EdgeViews> ContourViews;
-  LargeArray<SmoothStrips> Strips;
+  std::shared_ptr<StripArray> Strips;
+  int Mesh;
 };
 
 } // namespace homeomorphism

@@ -20,58 +20,79 @@ namespace homeomorphism
 namespace
 {
 
-/// Calls use(begin, end, triangle) for points in a row that are in one triangle and no corners of
-/// it, and useOther(i) for each of the others.
-template <typename Use, typename UseOther>
-void ForEachRun(const PointBlock& block, Use&& use, UseOther&& useOther)
+/// The points of a block in runs: points in a row that are in one triangle and no corners of it.
+class PointRuns
 {
-  for (int begin = 0; begin < block.Count;)
+public:
+  explicit PointRuns(const PointBlock& block)
   {
-    const TriangleIndex t = block.Triangles[begin];
-    int end = begin + 1;
-    if (t < 0 || block.Corners[begin] >= 0)
+    TriangleIndex last = -1;
+    for (int i = 0; i < block.Count; ++i)
     {
-      useOther(begin);
-    }
-    else
-    {
-      while (end < block.Count && block.Triangles[end] == t && block.Corners[end] < 0)
+      const TriangleIndex t = block.Corners[i] < 0 ? block.Triangles[i] : -1;
+      if (t < 0 || t != last)
       {
-        ++end;
-      }
-      use(begin, end, t);
-    }
-    begin = end;
-  }
-}
-
-/// ForEachRun, which calls prefetch(i, triangle) for the first points in a triangle in advance, to
-/// hide memory latency.
-template <typename Prefetch, typename Use, typename UseOther>
-void ForEachRun(const PointBlock& block, Prefetch&& prefetch, Use&& use, UseOther&& useOther)
-{
-  int ahead = 0;
-  TriangleIndex last = -1;
-  const auto prefetchUpTo = [&](int end) {
-    for (; ahead < std::min(end, block.Count); ++ahead)
-    {
-      const TriangleIndex t = block.Triangles[ahead];
-      if (t != last && t >= 0)
-      {
-        prefetch(ahead, t);
+        this->Runs[this->Count++] = { i, t };
         last = t;
       }
     }
+    this->Runs[this->Count].Begin = block.Count;
+  }
+
+  /// Calls use(begin, end, triangle) for each run, and useOther(i) for each of the other points.
+  template <typename Use, typename UseOther>
+  void ForEach(Use&& use, UseOther&& useOther) const
+  {
+    for (int n = 0; n < this->Count; ++n)
+    {
+      const Run& run = this->Runs[n];
+      if (run.Triangle < 0)
+      {
+        useOther(run.Begin);
+      }
+      else
+      {
+        use(run.Begin, this->Runs[n + 1].Begin, run.Triangle);
+      }
+    }
+  }
+
+  /// The same, which calls prefetch(begin, triangle) for each run in advance, to hide memory
+  /// latency.
+  template <typename Prefetch, typename Use, typename UseOther>
+  void ForEach(Prefetch&& prefetch, Use&& use, UseOther&& useOther) const
+  {
+    int ahead = 0;
+    const auto prefetchUpTo = [&](int end) {
+      for (; ahead < this->Count && this->Runs[ahead].Begin < end; ++ahead)
+      {
+        if (this->Runs[ahead].Triangle >= 0)
+        {
+          prefetch(this->Runs[ahead].Begin, this->Runs[ahead].Triangle);
+        }
+      }
+    };
+    prefetchUpTo(PrefetchDistance);
+    this->ForEach(
+      [&](int begin, int end, TriangleIndex t) {
+        prefetchUpTo(end + PrefetchDistance);
+        use(begin, end, t);
+      },
+      useOther);
+  }
+
+private:
+  struct Run
+  {
+    int Begin;
+    /// -1 if the point is outside or a corner.
+    TriangleIndex Triangle;
   };
-  prefetchUpTo(PrefetchDistance);
-  ForEachRun(
-    block,
-    [&](int begin, int end, TriangleIndex t) {
-      prefetchUpTo(end + PrefetchDistance);
-      use(begin, end, t);
-    },
-    useOther);
-}
+
+  // The end of the last run is the beginning of one more.
+  Run Runs[PointBlock::Capacity + 1];
+  int Count = 0;
+};
 
 /// Barycentric coordinates of the points of a run, for two corners: the apex of the frame in which
 /// the images are, and the corner before it.
@@ -132,31 +153,32 @@ HOMEOMORPHISM_FOR_WIDE_VECTORS void ToHorizontalPlane(const PlaneFrame& frame, d
   }
 }
 
-/// The determinant of a map's derivative, from frame to frame. The matrix's own cancels where a
-/// triangle or its neighbor is so thin that the columns are almost parallel; the charts know
-/// better.
 double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
 {
   return (other.Base / shape.Base) * (other.Height / shape.Height);
 }
 
-double Determinant(const LinearChart&, const LinearChart&, const TriangleShape& shape,
-  const TriangleShape& otherShape, const Barycentric&, const Matrix2&)
+/// The determinant of a map's derivative, from frame to frame.
+template <typename Differential>
+double Determinant(const Differential&, const Differential&, const TriangleShape&,
+  const TriangleShape&, const Matrix2& matrix)
+{
+  return matrix.Determinant();
+}
+
+// The matrix's own cancels where a triangle or its neighbor is so thin that the columns are almost
+// parallel; these charts know better.
+double Determinant(const LinearChart::Differential&, const LinearChart::Differential&,
+  const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
 {
   return AffineDeterminant(shape, otherShape);
 }
 
-double Determinant(const SmoothChart& chart, const SmoothChart& other, const TriangleShape& shape,
-  const TriangleShape& otherShape, const Barycentric& l, const Matrix2&)
+double Determinant(const SmoothChart::Differential& chart, const SmoothChart::Differential& other,
+  const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
 {
   return AffineDeterminant(shape, otherShape) *
-    (other.DeterminantRatio(l) / chart.DeterminantRatio(l));
-}
-
-double Determinant(const ContourChart&, const ContourChart&, const TriangleShape&,
-  const TriangleShape&, const TriangularCoordinates&, const Matrix2& matrix)
-{
-  return matrix.Determinant();
+    (other.GetDeterminantRatio() / chart.GetDeterminantRatio());
 }
 
 } // namespace
@@ -242,15 +264,21 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
       result->Cubic = std::make_shared<const CubicHomeomorphism>(*result->Pair, options.Cubic);
     }
   }
+  std::shared_ptr<StripArray> strips;
+  if (options.System == CoordinateSystem::Smooth)
+  {
+    strips = std::make_shared<StripArray>(topology.GetNumberOfTriangles(), int(domains.size()));
+  }
   std::array<std::shared_ptr<ChartedTriangulation>, 2> charts;
   for (const Domain domain : domains)
   {
-    charts[int(domain)] = std::make_shared<ChartedTriangulation>(
-      topology, result->Pair->GetGeometry(domain), options.System, options.Center, mappedByLinear);
+    charts[int(domain)] =
+      std::make_shared<ChartedTriangulation>(topology, result->Pair->GetGeometry(domain),
+        options.System, options.Center, mappedByLinear, strips, int(domain));
   }
   if (target && options.Cubic.MaximumDeviation < std::numeric_limits<double>::max())
   {
-    ChartedTriangulation::LimitDeviation(*charts[0], *charts[1],
+    ChartedTriangulation::LimitDeviation(topology.GetNumberOfTriangles(), *charts[0], *charts[1],
       options.Cubic.MaximumDeviation * result->Pair->GetGeometry(Domain::Target).GetScale());
   }
   result->Charts = { charts[0], charts[1] };
@@ -292,16 +320,20 @@ int Homeomorphism::MapBlock(Domain from, PointBlock& block) const
     case CoordinateSystem::Contour:
       this->MapByContours(from, block);
       break;
-    default:
+    case CoordinateSystem::Linear:
     {
       const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-      ForEachRun(
-        block, [&](int, TriangleIndex t) { target.PrefetchFrame(t); },
+      PointRuns(block).ForEach([&](int, TriangleIndex t) { target.PrefetchFrame(t); },
         [&](int begin, int end, TriangleIndex t) { this->MapLinearly(from, t, begin, end, block); },
         [](int) {});
     }
   }
+  int others = 0;
   for (int i = 0; i < block.Count; ++i)
+  {
+    others += block.Triangles[i] < 0 || block.Corners[i] >= 0 ? 1 : 0;
+  }
+  for (int i = 0; i < block.Count && others > 0; ++i)
   {
     if (block.Triangles[i] < 0)
     {
@@ -331,24 +363,26 @@ void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
   const ChartedTriangulation& charts = this->GetCharts(from);
   const ChartedTriangulation& otherCharts = this->GetCharts(Opposite(from));
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+  const PointRuns runs(block);
   SmoothBatch batch;
-  ForEachRun(
-    block,
+  runs.ForEach(
     [&](int begin, TriangleIndex t) {
       const std::array<const double*, 3> l = this->ByCorner(from, t, block);
       const int corner = LeastCorner(l[0][begin], l[1][begin], l[2][begin]);
-      Prefetch(&charts.GetSmoothStrips(t)[corner]);
-      Prefetch(&otherCharts.GetSmoothStrips(t)[corner]);
+      Prefetch(&charts.GetStrips(t)[corner]);
       target.PrefetchFrame(t);
     },
     [&](int begin, int end, TriangleIndex t) {
-      SetSmoothBatch(batch, begin, end, this->ByCorner(from, t, block).data(),
-        charts.GetSmoothStrips(t), otherCharts.GetSmoothStrips(t));
+      SetSmoothBatch(batch, begin, end, this->ByCorner(from, t, block).data(), charts.GetStrips(t),
+        otherCharts.GetStrips(t));
     },
     [&](int other) { FillSmoothBatch(batch, other, other + 1); });
-  MapSmoothBatch(batch, block.Count);
-  ForEachRun(
-    block,
+  MapSmoothBatch(batch, block.Count, block.KeepsReferences ? block.References : nullptr);
+  for (int i = 0; i < block.Count && block.KeepsReferences; ++i)
+  {
+    block.ReferenceCorners[i] = static_cast<int>(batch.Corner[i]);
+  }
+  runs.ForEach(
     [&](int begin, int end, TriangleIndex t) {
       this->LeaveTriangle(
         from, t, begin, end, SmoothCoordinates{ batch, target.GetApex(t) }, block);
@@ -374,8 +408,7 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
   Vector2 points[PointBlock::Capacity];
   int numbers[PointBlock::Capacity];
   int count = 0;
-  ForEachRun(
-    block,
+  PointRuns(block).ForEach(
     [&](int, TriangleIndex t) {
       charts.PrefetchContourViews(t);
       otherCharts.PrefetchContourViews(t);
@@ -411,16 +444,12 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
 int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
 {
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  // Prefetch to hide memory latency.
-  ForEachRun(
-    block, [&](int, int, TriangleIndex t) { this->Cubic->PrefetchTriangle(t); }, [](int) {});
   static_assert(CubicBatch::Capacity == PointBlock::Capacity, "A batch is a block");
   CubicBatch batch;
   batch.Count = block.Count;
   const double* const inFrame[2] = { block.InPlane[0], block.InPlane[1] };
   double heights[PointBlock::Capacity];
-  ForEachRun(
-    block,
+  PointRuns(block).ForEach([&](int, TriangleIndex t) { this->Cubic->PrefetchTriangle(t); },
     [&](int begin, int end, TriangleIndex t) {
       this->Cubic->SetPoints(
         this->ToCubic(from), t, begin, end, this->ByCorner(from, t, block).data(), inFrame, batch);
@@ -494,17 +523,8 @@ void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin
 template <typename Use>
 auto Homeomorphism::VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const
 {
-  const ChartedTriangulation& source = this->GetCharts(from);
-  const ChartedTriangulation& target = this->GetCharts(Opposite(from));
-  switch (source.GetSystemOf(triangle))
-  {
-    case CoordinateSystem::Contour:
-      return use(source.GetContourChart(triangle), target.GetContourChart(triangle));
-    case CoordinateSystem::Smooth:
-      return use(source.GetSmoothChart(triangle), target.GetSmoothChart(triangle));
-    default:
-      return use(source.GetLinearChart(triangle), target.GetLinearChart(triangle));
-  }
+  return this->GetCharts(from).VisitCharts(
+    this->GetCharts(Opposite(from)), triangle, std::forward<Use>(use));
 }
 
 bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
@@ -534,7 +554,11 @@ bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   }
   FramePoint point;
   point.Offset = offset;
-  point.InPlane = this->MapInFrame(from, surfacePoint.Triangle, surfacePoint.Point.InPlane);
+  // Without the charts, of which one strip is needed.
+  point.InPlane = this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth
+    ? target.GetShape(surfacePoint.Triangle)
+        .FromBarycentric(this->MapByStrip(from, surfacePoint).Image)
+    : this->MapInFrame(from, surfacePoint.Triangle, surfacePoint.Point.InPlane);
   target.FromNormalized(target.FromFrame(surfacePoint.Triangle, point), image);
   return true;
 }
@@ -557,15 +581,26 @@ Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vec
   });
 }
 
-template <typename Chart>
-Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle, const Chart& chart,
-  const Chart& other, const typename Chart::Reference& reference) const
+template <typename Differential>
+Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle,
+  const Differential& differential, const Differential& other) const
 {
-  const Matrix2 matrix = MapDerivative(chart, other, reference);
+  const Matrix2 matrix = MapDerivative(differential, other);
   const TriangleShape& shape = this->Pair->GetGeometry(from).GetShape(triangle);
   const TriangleShape& otherShape = this->Pair->GetGeometry(Opposite(from)).GetShape(triangle);
   return this->FromFrames(
-    from, triangle, matrix, Determinant(chart, other, shape, otherShape, reference, matrix));
+    from, triangle, matrix, Determinant(differential, other, shape, otherShape, matrix));
+}
+
+/// The derivative of the Smooth map, without the charts, of which one strip is needed.
+Jacobian Homeomorphism::DeriveByStrip(
+  Domain from, TriangleIndex triangle, const SmoothChart::Reference& reference) const
+{
+  const auto at = [&](Domain domain) {
+    return SmoothChart::Differential(this->Pair->GetGeometry(domain).GetShape(triangle),
+      this->GetCharts(domain).GetStrips(triangle), reference);
+  };
+  return this->Derive(from, triangle, at(from), at(Opposite(from)));
 }
 
 Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoint) const
@@ -580,9 +615,66 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoin
   }
   return this->VisitCharts(
     from, surfacePoint.Triangle, [this, from, &surfacePoint](const auto& chart, const auto& other) {
-      return this->Derive(
-        from, surfacePoint.Triangle, chart, other, chart.ToReference(surfacePoint.Point.InPlane));
+      const auto reference = chart.ToReference(surfacePoint.Point.InPlane);
+      return this->Derive(from, surfacePoint.Triangle, chart.DifferentialAt(reference),
+        other.DifferentialAt(reference));
     });
+}
+
+bool Homeomorphism::MapPoint(
+  Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const
+{
+  if (this->Cubic || surfacePoint.Corner >= 0)
+  {
+    jacobian = this->GetJacobian(from, surfacePoint);
+    return this->MapPoint(from, surfacePoint, image);
+  }
+  const TriangleIndex triangle = surfacePoint.Triangle;
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+  FramePoint point;
+  point.Offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
+  if (this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth)
+  {
+    const SmoothPoint mapped = this->MapByStrip(from, surfacePoint);
+    point.InPlane = target.GetShape(triangle).FromBarycentric(mapped.Image);
+    jacobian = this->DeriveByStrip(from, triangle, mapped.Reference);
+  }
+  else
+  {
+    this->VisitCharts(from, triangle, [&](const auto& chart, const auto& other) {
+      const auto reference = chart.ToReference(surfacePoint.Point.InPlane);
+      point.InPlane = other.ToPoint(reference);
+      jacobian = this->Derive(
+        from, triangle, chart.DifferentialAt(reference), other.DifferentialAt(reference));
+    });
+  }
+  target.FromNormalized(target.FromFrame(triangle, point), image);
+  return true;
+}
+
+/// Maps a point by the Smooth system.
+SmoothPoint Homeomorphism::MapByStrip(Domain from, const SurfacePoint& surfacePoint) const
+{
+  const TriangleIndex t = surfacePoint.Triangle;
+  return MapSmoothPoint(
+    this->Pair->GetGeometry(from).GetShape(t).ToBarycentric(surfacePoint.Point.InPlane),
+    this->GetCharts(from).GetStrips(t), this->GetCharts(Opposite(from)).GetStrips(t));
+}
+
+Jacobian Homeomorphism::GetJacobian(Domain from, const PointBlock& block, int i) const
+{
+  if (!block.KeepsReferences || block.Corners[i] >= 0 ||
+    this->GetCharts(from).GetSystem() != CoordinateSystem::Smooth)
+  {
+    return this->GetJacobian(from, block.GetSurfacePoint(i));
+  }
+  const int corner = block.ReferenceCorners[i];
+  Barycentric reference;
+  reference[corner] = block.References[0][i];
+  reference[NextCorner(corner)] = block.References[1][i];
+  reference[PreviousCorner(corner)] = block.References[2][i];
+  const TriangleIndex triangle = block.Triangles[i];
+  return this->DeriveByStrip(from, triangle, reference);
 }
 
 Jacobian Homeomorphism::GetJacobian(
@@ -595,7 +687,9 @@ Jacobian Homeomorphism::GetJacobian(
   }
   return this->VisitCharts(
     from, triangle, [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
-      return this->Derive(from, triangle, chart, other, chart.FromCoordinates(coordinates));
+      const auto reference = chart.FromCoordinates(coordinates);
+      return this->Derive(
+        from, triangle, chart.DifferentialAt(reference), other.DifferentialAt(reference));
     });
 }
 
@@ -605,10 +699,32 @@ Jacobian Homeomorphism::FromFrames(
   const MeshGeometry& source = this->Pair->GetGeometry(from);
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const double rescale = source.GetScale() / target.GetScale();
+  Jacobian jacobian;
+  jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
+    target.GetHandedness(triangle);
+  if (source.IsHorizontal() && target.IsHorizontal())
+  {
+    // As below, of axes with zeros.
+    const PlaneFrame& frame = source.GetPlaneFrame(triangle);
+    const PlaneFrame& other = target.GetPlaneFrame(triangle);
+    const Vector2 inward{ -frame.Orientation * frame.Tangent.y,
+      frame.Orientation * frame.Tangent.x };
+    const Vector2 otherInward{ -other.Orientation * other.Tangent.y,
+      other.Orientation * other.Tangent.x };
+    const Vector2 alongTangent =
+      rescale * (inFrames.ImageOfX.x * other.Tangent + inFrames.ImageOfX.y * otherInward);
+    const Vector2 alongInward =
+      rescale * (inFrames.ImageOfY.x * other.Tangent + inFrames.ImageOfY.y * otherInward);
+    const double normal = (source.IsColumnar() ? 1.0 : frame.Orientation) *
+      (target.IsColumnar() ? 1.0 : other.Orientation);
+    jacobian.Matrix = { alongTangent.x * frame.Tangent.x + alongInward.x * inward.x,
+      alongTangent.x * frame.Tangent.y + alongInward.x * inward.y, 0.0,
+      alongTangent.y * frame.Tangent.x + alongInward.y * inward.x,
+      alongTangent.y * frame.Tangent.y + alongInward.y * inward.y, 0.0, 0.0, 0.0, normal };
+    return jacobian;
+  }
   const std::array<Vector3, 3> from3 = source.GetAxes(triangle);
   const std::array<Vector3, 3> to3 = target.GetAxes(triangle);
-
-  Jacobian jacobian;
   for (int row = 0; row < 3; ++row)
   {
     const double alongTangent =
@@ -621,8 +737,6 @@ Jacobian Homeomorphism::FromFrames(
         alongInward * from3[1][column] + to3[2][row] * from3[2][column];
     }
   }
-  jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
-    target.GetHandedness(triangle);
   return jacobian;
 }
 

@@ -97,6 +97,11 @@ public:
   /// not certified.
   bool MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
 
+  /// The image of a point, and the derivative there, in one solution of the system's equations.
+  /// Returns false if there is no image.
+  bool MapPoint(
+    Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const;
+
   /// The image, in the frame of the target's triangle, of a point in the frame of @a from's; not a
   /// number if there is none.
   Vector2 MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const;
@@ -108,11 +113,16 @@ public:
   }
 
   /// Maps the points of a block that LocateBlock has located, to the same bits as MapPoint. Points
-  /// that have no image become outside ones, of triangle -1; returns how many.
+  /// that have no image become outside ones, of triangle -1; returns how many. Keeps
+  /// references if the block is to.
   int MapBlock(Domain from, PointBlock& block) const;
 
   /// The derivative at a point; on an edge, the limit from the point's triangle.
   Jacobian GetJacobian(Domain from, const SurfacePoint& surfacePoint) const;
+
+  /// The derivative at a point of a block that MapBlock has mapped, to the same bits. Solves
+  /// nothing again in the Smooth system if the block keeps references.
+  Jacobian GetJacobian(Domain from, const PointBlock& block, int i) const;
 
   /// The derivative at the point of a triangle that has these coordinates; where the coordinate
   /// system is not differentiable, the limit along the contour that they name.
@@ -150,6 +160,7 @@ private:
   }
   void MapLinearly(
     Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
+  SmoothPoint MapByStrip(Domain from, const SurfacePoint& surfacePoint) const;
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;
   int MapByCubics(Domain from, PointBlock& block) const;
@@ -161,10 +172,12 @@ private:
   template <typename Use>
   auto VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const;
 
-  /// The derivative at a triangle's reference point.
-  template <typename Chart>
-  Jacobian Derive(Domain from, TriangleIndex triangle, const Chart& chart, const Chart& other,
-    const typename Chart::Reference& reference) const;
+  /// The derivative at a triangle's reference point, from those of both charts there.
+  template <typename Differential>
+  Jacobian Derive(Domain from, TriangleIndex triangle, const Differential& differential,
+    const Differential& other) const;
+  Jacobian DeriveByStrip(
+    Domain from, TriangleIndex triangle, const SmoothChart::Reference& reference) const;
 
   /// From the triangle's frames to the input's coordinates. @a determinant is that of the matrix.
   Jacobian FromFrames(

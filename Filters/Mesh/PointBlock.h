@@ -56,8 +56,9 @@ struct PointBlock
   int Count = 0;
   /// The points, in the buffer or in an array of the caller.
   const double (*Points)[3] = this->PointBuffer;
-  /// The points' images, and outside points themselves; set by MapBlock.
-  double Images[Size][3];
+  /// The points' images, and outside points themselves; set by MapBlock, which may overwrite up to
+  /// WidestVector - 1 elements after the last. In the buffer or in an array of the caller.
+  double (*Images)[3] = this->ImageBuffer;
 
   /// The located points (see SurfacePoint), as structure of arrays.
   TriangleIndex Triangles[Capacity];
@@ -70,7 +71,14 @@ struct PointBlock
   double First[Size];
   double Second[Size];
 
+  /// Set to keep what GetJacobian needs when points are mapped.
+  bool KeepsReferences = false;
+  /// References of the Smooth system, for Corner, the next corner and the previous one.
+  double References[3][Size];
+  int ReferenceCorners[Capacity];
+
   double PointBuffer[Capacity][3];
+  double ImageBuffer[Size][3];
 
   /// The Cubic map of the last points, and what is kept of triangles for those in the next block.
   std::shared_ptr<const CubicHomeomorphism> Cubic;

@@ -6,6 +6,7 @@
 #include "Kernel/ExactSign.h"
 
 #include <cmath>
+#include <initializer_list>
 
 namespace homeomorphism
 {
@@ -156,19 +157,41 @@ Box<2> PointLocation::PlaneBox(TriangleIndex triangle) const
   return box;
 }
 
+/// The mean width and height of triangles, of a sample of a thousand.
+Vector2 PointLocation::GetMeanExtent() const
+{
+  const TriangleIndex count = this->Topology.GetNumberOfTriangles();
+  Vector2 sum;
+  int sampled = 0;
+  for (TriangleIndex t = 0; t < count; t += 1 + count / 1000)
+  {
+    if (!this->Topology.IsMasked(t))
+    {
+      const Box<2> box = this->PlaneBox(t);
+      sum = sum + Vector2{ box.Greatest[0] - box.Least[0], box.Greatest[1] - box.Least[1] };
+      ++sampled;
+    }
+  }
+  return (1.0 / sampled) * sum;
+}
+
 void PointLocation::PlantSeeds()
 {
   const Box<2>& bounds = this->Geometry.GetPlaneBounds();
   const double width = bounds.Greatest[0] - bounds.Least[0];
   const double height = bounds.Greatest[1] - bounds.Least[1];
   const double cells = 0.5 * static_cast<double>(this->Topology.GetNumberOfTriangles());
-  const double columns = std::floor(std::sqrt(cells * width / height));
-  if (!(columns >= 1.0 && columns <= cells))
+  // Cells are about as long and as wide as triangles are.
+  const Vector2 extent = this->GetMeanExtent();
+  const double columns = std::sqrt(cells * (width / height) * (extent.y / extent.x));
+  if (!(cells >= 1.0 && columns <= std::numeric_limits<double>::max()))
   {
     return;
   }
-  this->SeedColumns = columns;
-  this->SeedRows = std::max(1.0, std::floor(cells / columns));
+  // Long triangles cross many cells, at most about the square root of their number.
+  this->LongestWalk = 64 + static_cast<int>(16.0 * std::sqrt(cells));
+  this->SeedColumns = std::floor(std::min(cells, std::max(1.0, columns)));
+  this->SeedRows = std::max(1.0, std::floor(cells / this->SeedColumns));
   this->SeedOrigin = { bounds.Least[0], bounds.Least[1] };
   this->SeedScale = { this->SeedColumns / width, this->SeedRows / height };
   this->Seeds = LargeArray<TriangleIndex>(
@@ -194,6 +217,62 @@ void PointLocation::PlantSeeds()
   }
 }
 
+void PointLocation::FillSeeds()
+{
+  const auto columns = static_cast<std::size_t>(this->SeedColumns);
+  const std::size_t cells = this->Seeds.size();
+  // Where triangles are about as long as wide, few cells are empty.
+  const auto empty =
+    static_cast<std::size_t>(std::count(this->Seeds.begin(), this->Seeds.end(), -1));
+  if (4 * empty < cells || empty == cells)
+  {
+    return;
+  }
+  // Row by row, to and fro, from the first seed to the last row and then to the first one, walks go
+  // to the middle of each empty cell from the cell before or from the one beside it in the row
+  // before. The total number of steps is limited.
+  std::int64_t steps = std::int64_t(128) * this->Topology.GetNumberOfTriangles();
+  const auto cellAt = [columns](std::size_t n) {
+    const std::size_t row = n / columns;
+    return row * columns + (row % 2 == 0 ? n % columns : columns - 1 - n % columns);
+  };
+  const auto fill = [&](std::size_t cell, std::initializer_list<TriangleIndex> starts) {
+    const Vector2 middle{ this->SeedOrigin.x +
+        (static_cast<double>(cell % columns) + 0.5) / this->SeedScale.x,
+      this->SeedOrigin.y + (static_cast<double>(cell / columns) + 0.5) / this->SeedScale.y };
+    for (const TriangleIndex start : starts)
+    {
+      if (this->Seeds[cell] < 0 && start >= 0)
+      {
+        PlaneRelation relation;
+        int left = static_cast<int>(std::min<std::int64_t>(steps, this->LongestWalk));
+        steps -= left;
+        this->Seeds[cell] =
+          this->Walk(middle, start, -std::numeric_limits<double>::infinity(), left, relation);
+        steps += left;
+      }
+    }
+    return this->Seeds[cell] >= 0 ? this->Seeds[cell] : *starts.begin();
+  };
+  std::size_t first = 0;
+  while (this->Seeds[cellAt(first)] < 0)
+  {
+    ++first;
+  }
+  TriangleIndex last = this->Seeds[cellAt(first)];
+  for (std::size_t n = first + 1; n < cells; ++n)
+  {
+    const std::size_t cell = cellAt(n);
+    last = fill(cell, { last, cell < columns ? -1 : this->Seeds[cell - columns] });
+  }
+  last = this->Seeds[cellAt(first)];
+  for (std::size_t n = first; n > 0; --n)
+  {
+    const std::size_t cell = cellAt(n - 1);
+    last = fill(cell, { last, cell + columns < cells ? this->Seeds[cell + columns] : -1 });
+  }
+}
+
 void PointLocation::SetOverlapping(const std::vector<TriangleIndex>& triangles)
 {
   this->Overlapping.clear();
@@ -216,8 +295,9 @@ SurfacePoint PointLocation::Find(
   {
     // Most points are in the triangle of the last one or near it.
     PlaneRelation relation;
+    int steps = this->LongestWalk;
     const TriangleIndex found =
-      this->Walk({ normalized[0], normalized[1] }, hint, Farthest, relation);
+      this->Walk({ normalized[0], normalized[1] }, hint, Farthest, steps, relation);
     if (found >= 0 && relation.IsInside())
     {
       return { found, { relation.InPlane, this->GetOffset(normalized) }, -1 };
@@ -245,8 +325,9 @@ SurfacePoint PointLocation::Find(
   if (seed >= 0)
   {
     PlaneRelation relation;
-    found = this->Walk(
-      { normalized[0], normalized[1] }, seed, -std::numeric_limits<double>::infinity(), relation);
+    int steps = this->LongestWalk;
+    found = this->Walk({ normalized[0], normalized[1] }, seed,
+      -std::numeric_limits<double>::infinity(), steps, relation);
     if (found >= 0 && relation.IsInside())
     {
       return { found, { relation.InPlane, this->GetOffset(normalized) }, -1 };
@@ -309,15 +390,22 @@ TriangleIndex PointLocation::LeaveTowards(
 
 /// The triangle that a walk comes to, or -1 if it must be searched for. @a relation is the point's
 /// to the last triangle of the walk. No walk starts from a triangle for which a barycentric
-/// coordinate of the point is less than @a farthest.
-TriangleIndex PointLocation::Walk(
-  const Vector2& point, TriangleIndex start, double farthest, PlaneRelation& relation) const
+/// coordinate of the point is less than @a farthest, and none takes more than @a steps, which is
+/// decreased by those taken.
+TriangleIndex PointLocation::Walk(const Vector2& point, TriangleIndex start, double farthest,
+  int& steps, PlaneRelation& relation) const
 {
-  // Walks in triangulations that are not Delaunay may cycle.
-  constexpr int longest = 64;
   TriangleIndex t = start;
-  for (int step = 0; step < longest; ++step)
+  // Walks in triangulations that are not Delaunay may cycle. Brent's method: a cycle returns to the
+  // triangle of the last step whose number is a power of two.
+  TriangleIndex remembered = -1;
+  for (int step = 0; steps > 0; ++step, --steps)
   {
+    if (t == remembered)
+    {
+      return -1;
+    }
+    remembered = (step & (step - 1)) == 0 ? t : remembered;
     const PlaneFrame& frame = this->Geometry.GetPlaneFrame(t);
     relation = PlaneRelation(frame, point);
     if (relation.IsInside())
@@ -463,7 +551,8 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
     TriangleIndex found = -1;
     if (start >= 0 && this->MayWalk(point, tolerance) && !this->Topology.IsMasked(start))
     {
-      found = this->Walk({ point[0], point[1] }, start, Farthest, relation);
+      int steps = this->LongestWalk;
+      found = this->Walk({ point[0], point[1] }, start, Farthest, steps, relation);
     }
     const bool isInside = found >= 0 && relation.IsInside();
     if (isInside)
@@ -530,11 +619,19 @@ void PointLocation::FindScattered(PointBlock& block, const double normalized[3][
     this->Geometry.PrefetchFrame(t);
     this->Topology.PrefetchTwin(t);
   };
+  const auto prefetchSeed = [&](int i) {
+    Prefetch(i < block.Count ? this->FindSeed({ normalized[0][i], normalized[1][i] }) : nullptr);
+  };
+  for (int i = 0; i < PrefetchDistance; ++i)
+  {
+    prefetchSeed(i);
+  }
   // Walks begin some points ahead of the first steps.
   int begun = 0;
   const auto beginUpTo = [&](int end) {
     for (; begun < std::min(end, block.Count); ++begun)
     {
+      prefetchSeed(begun + PrefetchDistance);
       const Vector3 point{ normalized[0][begun], normalized[1][begun], normalized[2][begun] };
       walking[begun] = begun;
       triangles[begun] =

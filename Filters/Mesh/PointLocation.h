@@ -79,6 +79,10 @@ public:
   /// Keeps references to both arguments, which must outlive it. Masked triangles are not found.
   PointLocation(const Triangulation& triangulation, const MeshGeometry& geometry);
 
+  /// Finds triangles for the cells of the grid that have none yet. The geometry must have its
+  /// frames.
+  void FillSeeds();
+
   /// Sets the triangles of a planar mesh, ascending, that overlap others by the rounding of their
   /// coordinates. Of several triangles that contain a point, the one with the lowest number counts.
   void SetOverlapping(const std::vector<TriangleIndex>& triangles);
@@ -99,13 +103,8 @@ public:
   /// A triangle of a planar mesh that is probably near a point, or -1.
   TriangleIndex GetSeed(const Vector2& point) const
   {
-    // Negated so that a NaN coordinate has no seed.
-    const double x = (point.x - this->SeedOrigin.x) * this->SeedScale.x;
-    const double y = (point.y - this->SeedOrigin.y) * this->SeedScale.y;
-    return x >= 0.0 && y >= 0.0 && x < this->SeedColumns && y < this->SeedRows
-      ? this->Seeds[static_cast<std::size_t>(y) * static_cast<std::size_t>(this->SeedColumns) +
-          static_cast<std::size_t>(x)]
-      : -1;
+    const TriangleIndex* seed = this->FindSeed(point);
+    return seed ? *seed : -1;
   }
 
   /// Calls visit(triangle) for the triangles of a planar domain whose boxes may intersect a box,
@@ -140,8 +139,21 @@ private:
     return this->Geometry.IsColumnar() ? normalized[2] : 0.0;
   }
 
+  /// The element of Seeds for a point, or null.
+  const TriangleIndex* FindSeed(const Vector2& point) const
+  {
+    // A NaN coordinate has no seed.
+    const double x = (point.x - this->SeedOrigin.x) * this->SeedScale.x;
+    const double y = (point.y - this->SeedOrigin.y) * this->SeedScale.y;
+    return x >= 0.0 && y >= 0.0 && x < this->SeedColumns && y < this->SeedRows
+      ? &this->Seeds[static_cast<std::size_t>(y) * static_cast<std::size_t>(this->SeedColumns) +
+          static_cast<std::size_t>(x)]
+      : nullptr;
+  }
+
   Box<2> PlaneBox(TriangleIndex triangle) const;
   std::vector<TriangleIndex> ListTriangles() const;
+  Vector2 GetMeanExtent() const;
   void PlantSeeds();
   const BoxTree<2>& GetPlaneTree() const;
   int FindCorner(TriangleIndex triangle, const Vector3& normalized) const;
@@ -149,8 +161,8 @@ private:
     TriangleIndex triangle, const double point[3], const Vector3& normalized) const;
   SurfacePoint Find(
     const double point[3], const Vector3& normalized, double tolerance, TriangleIndex hint) const;
-  TriangleIndex Walk(
-    const Vector2& point, TriangleIndex start, double farthest, PlaneRelation& relation) const;
+  TriangleIndex Walk(const Vector2& point, TriangleIndex start, double farthest, int& steps,
+    PlaneRelation& relation) const;
   TriangleIndex LeaveTowards(
     TriangleIndex triangle, const PlaneFrame& frame, const PlaneRelation& relation) const;
   template <typename Search>
@@ -173,12 +185,14 @@ private:
   mutable std::once_flag HasPlaneTree;
   mutable BoxTree<2> PlaneTree;
 
-  // A grid over a planar domain. Each cell stores a triangle whose center is in it, or -1.
+  // A grid over a planar domain. Each cell stores a triangle whose center is in it or that contains
+  // its middle, or -1.
   LargeArray<TriangleIndex> Seeds;
   Vector2 SeedOrigin;
   Vector2 SeedScale;
   double SeedColumns = 0.0;
   double SeedRows = 0.0;
+  int LongestWalk = 64;
 };
 
 } // namespace homeomorphism

@@ -31,6 +31,15 @@ inline void Prefetch(const void* address)
 #endif
 }
 
+inline void PrefetchToWrite(const void* address)
+{
+#if defined(__GNUC__)
+  __builtin_prefetch(address, 1);
+#else
+  (void)address;
+#endif
+}
+
 /// How many points ahead of their use memory is prefetched. Processors wait for a few dozen cache
 /// lines at a time; more prefetches at once take longer.
 constexpr int PrefetchDistance = 32;

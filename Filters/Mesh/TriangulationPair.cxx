@@ -60,6 +60,7 @@ public:
     for (int domain = 0; domain < 2 && this->Meshes[domain]; ++domain)
     {
       this->Pair->Geometries[domain]->ComputeFrames(*this->Pair->Topology);
+      this->Pair->Locations[domain]->FillSeeds();
       this->ReportNearlyPlanar(domain);
     }
     return std::shared_ptr<const TriangulationPair>(std::move(this->Pair));

@@ -18,6 +18,14 @@
 namespace homeomorphism
 {
 
+namespace
+{
+
+/// The doubles in a line of the processor's cache.
+constexpr int DoublesInLine = 64 / sizeof(double);
+
+} // namespace
+
 double PrecisionOfType(int dataType)
 {
   return 0.5 *
@@ -36,14 +44,14 @@ void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
 {
   if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
   {
-    block.Points = reinterpret_cast<const double(*)[3]>(doubles->GetPointer(3 * first));
+    const double* values = doubles->GetPointer(3 * first);
+    block.Points = reinterpret_cast<const double(*)[3]>(values);
     // The next block, to hide memory latency.
-    constexpr vtkIdType line = 64 / sizeof(double);
     const vtkIdType end =
-      std::min(3 * (first + 2 * vtkIdType(block.Count)), doubles->GetNumberOfValues());
-    for (vtkIdType i = 3 * (first + block.Count); i < end; i += line)
+      std::min(6 * vtkIdType(block.Count), doubles->GetNumberOfValues() - 3 * first);
+    for (vtkIdType i = 3 * vtkIdType(block.Count); i < end; i += DoublesInLine)
     {
-      Prefetch(doubles->GetPointer(i));
+      Prefetch(values + i);
     }
     return;
   }
@@ -100,12 +108,32 @@ void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block)
   }
 }
 
+void SetImages(vtkDataArray* array, vtkIdType first, vtkIdType end, PointBlock& block)
+{
+  auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array);
+  if (!doubles || first + PointBlock::Size > end)
+  {
+    block.Images = block.ImageBuffer;
+    return;
+  }
+  double* values = doubles->GetPointer(3 * first);
+  block.Images = reinterpret_cast<double(*)[3]>(values);
+  for (int i = 0; i < 3 * block.Count; i += DoublesInLine)
+  {
+    PrefetchToWrite(values + i);
+  }
+}
+
 void WritePoints(const double (*points)[3], int count, vtkIdType first, vtkDataArray* array)
 {
   const double* coordinates = &points[0][0];
   if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
   {
-    std::copy_n(coordinates, 3 * count, doubles->GetPointer(3 * first));
+    double* values = doubles->GetPointer(3 * first);
+    if (values != coordinates)
+    {
+      std::copy_n(coordinates, 3 * count, values);
+    }
     return;
   }
   const auto write = [first, coordinates, count](auto* typed) {

@@ -35,7 +35,12 @@ void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block);
 /// Reads the points of a block from a data set.
 void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block);
 
-/// Writes points to an array of 3 components, from tuple @a first.
+/// Lets MapBlock write the images of a block to an array of 3 components, from tuple @a first, if
+/// it can: if the array is of doubles and has room before tuple @a end for what is overwritten
+/// after the last image. Otherwise WritePoints copies them.
+void SetImages(vtkDataArray* array, vtkIdType first, vtkIdType end, PointBlock& block);
+
+/// Writes points to an array of 3 components, from tuple @a first, if they are not there already.
 void WritePoints(const double (*points)[3], int count, vtkIdType first, vtkDataArray* array);
 
 /// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
@@ -60,19 +65,23 @@ vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
 
 /// Reads, locates and maps the points of a data set in parallel, block by block, and calls
 /// use(first, block) with each block. Points for which isHidden(id) holds are treated as outside.
-/// Returns the number of points processed; see RunInBlocks.
+/// Images are written to @a images at once if they can be (see SetImages). @a keepReferences is to
+/// be set if use asks for Jacobians. Returns the number of points processed; see RunInBlocks.
 template <typename IsHidden, typename Use>
 vtkIdType MapInBlocks(vtkAlgorithm* self, const Homeomorphism& map, Domain from, vtkDataSet* data,
-  double tolerance, double progressBegin, double progressEnd, IsHidden&& isHidden, Use&& use)
+  double tolerance, double progressBegin, double progressEnd, IsHidden&& isHidden,
+  vtkDataArray* images, bool keepReferences, Use&& use)
 {
   return RunInBlocks(self, data->GetNumberOfPoints(), progressBegin, progressEnd,
     [&](vtkIdType begin, vtkIdType end) {
       LocationHint hint;
       PointBlock block;
+      block.KeepsReferences = keepReferences;
       for (vtkIdType first = begin; first < end; first += PointBlock::Capacity)
       {
         block.Count = static_cast<int>(std::min<vtkIdType>(PointBlock::Capacity, end - first));
         ReadPoints(data, first, block);
+        SetImages(images, first, end, block);
         map.LocateBlock(from, block, tolerance, hint);
         for (int i = 0; i < block.Count; ++i)
         {

@@ -368,6 +368,54 @@ TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
   }
 }
 
+// --- Rows ----------------------------------------------------------------------------------------
+
+TEST_P(TransformInEverySystem, RowsOfSinglePointsGiveTheBitsOfArrays)
+{
+  // Steps that are exact, and such that rounding makes them unequal; rows leave the domain.
+  std::vector<Point> positions;
+  for (const double step : { 0.125, 0.1 })
+  {
+    for (int row = 0; row < 20; ++row)
+    {
+      for (int i = 0; i < 100 + row; ++i)
+      {
+        positions.push_back({ i * step - 1.0, 0.3 + row * step, 0.0 });
+      }
+    }
+  }
+  const MeshPair pair = MakePlanarPair(9, 582);
+  const auto transform = MakeTransform(GetParam(), pair);
+  vtkAbstractTransform* inverse = transform->GetInverse();
+  const auto expect = [&positions](vtkAbstractTransform* tested) {
+    const auto cloud = MakeCloud(positions);
+    vtkNew<vtkPoints> expected;
+    expected->SetDataTypeToDouble();
+    tested->TransformPoints(cloud->GetPoints(), expected);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+    {
+      Point image;
+      expected->GetPoint(static_cast<vtkIdType>(i), image.data());
+      ASSERT_EQ(Transformed(tested, positions[i]), image) << i;
+    }
+  };
+  expect(transform);
+  expect(inverse);
+  // A row does not end with the map.
+  transform->SetTarget(MakePlanarPair(9, 583).Target);
+  expect(transform);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+  {
+    const Point image = Transformed(transform, positions[i]);
+    const Point preimage = Transformed(inverse, positions[i]);
+    if (i % 7 == 0)
+    {
+      EXPECT_EQ(Differential(transform, positions[i].data()).Image, image) << i;
+      EXPECT_EQ(Differential(inverse, positions[i].data()).Image, preimage) << i;
+    }
+  }
+}
+
 // --- Images --------------------------------------------------------------------------------------
 
 TEST_P(TransformInEverySystem, ImagesAreResampled)

@@ -96,6 +96,7 @@ void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
       }
     }
     ASSERT_EQ(expectedOutside, outside) << what;
+    block.KeepsReferences = first % 2 == 0;
     map.MapBlock(domain, block);
     for (int i = 0; i < block.Count; ++i)
     {
@@ -104,6 +105,17 @@ void ExpectBlocksLikePoints(const Homeomorphism& map, Domain domain,
       if (surfacePoint.Triangle >= 0)
       {
         map.MapPoint(domain, surfacePoint, image.data());
+        const Jacobian jacobian = map.GetJacobian(domain, surfacePoint);
+        Point again;
+        Jacobian together;
+        map.MapPoint(domain, surfacePoint, again.data(), together);
+        ASSERT_TRUE(IsSame(image.data(), again.data(), 3)) << what << ", point " << first + i;
+        for (const Jacobian& same : { together, map.GetJacobian(domain, block, i) })
+        {
+          ASSERT_TRUE(IsSame(jacobian.Matrix.data(), same.Matrix.data(), 9))
+            << what << ", point " << first + i;
+          ASSERT_TRUE(IsSame(&jacobian.Determinant, &same.Determinant, 1));
+        }
       }
       ASSERT_TRUE(IsSame(image.data(), block.Images[i], 3))
         << what << ", point " << first + i << ": " << image[0] << " " << block.Images[i][0];

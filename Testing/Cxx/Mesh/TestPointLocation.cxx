@@ -229,6 +229,55 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
   EXPECT_GT(outside, 5000);
 }
 
+/// Triangles around a point, or between two points far away and those of a line, in random order.
+GridMesh ThinMesh(int count, bool isFan, std::uint64_t seed)
+{
+  GridMesh mesh = FourfoldMesh(1, 0.0, seed);
+  mesh.Points.clear();
+  mesh.Triangles.clear();
+  for (vtkIdType i = 0; i <= count; ++i)
+  {
+    mesh.Points.push_back({ 4 * i, 0 });
+    mesh.Points.push_back({ isFan ? 2 * count : 4 * i + 4, 4 * std::int64_t(count) });
+    const vtkIdType own = 2 * i;
+    if (i > 0)
+    {
+      mesh.Triangles.push_back({ own - 2, own, own - 1 });
+    }
+    if (i > 0 && !isFan)
+    {
+      mesh.Triangles.push_back({ own, own + 1, own - 1 });
+    }
+  }
+  if (isFan)
+  {
+    for (Triangle& t : mesh.Triangles)
+    {
+      t[2] = 1;
+    }
+  }
+  std::shuffle(mesh.Triangles.begin(), mesh.Triangles.end(), std::mt19937_64(seed));
+  return mesh;
+}
+
+TEST(PointLocation, FansAndSliversAgreeWithExactArithmetic)
+{
+  for (const bool isFan : { true, false })
+  {
+    const GridMesh grid = ThinMesh(1000, isFan, 41);
+    const auto map = Make({ grid.ToMesh(0.25), nullptr });
+    int found = 0;
+    for (const GridPoint& query : grid.Queries(1000, 42))
+    {
+      const TriangleIndex expected = grid.Find(query);
+      ASSERT_EQ(expected, Locate(*map, GridMesh::MeshPoint(query, 0.25, 2)).Triangle)
+        << isFan << ": " << query.X << " " << query.Y;
+      found += expected >= 0;
+    }
+    EXPECT_GT(found, 1000);
+  }
+}
+
 // --- The boundary of the domain ------------------------------------------------------------------
 
 TEST(PointLocation, PointsOutsideByRoundingAreFound)

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+/// @file MappedRow.h
+/// Blocks for callers that ask for the points of rows one by one.
+
+#ifndef homeomorphism_MappedRow_h
+#define homeomorphism_MappedRow_h
+
+#include "Mesh/PointBlock.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+namespace homeomorphism
+{
+
+/// The points that a caller will probably ask for next, and their images. Callers such as
+/// vtkImageReslice ask for the points of a row, at equal steps. After a few equal steps, the points
+/// that follow are mapped as a block, which takes a fraction of the time and gives the same bits. A
+/// point has an image here only if its coordinates are equal to those that were mapped. Steps that
+/// are not equal to the last bit, because their coordinates are rounded, are not followed. For one
+/// thread.
+class MappedRow
+{
+public:
+  /// The number of a point in GetBlock, or -1 if its image is not there. @a key identifies the map,
+  /// its tolerance, and the domain. mapBlock(block, hint) locates and maps a block.
+  template <typename MapBlock>
+  int Find(const double point[3], std::uint64_t key, MapBlock&& mapBlock)
+  {
+    const bool isSameMap = key == this->Key;
+    if (isSameMap && this->Next < this->Block.Count &&
+      std::memcmp(point, this->Block.PointBuffer[this->Next], 3 * sizeof(double)) == 0)
+    {
+      return this->Next++;
+    }
+    bool isRow = isSameMap;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double step = point[axis] - this->Last[axis];
+      isRow = isRow && step == this->Step[axis];
+      this->Step[axis] = step;
+      this->Last[axis] = point[axis];
+    }
+    this->Key = key;
+    this->Hint = isSameMap ? this->Hint : LocationHint();
+    this->EqualSteps = isRow ? this->EqualSteps + 1 : 0;
+    this->Length = isRow ? this->Length : Shortest;
+    this->Block.Count = 0;
+    constexpr int enough = 4;
+    if (this->EqualSteps < enough)
+    {
+      return -1;
+    }
+    this->Block.Count = this->Length;
+    for (int i = 0; i < this->Length; ++i)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->Last[axis] = point[axis] + i * this->Step[axis];
+        this->Block.PointBuffer[i][axis] = this->Last[axis];
+      }
+    }
+    // Rows that continue are followed farther and farther.
+    this->Length = std::min(2 * this->Length, PointBlock::Capacity);
+    mapBlock(this->Block, this->Hint);
+    this->Next = 1;
+    return 0;
+  }
+
+  const PointBlock& GetBlock() const { return this->Block; }
+
+private:
+  static constexpr int Shortest = 16;
+
+  std::uint64_t Key = 0;
+  double Last[3] = { 0.0, 0.0, 0.0 };
+  double Step[3] = { 0.0, 0.0, 0.0 };
+  int EqualSteps = 0;
+  int Length = Shortest;
+  int Next = 0;
+  LocationHint Hint;
+  PointBlock Block;
+};
+
+} // namespace homeomorphism
+
+#endif
