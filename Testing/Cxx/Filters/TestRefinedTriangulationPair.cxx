@@ -201,6 +201,8 @@ TEST(RefinedTriangulationPair, IsConformingAndKeepsPointsAndAreas)
 TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
 {
   const MeshPair pair = MakePlanarPair(3, 43);
+  AddVerticesAndLines(pair.Source, 2, 1); // shift the cell ids
+  AddVerticesAndLines(pair.Target, 2, 1);
   const auto heights = RandomArray("Height", 1, pair.Source->GetNumberOfPoints(), 47);
   pair.Source->GetPointData()->AddArray(heights);
   const auto cellNumbers = RandomArray("Region", 1, pair.Source->GetNumberOfCells(), 53);

@@ -7,6 +7,8 @@
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -14,7 +16,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 using namespace homeomorphism;
@@ -23,23 +24,28 @@ using homeomorphism_test::Random;
 namespace
 {
 
-/// An image of a function of its points as doubles and, rounded, as bytes, and cell numbers.
+/// An image of a function of its points, of random floats and bytes, and of cell numbers.
 template <typename Function>
 void FillImage(vtkImageData* image, Function&& function)
 {
   vtkNew<vtkDoubleArray> values;
   values->SetName("Value");
+  vtkNew<vtkFloatArray> floats;
+  floats->SetName("Float");
   vtkNew<vtkUnsignedCharArray> bytes;
   bytes->SetName("Byte");
+  bytes->SetNumberOfComponents(3);
+  Random random(42);
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
     double point[3];
     image->GetPoint(i, point);
     values->InsertNextValue(function(point));
-    bytes->InsertNextValue(
-      static_cast<unsigned char>(std::clamp(std::lround(function(point)), 0L, 255L)));
+    floats->InsertNextValue(static_cast<float>(random.Uniform(-1.0, 1.0)));
+    bytes->InsertNextTuple3(random.Below(256), random.Below(256), random.Below(256));
   }
   image->GetPointData()->AddArray(values);
+  image->GetPointData()->AddArray(floats);
   image->GetPointData()->AddArray(bytes);
   vtkNew<vtkDoubleArray> cells;
   cells->SetName("Cell");
@@ -57,8 +63,8 @@ double GetValue(vtkPointData* data, const char* name, vtkIdType i)
 
 } // namespace
 
-// A function that is linear in each direction is interpolated exactly, integers are rounded to
-// nearest, and cells are those of VTK.
+// A function that is linear in each direction is interpolated exactly, other data as by VTK's
+// cells.
 TEST(ImageSampling, InterpolatesLinearly)
 {
   vtkNew<vtkImageData> image;
@@ -94,22 +100,37 @@ TEST(ImageSampling, InterpolatesLinearly)
   sampling.Sample(points, wanted, count, 0, mask);
   for (int i = 0; i < count; ++i)
   {
-    const bool expected = wanted[i] && i != 1;
-    EXPECT_EQ(mask->GetValue(i), expected ? 1 : 0);
-    if (!expected)
+    const bool isSampled = wanted[i] && i != 1;
+    EXPECT_EQ(mask->GetValue(i), isSampled ? 1 : 0);
+    if (!isSampled)
     {
       EXPECT_TRUE(std::isnan(GetValue(output, "Value", i)));
       continue;
     }
     const double exact = function(points[i]);
     EXPECT_NEAR(GetValue(output, "Value", i), exact, 1e-13 * std::abs(exact));
-    EXPECT_LE(std::abs(GetValue(output, "Byte", i) - exact), 1.0);
     int subId;
     double parametric[3];
     double weights[8];
-    EXPECT_EQ(GetValue(output, "Cell", i),
-      static_cast<double>(
-        image->FindCell(points[i], nullptr, -1, 0.0, subId, parametric, weights)));
+    const vtkIdType cell = image->FindCell(points[i], nullptr, -1, 0.0, subId, parametric, weights);
+    EXPECT_EQ(GetValue(output, "Cell", i), static_cast<double>(cell));
+    // As VTK's cells interpolate; integers are rounded to nearest.
+    vtkNew<vtkIdList> ids;
+    image->GetCellPoints(cell, ids);
+    for (const auto& [name, rounding] :
+      { std::pair<const char*, double>{ "Float", 1e-6 }, { "Byte", 0.5 + 1e-9 } })
+    {
+      vtkDataArray* corners = image->GetPointData()->GetArray(name);
+      for (int c = 0; c < corners->GetNumberOfComponents(); ++c)
+      {
+        double expected = 0.0;
+        for (vtkIdType k = 0; k < 8; ++k)
+        {
+          expected += weights[k] * corners->GetComponent(ids->GetId(k), c);
+        }
+        EXPECT_NEAR(output->GetArray(name)->GetComponent(i, c), expected, rounding) << name;
+      }
+    }
   }
 }
 
