@@ -623,26 +623,6 @@ ContourChart::Direction ContourChart::Differential::Pullback(const Vector2& vect
   return { Cross(vector, y) / determinant / scaleX, Cross(x, vector) / determinant / scaleY };
 }
 
-double ContourChart::ContourLength(int edgeLabel, double p) const
-{
-  const Edge& edge = this->Edges[edgeLabel - 1];
-  const Half half = this->HalfAt(edge, p);
-  const double s = ContourEndingAt(
-    Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
-  return this->Unit * ContourOfHalf(edge.CenterHeight, half.Length, s).Length;
-}
-
-double ContourChart::ContourLengthDerivative(int edgeLabel, double p) const
-{
-  const Edge& edge = this->Edges[edgeLabel - 1];
-  const Half half = this->HalfAt(edge, p);
-  const double s = ContourEndingAt(
-    Flatness(edge.CenterHeight, half.Length), Clamp01(half.EdgePoint / half.Length));
-  const ContourOfHalf contour(edge.CenterHeight, half.Length, s);
-  const ContourOfHalfDerivative derivative(edge.CenterHeight, half.Length, s, contour);
-  return this->Unit * derivative.Length * half.Side * edge.Length / derivative.EdgePoint;
-}
-
 Vector2 ContourChart::Center() const
 {
   return this->Unit * this->Shape.FromBarycentric(this->CenterWeights);

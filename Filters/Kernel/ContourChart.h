@@ -92,12 +92,6 @@ public:
   static void MapPoints(
     const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count);
 
-  /// The length of the contour that ends on an edge (1 to 3) at p, and its derivative with respect
-  /// to p (not to length along the edge). Both give the jump of the Jacobian across the edge in
-  /// closed form.
-  double ContourLength(int edge, double p) const;
-  double ContourLengthDerivative(int edge, double p) const;
-
   /// The point at which the contours start.
   Vector2 Center() const;
   /// The foot of the center segment on an edge (1 to 3).
