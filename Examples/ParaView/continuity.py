@@ -11,9 +11,7 @@ or the plugin's file as the second argument:
 The folder (default: Output) gets continuity.png, and for each system grid-SYSTEM.vtp and edges-SYSTEM.vtp.
 """
 
-import math
 import os
-import random
 import sys
 
 from paraview.simple import *
@@ -22,61 +20,22 @@ INTERVALS = 5
 SYSTEMS = "Linear", "Contour", "Smooth"
 
 
-def write(path, points, triangles=(), lines=()):
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-    data = vtkPolyData()
-    data.SetPoints(vtkPoints())
-    data.GetPoints().SetDataTypeToDouble()
-    for x, y in points:
-        data.GetPoints().InsertNextPoint(x, y, 0.0)
-    for cells, put in (triangles, data.SetPolys), (lines, data.SetLines):
-        array = vtkCellArray()
-        for cell in cells:
-            array.InsertNextCell(len(cell), list(cell))
-        put(array)
-    writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(path)
-    writer.SetInputData(data)
-    # VTK before 9.4 cannot read appended data with every version of expat.
-    writer.SetDataModeToBinary()
-    writer.Write()
+def moved(mesh, name, x, y):
+    """The triangles with interior points moved."""
+    fade = "1.3*coordsX*(1 - coordsX)*coordsY*(1 - coordsY)"
+    return Calculator(registrationName=name, Input=mesh, CoordinateResults=1,
+                      Function=f"coords + {fade}*(iHat*sin({x}) + jHat*sin({y}))")
 
 
-def mesh_points(seed):
-    """The points of a triangulated square, with interior points moved at random."""
-    chance = random.Random(seed)
-    points = []
-    for j in range(INTERVALS + 1):
-        for i in range(INTERVALS + 1):
-            radius, angle = 0.3 * math.sqrt(chance.random()), 2.0 * math.pi * chance.random()
-            if not (0 < i < INTERVALS and 0 < j < INTERVALS):
-                radius = 0.0
-            points.append(((i + radius * math.cos(angle)) / INTERVALS,
-                           (j + radius * math.sin(angle)) / INTERVALS))
-    return points
-
-
-def mesh_triangles():
-    triangles = []
-    for j in range(INTERVALS):
-        for i in range(INTERVALS):
-            a = j * (INTERVALS + 1) + i
-            b, c, d = a + 1, a + INTERVALS + 2, a + INTERVALS + 1
-            triangles += ((a, b, c), (a, c, d)) if (i + j) % 2 else ((a, b, d), (b, c, d))
-    return triangles
-
-
-def write_grid(path, lines=20, pieces=1000):
+def grid_lines(name, lines=20, pieces=400):
     """Grid lines in both directions, subdivided finely enough to show curvature and creases."""
-    points = []
-    for k in range(lines + 1):
-        points += [(k / lines, i / pieces) for i in range(pieces + 1)]
-        points += [(i / pieces, k / lines) for i in range(pieces + 1)]
-    write(path, points, lines=[range(first, first + pieces + 1)
-                               for first in range(0, len(points), pieces + 1)])
+    plane = Plane(Origin=[0, 0, 0], Point1=[1, 0, 0], Point2=[0, 1, 0], XResolution=pieces, YResolution=pieces)
+    parts = [FeatureEdges(Input=plane, FeatureEdges=0, NonManifoldEdges=0)]
+    for axis in "XY":
+        coordinate = Calculator(Input=plane, ResultArrayName=axis, Function="coords" + axis)
+        parts.append(Contour(Input=coordinate, ContourBy=["POINTS", axis], ComputeNormals=0,
+                             Isosurfaces=[k / lines for k in range(1, lines)]))
+    return AppendGeometry(registrationName=name, Input=parts)
 
 
 def color_by_jump(display):
@@ -135,12 +94,11 @@ if __name__ == "__main__":
         sys.exit("The plugin DifferentiableHomeomorphism is not loaded.")
     os.makedirs(folder, exist_ok=True)
 
-    write_grid(os.path.join(folder, "grid.vtp"))
-    for name, seed in ("source", 3), ("target", 8):
-        write(os.path.join(folder, name + ".vtp"), mesh_points(seed), mesh_triangles())
-    source, target, grid = [
-        XMLPolyDataReader(registrationName=name, FileName=[os.path.join(folder, name + ".vtp")])
-        for name in ("source", "target", "grid")]
+    triangles = Triangulate(Input=Plane(
+        Origin=[0, 0, 0], Point1=[1, 0, 0], Point2=[0, 1, 0], XResolution=INTERVALS, YResolution=INTERVALS))
+    source = moved(triangles, "source", "19*coordsX + 31*coordsY", "37*coordsX - 17*coordsY")
+    target = moved(triangles, "target", "29*coordsX - 41*coordsY", "23*coordsX + 13*coordsY + 1")
+    grid = grid_lines("grid")
 
     layout = CreateLayout("Where is the map differentiable?")
     layout.SetSize(1920, 800)

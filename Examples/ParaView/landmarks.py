@@ -10,47 +10,28 @@ or the plugin's file as the second argument:
 The folder (default: Output) gets landmarks.png, source-triangulation.vtp, target-triangulation.vtp and mapped-grid.vtp.
 """
 
-import math
 import os
-import random
 import sys
 
 from paraview.simple import *
 
 
-def circle(radius, count):
-    angles = [2 * math.pi * k / count for k in range(count)]
-    return [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
+# Turns inner points by a right angle, outer ones less, and stretches the whole.
+ANGLE = "1.5*exp(-coordsX*coordsX - coordsY*coordsY)"
+BEND = (f"iHat*1.4*(cos({ANGLE})*coordsX - sin({ANGLE})*coordsY)"
+        f" + jHat*(sin({ANGLE})*coordsX + cos({ANGLE})*coordsY)")
 
 
-def bend(x, y):
-    """Turns inner points by a right angle, outer ones less, and stretches the whole."""
-    angle = 1.5 * math.exp(-(x * x + y * y))
-    return 1.4 * (math.cos(angle) * x - math.sin(angle) * y), math.sin(angle) * x + math.cos(angle) * y
-
-
-def write(path, points, polygons=(), lines=()):
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-    data, coordinates = vtkPolyData(), vtkPoints()
-    coordinates.SetDataTypeToDouble()
-    for x, y in points:
-        coordinates.InsertNextPoint(x, y, 0.0)
-    data.SetPoints(coordinates)
-    for cells, put in ((polygons, data.SetPolys), (lines, data.SetLines)):
-        array = vtkCellArray()
-        for cell in cells:
-            array.InsertNextCell(len(cell), list(cell))
-        put(array)
-    writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(path)
-    writer.SetInputData(data)
-    # VTK before 9.4 cannot read appended data with every version of expat.
-    writer.SetDataModeToBinary()
-    writer.Write()
-    return XMLPolyDataReader(registrationName=os.path.basename(path)[:-4], FileName=[path])
+def grid_lines(size, lines=16, pieces=400):
+    """Grid lines in both directions across a square around the origin, finely subdivided."""
+    plane = Plane(Origin=[-size, -size, 0], Point1=[size, -size, 0], Point2=[-size, size, 0],
+                  XResolution=pieces, YResolution=pieces)
+    families = []
+    for axis in "XY":
+        coordinate = Calculator(Input=plane, ResultArrayName=axis, Function="coords" + axis)
+        families.append(Contour(Input=coordinate, ContourBy=["POINTS", axis], ComputeNormals=0,
+                                Isosurfaces=[size * (2 * k / lines - 1) for k in range(1, lines)]))
+    return AppendGeometry(Input=families)
 
 
 def show(proxy, view, color, width, representation="Surface"):
@@ -74,19 +55,13 @@ if __name__ == "__main__":
     os.makedirs(folder, exist_ok=True)
 
     # An outline, a hole, and landmarks between them.
-    chance = random.Random(5)
-    points = circle(2.0, 24) + circle(0.5, 12)
-    while len(points) < 76:
-        x, y = chance.uniform(-2, 2), chance.uniform(-2, 2)
-        if 0.6 < math.hypot(x, y) < 1.85:
-            points.append((x, y))
-    loops = [range(24), range(24, 36)]
-    figures = [write(os.path.join(folder, "source-figure.vtp"), points, loops),
-               write(os.path.join(folder, "target-figure.vtp"), [bend(*p) for p in points], loops)]
-    steps = [k / 100 for k in range(-200, 201)]
-    rows = [[(x, y) if across else (y, x) for x in steps] for y in steps[::25] for across in (True, False)]
-    grid = write(os.path.join(folder, "grid.vtp"), sum(rows, []),
-                 lines=[(k, k + 1) for k in range(len(rows) * len(steps) - 1) if (k + 1) % len(steps)])
+    rings = Disk(InnerRadius=0.9, OuterRadius=1.6, RadialResolution=2, CircumferentialResolution=13)
+    landmarks = MaskPoints(Input=rings, OnRatio=1, GenerateVertices=1, SingleVertexPerCell=1)
+    ring = Disk(InnerRadius=0.5, OuterRadius=2.0, RadialResolution=1, CircumferentialResolution=24)
+    loops = FeatureEdges(Input=ring, FeatureEdges=0, NonManifoldEdges=0)
+    figure = AppendGeometry(Input=[loops, landmarks])
+    figures = [figure, Calculator(Input=figure, CoordinateResults=1, Function=BEND)]
+    grid = grid_lines(2.0)
 
     pair = IsomorphicTriangulation(Source=figures[0], Target=figures[1], TargetMinimumAngle=20.0,
                                    MaximumNumberOfAddedPoints=40)
