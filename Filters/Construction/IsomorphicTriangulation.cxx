@@ -42,6 +42,8 @@ constexpr int Unrelated = 70;
 constexpr int UnrelatedFew = 20;
 /// An angle that is not too thin for any quality, in degrees.
 constexpr double Thin = 5.0;
+/// One that calls for points before other qualities do.
+constexpr double VeryThin = 1.0;
 /// How many ids a problem lists.
 constexpr std::size_t ListedIds = 10;
 
@@ -264,10 +266,17 @@ public:
     if (this->Options.Quality == PairQuality::Concordance ||
       this->Options.Quality == PairQuality::NonObtuse)
     {
-      const double thin = std::min(Thin, mesh.SmallestAngle());
-      if (this->Options.Quality == PairQuality::NonObtuse)
+      // Half of the points first make the angles larger where obtuse ones are to be avoided, or
+      // where the triangles are too thin to be a measure.
+      const bool isNonObtuse = this->Options.Quality == PairQuality::NonObtuse;
+      double thin = std::min(Thin, mesh.SmallestAngle());
+      if (isNonObtuse || thin < VeryThin)
       {
-        optimization.AddPoints(90.0, added + (maximum - added) / 2);
+        optimization.AddPoints(isNonObtuse ? 90.0 : VeryThin, added + (maximum - added) / 2);
+      }
+      if (thin < VeryThin)
+      {
+        thin = std::min(VeryThin, mesh.SmallestAngle());
       }
       mesh.SetQuality({ this->Options.Quality, thin });
       const std::size_t mark = mesh.Mark();

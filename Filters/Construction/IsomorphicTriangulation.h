@@ -43,7 +43,8 @@ struct IsomorphicTriangulationOptions
   std::array<std::vector<Vector2>, 2> Frames;
   /// With Concordance and NonObtuse, no angle gets smaller than half the smallest angle, or half of
   /// 5 degrees if that is less, of the pair with the necessary points alone: such a pair is not
-  /// taken.
+  /// taken. If its smallest angle is below 1 degree, half of the points are first used for
+  /// MinimumAngle, and the smallest angle that they reach counts, up to 1 degree.
   PairQuality Quality = PairQuality::MinimumAngle;
   /// How many points may be added; -1: as many as necessary after several attempts, and up to 100
   /// for better triangles. Otherwise the first attempt that keeps to the limit is taken, unless
