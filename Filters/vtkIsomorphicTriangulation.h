@@ -155,8 +155,8 @@ public:
   /// (default): only necessary points are added. With CONCORDANCE and NON_OBTUSE, 90 means no
   /// discordant or obtuse triangle, and no angle gets smaller than half the smallest one of the
   /// pair with the necessary points alone, or than 2.5 degrees if that is less. If that pair has an
-  /// angle below 1 degree, half of the points are first added for MINIMUM_ANGLE. With DISTORTION, 60
-  /// means similar triangles.
+  /// angle below 1 degree, half of the points are first added for MINIMUM_ANGLE. With DISTORTION,
+  /// 60 means similar triangles.
   vtkSetClampMacro(TargetMinimumAngle, double, 0.0, 90.0);
   vtkGetMacro(TargetMinimumAngle, double);
   ///@}

@@ -8,6 +8,7 @@
 // or, as CSV, the smallest angle and the shares of obtuse and discordant triangles that are reached
 // with a number of added points:
 //   StressPairs --curve NAME MAXIMUM [STEP]
+// The column seconds is the time of each search.
 //
 // Times are those of the processor, in one thread.
 
@@ -153,14 +154,14 @@ void Growth(int number)
 int Curve(const std::string& name, int maximum, int step)
 {
   const bool isOutline = name == "letters-U-S" || name == "outlines-37";
-  std::cout << "name,quality,points,source_angle,target_angle,obtuse,discordant\n";
+  std::cout << "name,quality,points,source_angle,target_angle,obtuse,discordant,seconds\n";
   for (const PairQuality quality :
     { PairQuality::MinimumAngle, PairQuality::Concordance, PairQuality::NonObtuse })
   {
     for (int count = 0; count <= maximum; count += step)
     {
       FigurePair figure;
-      if (!Read(name, figure, false))
+      if (!Read(name, figure, true))
       {
         std::cerr << "There is no " << name << "\n";
         return 1;
@@ -170,10 +171,13 @@ int Curve(const std::string& name, int maximum, int step)
         figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
       }
       IsomorphicTriangulationOptions options;
+      options.LeaveOutConflictingSegments = true;
       options.MaximumNumberOfAddedPoints = count;
       options.TargetQuality = 90.0;
       options.Quality = quality;
+      const double start = Seconds();
       const auto result = MakeIsomorphicTriangulation(figure, options);
+      const double seconds = Seconds() - start;
       if (!result.IsComplete())
       {
         continue;
@@ -185,7 +189,7 @@ int Curve(const std::string& name, int maximum, int step)
       const auto s = MeasurePair(result.Points, result.Triangles);
       std::cout << name << "," << static_cast<int>(quality) << "," << count << ","
                 << s.MinimumAngle[0] << "," << s.MinimumAngle[1] << "," << s.ObtuseShare << ","
-                << s.DiscordantShare << std::endl;
+                << s.DiscordantShare << "," << seconds << std::endl;
     }
   }
   return 0;
