@@ -64,8 +64,9 @@ namespace
 
 using Point3 = std::array<double, 3>;
 
-/// The plane of a figure: parallel to two axes, whose coordinates are then used as they are, or any
-/// other.
+/// The plane of a figure: parallel to two axes, whose coordinates are then used unrounded, or any
+/// other. Coordinates in the plane are normalized, as those of MeshGeometry: times a power of two,
+/// which brings the largest of them close to 1.
 class Plane
 {
 public:
@@ -73,8 +74,9 @@ public:
   vtkIdType Fit(vtkPolyData* figure)
   {
     const vtkIdType n = figure->GetNumberOfPoints();
-    std::array<double, 3> low;
-    std::array<double, 3> high;
+    Point3 low;
+    Point3 high;
+    double largest = 0.0;
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
     std::vector<Point3> points(static_cast<std::size_t>(n));
@@ -86,7 +88,16 @@ public:
       {
         low[k] = std::min(low[k], p[k]);
         high[k] = std::max(high[k], p[k]);
+        largest = std::isfinite(p[k]) ? std::max(largest, std::abs(p[k])) : largest;
       }
+    }
+    this->InverseScale = homeomorphism::PowerOfTwoNear(largest);
+    this->Scale = 1.0 / this->InverseScale;
+    low = Multiplied(low, this->Scale);
+    high = Multiplied(high, this->Scale);
+    for (Point3& p : points)
+    {
+      p = Multiplied(p, this->Scale);
     }
     for (const std::size_t axis : { 2, 0, 1 })
     {
@@ -128,7 +139,7 @@ public:
 
   Vector2 ToPlane(const Point3& p) const
   {
-    const Point3 q = Subtract(p, this->Origin);
+    const Point3 q = Subtract(Multiplied(p, this->Scale), this->Origin);
     return { Dot3(q, this->X), Dot3(q, this->Y) };
   }
 
@@ -139,10 +150,18 @@ public:
     {
       q[k] += p.x * this->X[k] + p.y * this->Y[k];
     }
-    return q;
+    return Multiplied(q, this->InverseScale);
   }
 
+  /// Normalized coordinates over the figure's, and the inverse.
+  double GetScale() const { return this->Scale; }
+  double GetInverseScale() const { return this->InverseScale; }
+
 private:
+  static Point3 Multiplied(const Point3& a, double factor)
+  {
+    return { a[0] * factor, a[1] * factor, a[2] * factor };
+  }
   static Point3 Subtract(const Point3& a, const Point3& b)
   {
     return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
@@ -177,6 +196,8 @@ private:
   Point3 Origin{};
   Point3 X{};
   Point3 Y{};
+  double Scale = 1.0;
+  double InverseScale = 1.0;
 };
 
 std::vector<std::vector<int>> Cells(vtkCellArray* array)
@@ -430,8 +451,12 @@ int vtkIsomorphicTriangulation::RequestData(
         return refuse();
       }
     }
-    options.Frames = MatchRectangles(
-      figure, { { { s[0], s[2] }, { s[1], s[3] } } }, { { { t[0], t[2] }, { t[1], t[3] } } });
+    const auto corners = [&planes](std::size_t d, const double* f) {
+      const double scale = planes[d].GetScale();
+      return std::array<Vector2, 2>{ { scale * Vector2{ f[0], f[2] },
+        scale * Vector2{ f[1], f[3] } } };
+    };
+    options.Frames = MatchRectangles(figure, corners(0, s), corners(1, t));
   }
 
   const IsomorphicTriangulationResult result = MakeIsomorphicTriangulation(figure, options);
@@ -463,8 +488,8 @@ int vtkIsomorphicTriangulation::RequestData(
   for (std::size_t i = 0; i < result.OriginalIds.size(); ++i)
   {
     originals->InsertNextValue(result.OriginalIds[i]);
-    residuals->InsertNextValue(
-      i < measured.size() ? measured[i] : std::numeric_limits<double>::quiet_NaN());
+    residuals->InsertNextValue(i < measured.size() ? measured[i] * planes[1].GetInverseScale()
+                                                   : std::numeric_limits<double>::quiet_NaN());
   }
   internal.Suspicious.resize(measured.size());
   std::iota(internal.Suspicious.begin(), internal.Suspicious.end(), 0);

@@ -79,7 +79,7 @@ public:
     POINT_COUNTS_DIFFER = 1,   ///< the inputs have different numbers of points
     BAD_CELL = 2,              ///< a loop or line repeats a point or is too short
     CELLS_DIFFER = 3,          ///< the inputs have different cells
-    NOT_FINITE = 4,            ///< coordinates are NaN, infinite or beyond 1e150
+    NOT_FINITE = 4,            ///< coordinates are NaN or infinite
     NOT_PLANAR = 5,            ///< a figure does not lie in a plane
     COLLINEAR = 6,             ///< all points lie on a line
     COINCIDENT = 7,            ///< points have the same position

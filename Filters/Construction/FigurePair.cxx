@@ -106,7 +106,7 @@ std::string FigureProblem::Message(const std::vector<std::string>& names) const
       text = "Source and target do not have the same cells.";
       break;
     case Kind::NotFinite:
-      text = "Coordinates are not finite or too large" + where + ": points " + points + ".";
+      text = "Coordinates are not finite" + where + ": points " + points + ".";
       break;
     case Kind::NotPlanar:
       text =

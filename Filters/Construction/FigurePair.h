@@ -17,7 +17,7 @@ namespace homeomorphism
 {
 
 /// The same figure drawn twice: corresponding points, and what joins them. Domain 0 is the source,
-/// domain 1 the target.
+/// domain 1 the target. The largest coordinates of each domain should be about 1.
 struct FigurePair
 {
   /// Corresponding points have the same number.
@@ -43,7 +43,7 @@ struct FigureProblem
     BadCell,
     /// The cells of the two figures differ.
     CellsDiffer,
-    /// A coordinate is NaN, infinite, or beyond 1e150.
+    /// A coordinate is NaN or infinite, or beyond 1e150, which normalized coordinates are not.
     NotFinite,
     /// A figure in space does not lie in a plane.
     NotPlanar,

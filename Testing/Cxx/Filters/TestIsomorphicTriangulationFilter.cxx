@@ -194,6 +194,50 @@ TEST(IsomorphicTriangulationFilter, SuspiciousLandmarksAreListed)
   EXPECT_EQ(12, worst->GetId(0));
 }
 
+TEST(IsomorphicTriangulationFilter, UnitsDoNotMatter)
+{
+  // Flat figures, which frames surround, and tilted ones.
+  for (const double tilt : { 0.0, 0.8 })
+  {
+    const auto make = [tilt](double sourceUnit, double targetUnit) {
+      auto run = std::make_unique<PairRun>(Lattice([=](double x, double y) {
+        return Point{ sourceUnit * x, sourceUnit * y, sourceUnit * tilt * x };
+      }),
+        Lattice([=](double x, double y) { return targetUnit * Bent(x, y); }));
+      if (tilt == 0.0)
+      {
+        run->Pair->SetSourceFrame(-2 * sourceUnit, 8 * sourceUnit, -3 * sourceUnit, 9 * sourceUnit);
+        run->Pair->SetTargetFrame(
+          -3 * targetUnit, 9 * targetUnit, -9 * targetUnit, 11 * targetUnit);
+      }
+      run->Pair->Update();
+      EXPECT_EQ(0, run->Errors);
+      return run;
+    };
+    const auto plain = make(1.0, 1.0);
+    for (const double unit : { 0x1p-1000, 0x1p1000 })
+    {
+      const auto scaled = make(unit, 0x1p600);
+      const std::array<double, 2> units{ { unit, 0x1p600 } };
+      ASSERT_GT(plain->Pair->GetOutput()->GetNumberOfCells(), 0);
+      EXPECT_EQ(0, CountDifferentCells(plain->Pair->GetOutput(), scaled->Pair->GetOutput()));
+      for (const int port : { 0, 1 })
+      {
+        const double factor = units[static_cast<std::size_t>(port)];
+        EXPECT_EQ(0,
+          CountDifferentPoints(
+            Resized(plain->Pair->GetOutput(port), factor), scaled->Pair->GetOutput(port)));
+      }
+      vtkDataArray* expected = PointArray(plain->Pair->GetTargetOutput(), "LandmarkResidual");
+      vtkDataArray* residuals = PointArray(scaled->Pair->GetTargetOutput(), "LandmarkResidual");
+      for (vtkIdType i = 0; i < expected->GetNumberOfTuples(); ++i)
+      {
+        EXPECT_TRUE(SameBits(residuals->GetTuple1(i), 0x1p600 * expected->GetTuple1(i)));
+      }
+    }
+  }
+}
+
 TEST(IsomorphicTriangulationFilter, FramesOfImages)
 {
   PairRun run(Lattice([](double x, double y) { return Point{ x, 10.0 - y, 0.0 }; }), Lattice(Bent));
