@@ -97,7 +97,7 @@ public:
   /// into 19 elements, rings of elements around vertices, and linear systems solved; the integral
   /// of the squared second derivatives, in the target's units per unit of the source, squared; the
   /// numbers of interior and boundary points at which the map has no derivative, and of triangles
-  /// whose determinant is not certified to be positive.
+  /// whose determinant is not certified to be positive; points in these are treated as outside.
   vtkGetMacro(NumberOfCubicElements, vtkIdType);
   vtkGetMacro(NumberOfCutTriangles, vtkIdType);
   vtkGetMacro(NumberOfVertexRings, vtkIdType);

@@ -6,6 +6,7 @@
 
 #include <vtkDifferentiableHomeomorphism.h>
 #include <vtkNew.h>
+#include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 
@@ -23,6 +24,12 @@ int main(int argc, char* argv[])
   for (int i = 0; i < 3; ++i)
   {
     readers[i]->SetFileName(argv[i + 1]);
+    readers[i]->Update();
+    if (readers[i]->GetErrorCode() != 0 || readers[i]->GetOutput()->GetNumberOfPoints() == 0)
+    {
+      std::cerr << argv[i + 1] << " has no points.\n";
+      return EXIT_FAILURE;
+    }
   }
   vtkNew<vtkDifferentiableHomeomorphism> map;
   map->SetSourceConnection(readers[0]->GetOutputPort());
@@ -34,7 +41,7 @@ int main(int argc, char* argv[])
   writer->SetInputConnection(map->GetOutputPort());
   writer->SetFileName(argv[4]);
   writer->SetDataModeToBinary();
-  if (writer->Write() == 0 || map->GetErrorCode() != 0)
+  if (writer->Write() == 0 || writer->GetErrorCode() != 0 || map->GetErrorCode() != 0)
   {
     return EXIT_FAILURE;
   }

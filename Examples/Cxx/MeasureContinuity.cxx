@@ -6,6 +6,7 @@
 
 #include <vtkJacobianContinuity.h>
 #include <vtkNew.h>
+#include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <cstdlib>
@@ -18,13 +19,20 @@ int main(int argc, char* argv[])
     std::cerr << "Usage: MeasureContinuity SOURCE.vtp TARGET.vtp\n";
     return EXIT_FAILURE;
   }
-  vtkNew<vtkXMLPolyDataReader> source;
-  source->SetFileName(argv[1]);
-  vtkNew<vtkXMLPolyDataReader> target;
-  target->SetFileName(argv[2]);
+  vtkNew<vtkXMLPolyDataReader> readers[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    readers[i]->SetFileName(argv[i + 1]);
+    readers[i]->Update();
+    if (readers[i]->GetErrorCode() != 0 || readers[i]->GetOutput()->GetNumberOfPolys() == 0)
+    {
+      std::cerr << argv[i + 1] << " has no triangles.\n";
+      return EXIT_FAILURE;
+    }
+  }
   vtkNew<vtkJacobianContinuity> continuity;
-  continuity->SetSourceConnection(source->GetOutputPort());
-  continuity->SetTargetConnection(target->GetOutputPort());
+  continuity->SetSourceConnection(readers[0]->GetOutputPort());
+  continuity->SetTargetConnection(readers[1]->GetOutputPort());
   for (const bool smooth : { false, true })
   {
     continuity->SetCoordinateSystem(

@@ -6,6 +6,7 @@
 #include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace homeomorphism
@@ -139,8 +140,10 @@ void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch, CubicTriangle
   if (from == Domain::Target)
   {
     this->Map->FindPreimages(batch, prepared);
+    this->LeaveUncertified(batch);
     return;
   }
+  this->LeaveUncertified(batch);
   // The map changes their triangles to those of the refined pair.
   std::uint8_t isMirrored[CubicBatch::Capacity];
   for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
@@ -151,6 +154,20 @@ void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch, CubicTriangle
   for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
   {
     batch.ImageX[i] = isMirrored[i] != 0 ? -batch.ImageX[i] : batch.ImageX[i];
+  }
+}
+
+// Where the map is not certified, its values may be anything.
+void CubicHomeomorphism::LeaveUncertified(CubicBatch& batch) const
+{
+  const int count = this->Map->GetStatistics().UncertifiedTriangles > 0 ? batch.Count : 0;
+  for (int i = 0; i < count; ++i)
+  {
+    if (batch.Triangles[i] >= 0 && !this->Map->IsCertified(batch.Triangles[i]))
+    {
+      batch.Triangles[i] = -1;
+      batch.ImageX[i] = batch.ImageY[i] = 0.0;
+    }
   }
 }
 
@@ -197,6 +214,12 @@ void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vec
     this->Map->FindPreimage(point, number, image);
     Vector2 again;
     this->Map->MapPoint(number, image, again, forward);
+  }
+  if (!this->Map->IsCertified(number))
+  {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    image = { none, none };
+    forward = { image, image };
   }
   if (mirrored)
   {

@@ -48,7 +48,8 @@ public:
     const double* const inFrame[2], CubicBatch& batch) const;
 
   /// Maps the points of a batch to the plane of the other mesh. Their triangles become the map's,
-  /// -1 where there is no image. @a prepared is the map's.
+  /// -1 where there is no image: in triangles in which the map is not certified. @a prepared is
+  /// the map's.
   void MapPoints(Domain from, CubicBatch& batch, CubicTriangle& prepared) const;
 
   /// The image of one point, to the same bits. Returns false if there is none.
@@ -56,7 +57,7 @@ public:
     Vector2& image) const;
 
   /// The image of a point of a triangle's frame, and the derivative from frame to frame. Both are
-  /// in the plane of the other mesh.
+  /// in the plane of the other mesh, and NaN where there is no image.
   void MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame, Vector2& image,
     Matrix2& derivative) const;
 
@@ -72,6 +73,8 @@ public:
   std::vector<std::int32_t> GetExceptionalPoints(bool interior) const;
 
 private:
+  void LeaveUncertified(CubicBatch& batch) const;
+
   const TriangulationPair& Pair;
   std::unique_ptr<CubicMap> Map;
   /// Triangles and points of the map by those of the meshes, and back; -1 for masked ones.

@@ -73,6 +73,7 @@ public:
   /// determinant of the piecewise linear map. The map is certified in the triangle if it is
   /// positive.
   const std::vector<double>& GetCertificates() const { return this->Certificates; }
+  bool IsCertified(int triangle) const { return this->Certificates[triangle] > 0.0; }
 
   /// What the functions below need to be fast for many points, one triangle after another.
   CubicTriangle Prepare(std::size_t kept = CubicTriangle::FewTriangles) const

@@ -68,3 +68,14 @@ run("${WORK_DIR}/bin/MeasureContinuity" "${WORK_DIR}/source.vtp" "${WORK_DIR}/ta
 if (NOT output MATCHES "Linear: 1 creases.*Smooth: 0 creases")
   message(FATAL_ERROR "The continuity of the Jacobian is not measured.")
 endif ()
+
+# A file that cannot be read or written is an error.
+foreach (arguments "MeasureContinuity;source.vtp;absent.vtp" "MapFile;source.vtp;absent.vtp;source.vtp;result.vtp"
+    "MapFile;source.vtp;target.vtp;source.vtp;absent/result.vtp")
+  list(POP_FRONT arguments program)
+  list(TRANSFORM arguments PREPEND "${WORK_DIR}/")
+  execute_process(COMMAND "${WORK_DIR}/bin/${program}" ${arguments} RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  if (status EQUAL 0)
+    message(FATAL_ERROR "${program} ${arguments} succeeds.")
+  endif ()
+endforeach ()

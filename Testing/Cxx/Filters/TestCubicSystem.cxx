@@ -135,4 +135,45 @@ TEST(CubicSystem, RefusesSurfacesCoordinatesAndWhatItCannotNumber)
   EXPECT_EQ(surface->GetErrorCode(), vtkHomeomorphismAlgorithm::MESHES_REFUSED);
 }
 
+TEST(CubicSystem, LeavesWhatIsNotCertified)
+{
+  // Two neighbors in the middle of a grid are a rounding unit apart in the source.
+  std::vector<Point> source = GridPoints(8, 0, 0.0);
+  source[41][0] = std::nextafter(source[40][0], 8.0);
+  const MeshPair pair{ MakeMesh(source, GridTriangles(8)), RegularGrid(8) };
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0.01, 7.99);
+  std::vector<Point> points;
+  for (int n = 0; n < 4000; ++n)
+  {
+    points.push_back({ uniform(random), uniform(random), 0 });
+  }
+  MapOptions options;
+  options.CoordinateSystem = vtkDifferentiableHomeomorphism::CUBIC;
+  const MappedPoints mapped = MapPoints(pair, points, options);
+  EXPECT_NE(mapped.Warning.find("not certified"), std::string::npos) << mapped.Warning;
+  options.Inverse = true;
+  const MappedPoints back = MapPoints(pair, mapped.Images, options);
+  int inside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (!mapped.IsInside(i))
+    {
+      EXPECT_EQ(mapped.Images[i], points[i]);
+      continue;
+    }
+    ++inside;
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      EXPECT_GE(mapped.Images[i][axis], 0.0);
+      EXPECT_LE(mapped.Images[i][axis], 8.0);
+      if (back.IsInside(i))
+      {
+        EXPECT_NEAR(back.Images[i][axis], points[i][axis], 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(inside, 3000);
+}
+
 } // namespace
