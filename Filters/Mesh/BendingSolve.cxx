@@ -106,6 +106,8 @@ struct Element
   double Reference = 0.0;
   bool Failed = false;
   BendingMatrix Bending;
+  /// Doubles cannot represent even the template's own element: its triangle is not certified.
+  bool IsLost = false;
 };
 
 /// What the boundary prescribes at a point.
@@ -386,6 +388,7 @@ void Solver::Build()
         const DeterminantCoefficients c = GetDeterminantCoefficients(own);
         element.Reference = *std::min_element(c.begin(), c.end());
         element.Enough = this->Options.CertificateMargin * element.Reference;
+        element.IsLost = !(LeastDeterminant(own) > 0.0);
       }
       this->Elements.push_back(element);
     }
@@ -786,10 +789,10 @@ int Solver::Check(bool rigorous)
           const DeterminantCoefficients c = GetDeterminantCoefficients(cubic);
           isCertain = *std::min_element(c.begin(), c.end()) > 1.001 * element.Enough;
         }
-        element.Failed =
-          !(isCertain || LeastDeterminant(cubic, element.Enough, 4) >= element.Enough) ||
-          (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
-            !(GreatestDisplacement(cubic) <= this->Options.MaximumDeviation));
+        element.Failed = !element.IsLost &&
+          (!(isCertain || LeastDeterminant(cubic, element.Enough, 4) >= element.Enough) ||
+            (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
+              !(GreatestDisplacement(cubic) <= this->Options.MaximumDeviation)));
       }
     });
   int failed = 0;
@@ -1116,6 +1119,11 @@ BendingSolution Solver::Run()
   for (int round = 0; round < MaximumRounds; ++round)
   {
     this->SolveSystem();
+    if (!this->Solution.allFinite())
+    {
+      // Triangles are so thin that the system's numbers overflow.
+      break;
+    }
     int failed = this->Check(false);
     failed = failed == 0 ? this->Check(true) : failed;
     if (failed == 0)
