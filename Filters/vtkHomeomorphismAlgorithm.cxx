@@ -212,7 +212,10 @@ std::shared_ptr<const Homeomorphism> vtkHomeomorphismAlgorithm::GetMap(
     {
       vtkWarningMacro(<< "The Cubic map is not certified in " << cubic.UncertifiedTriangles
                       << " triangles (array Certificate): doubles cannot represent its elements "
-                         "there. Points in them are marked as outside. Use the Smooth system, or allow a larger MaximumDeviation.");
+                         "there. Points in them are marked as outside. Use the Smooth system"
+                      << (this->GetMaximumDeviation() < VTK_DOUBLE_MAX
+                             ? ", or allow a larger MaximumDeviation."
+                             : "."));
     }
   }
   this->NumberOfCubicElements = cubic.Elements;

@@ -12,7 +12,7 @@ True
 """
 
 from .arrays import Homeomorphism
-from .isomorphic import isomorphic_triangulation
+from .isomorphic import IsomorphicTriangulation, isomorphic_triangulation
 from .vtkFiltersHomeomorphism import (
     vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform, vtkIsomorphicTriangulation, vtkJacobianContinuity,
     vtkResampleThroughHomeomorphism, vtkTriangularCoordinates,
@@ -20,7 +20,7 @@ from .vtkFiltersHomeomorphism import (
 
 __version__ = "1.0.0"
 __all__ = [
-    "Homeomorphism", "isomorphic_triangulation", "vtkDifferentiableHomeomorphism", "vtkHomeomorphismTransform",
-    "vtkIsomorphicTriangulation", "vtkJacobianContinuity", "vtkResampleThroughHomeomorphism",
-    "vtkTriangularCoordinates",
+    "Homeomorphism", "IsomorphicTriangulation", "isomorphic_triangulation", "vtkDifferentiableHomeomorphism",
+    "vtkHomeomorphismTransform", "vtkIsomorphicTriangulation", "vtkJacobianContinuity",
+    "vtkResampleThroughHomeomorphism", "vtkTriangularCoordinates",
 ]

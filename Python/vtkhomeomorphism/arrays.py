@@ -8,6 +8,7 @@ import inspect
 import itertools
 import math
 import operator
+import warnings
 from typing import Optional, Tuple
 
 import numpy
@@ -123,21 +124,26 @@ def arrays_of(attributes) -> dict:
 
 
 def update(algorithm):
-    """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them."""
-    own, others = [], []
+    """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them, and passes
+    its warnings to Python's module warnings."""
+    own, others, warned = [], [], []
 
     def collect(caller, event, text):
         # Without VTK's prefix, the position in the C++ source.
-        (own if caller is algorithm else others).append(text.split("): ", 1)[-1].strip())
+        texts = warned if event == "WarningEvent" else own if caller is algorithm else others
+        texts.append(text.split("): ", 1)[-1].strip())
 
     collect.CallDataType = "string0"
-    tags = [(sender, sender.AddObserver("ErrorEvent", collect)) for sender in (algorithm, algorithm.GetExecutive())]
+    tags = [(sender, sender.AddObserver(event, collect)) for sender in (algorithm, algorithm.GetExecutive())
+            for event in ("ErrorEvent", "WarningEvent")]
     algorithm.Update()
     for sender, tag in tags:
         sender.RemoveObserver(tag)
     if own or others:
         # The executive also says that the algorithm failed.
         raise ValueError("\n".join(own or others))
+    for text in warned:
+        warnings.warn(text, stacklevel=2)
     return algorithm.GetOutputDataObject(0)
 
 
@@ -169,7 +175,13 @@ class Homeomorphism:
     mask_invalid : bool
         Leave out invalid triangles instead of raising an error.
 
-    Points outside the domain become NaN. Invalid meshes raise ValueError with a message that lists the triangles. An
+    Attributes
+    ----------
+    source, target : array of shape (n, 2) or (n, 3)
+    triangles : array of int of shape (m, 3)
+
+    Points outside the domain become NaN, and points of triangles in which a Cubic map is not certified (a warning gives
+    their number). Invalid meshes raise ValueError with a message that lists the triangles. An
     object must not be used by several threads at a time; each call is itself parallel.
     """
 
@@ -192,11 +204,15 @@ class Homeomorphism:
     @classmethod
     def from_landmarks(cls, source, target, system: str = "smooth", **options):
         """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made for them, with
-        the options of `isomorphic_triangulation` and of this class."""
+        the options of `isomorphic_triangulation` and of this class. Warns of landmarks that are probably wrong. By
+        default, the domain extends half a spacing beyond the landmarks."""
         from .isomorphic import isomorphic_triangulation
 
         own = {name: options.pop(name) for name in list(options) if name in inspect.signature(configure).parameters}
         pair = isomorphic_triangulation(source, target, **options)
+        suspicious = pair.suspicious().tolist()
+        if suspicious:
+            warnings.warn(f"landmarks that are probably wrong, the worst first: {suspicious}", stacklevel=2)
         return cls(pair.source, pair.target, pair.triangles, system, **own)
 
     def _set_up(self, algorithm):
@@ -206,10 +222,20 @@ class Homeomorphism:
         configure(algorithm, self._system, **self._options)
         return algorithm
 
+    @property
+    def source(self) -> numpy.ndarray:
+        return points_of(self._meshes[0])[:, :self._dimensions[0]].copy()
+
+    @property
+    def target(self) -> numpy.ndarray:
+        return points_of(self._meshes[1])[:, :self._dimensions[1]].copy()
+
+    @property
+    def triangles(self) -> numpy.ndarray:
+        return vtk_to_numpy(self._meshes[0].GetPolys().GetConnectivityArray()).reshape(-1, 3).copy()
+
     def __getstate__(self):
-        points = [points_of(mesh)[:, :size] for mesh, size in zip(self._meshes, self._dimensions)]
-        triangles = vtk_to_numpy(self._meshes[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        return (*points, triangles, self._system), self._options
+        return (self.source, self.target, self.triangles, self._system), self._options
 
     def __setstate__(self, state):
         self.__init__(*state[0], **state[1])

@@ -155,7 +155,9 @@ def isomorphic_triangulation(
     names : sequence of str
         What messages call the first points; the others are called by their numbers.
 
-    Raises ValueError with a message that names the points if the figures have no such triangulations.
+    Returns an IsomorphicTriangulation: source, target, triangles, residuals, added_points, left_out, report, and
+    suspicious(), the landmarks that are probably wrong. Raises ValueError with a message that names the points if the
+    figures have no such triangulations.
     """
     if frame is not None and frame[1] is None:
         return _with_frame(source, target, frame[0], functools.partial(

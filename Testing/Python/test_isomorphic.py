@@ -41,6 +41,26 @@ def test_the_mistyped_landmark_is_the_most_suspicious():
     source, target = _landmarks()
     target[17] += 0.05
     assert isomorphic_triangulation(source, target).residuals.argmax() == 17
+    with pytest.warns(UserWarning, match=r": \[17\b"):
+        Homeomorphism.from_landmarks(source, target)
+
+
+def test_what_is_not_certified_is_said_and_nan():
+    x, y = (c.ravel() for c in numpy.meshgrid(numpy.arange(9.0), numpy.arange(9.0)))
+    target = numpy.column_stack((x, y))
+    source = target.copy()
+    source[41, 0] = numpy.nextafter(source[40, 0], 9)
+    corners = numpy.array([9 * j + i for j in range(8) for i in range(8)])[:, None]
+    triangles = numpy.vstack((corners + [0, 1, 10], corners + [0, 10, 9]))
+    points = numpy.random.default_rng(2).uniform(0.1, 7.9, (2000, 2))
+    with pytest.warns(UserWarning, match="not certified in"):
+        f = Homeomorphism(source, target, triangles, "cubic")
+        images, jacobians = f(points), f.jacobian(points)
+    inside = ~numpy.isnan(images[:, 0])
+    assert 1000 < inside.sum() < 2000
+    assert (numpy.abs(images[inside] - 4) <= 4).all()
+    assert (numpy.linalg.det(jacobians[inside]) > 0).all() and numpy.isnan(jacobians[~inside]).all()
+    assert numpy.array_equal(f.source, source) and numpy.array_equal(f.triangles, triangles)
 
 
 def test_outlines_and_added_points():
