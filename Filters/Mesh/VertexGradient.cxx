@@ -818,9 +818,14 @@ bool FindRingsTowards(const Matrix2& derivative, const VertexFan& fan, VertexRin
         }
       }
       bool advanced = false;
-      for (double factor :
-        { 1.6, 1.2, 1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002 })
+      for (double factor : { 1.6, 1.2, 1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002,
+             5e-4, 1e-4, 2e-5 })
       {
+        // A very thin sector's image leaves its place slowly, with the first ring.
+        if (factor < 0.002 && rings.GetNumberOfRings() > 0)
+        {
+          break;
+        }
         const double next =
           std::min(fastest, factor * std::max(rate, rings.GetNumberOfRings() == 0 ? 0.2 : 0.0));
         if (append(rings.Outlines, share + 0.5 * (rate + next), next))
