@@ -159,6 +159,13 @@ def isomorphic_triangulation(
     suspicious(), the landmarks that are probably wrong. Raises ValueError with a message that names the points if the
     figures have no such triangulations.
     """
+    for name, value, largest in (("target_minimum_angle", target_minimum_angle, 60), ("maximum_triangle_size",
+                                 maximum_triangle_size, 1), ("maximum_added_points", maximum_added_points or 0, numpy.inf)):
+        if not 0 <= value <= largest:
+            raise ValueError(f"{name} must be a number from 0 to {largest}, not {value}")
+    for box in frame or ():
+        if box is not None and not (box[0] < box[1] and box[2] < box[3]):
+            raise ValueError(f"frame must be the least and the largest x, and the least and the largest y, not {box}")
     if frame is not None and frame[1] is None:
         return _with_frame(source, target, frame[0], functools.partial(
             isomorphic_triangulation, segments=segments, quality=quality,

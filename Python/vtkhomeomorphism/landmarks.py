@@ -15,6 +15,7 @@ Formats, recognized by their content:
 
 from __future__ import annotations
 
+import collections
 import csv
 import functools
 import json
@@ -24,7 +25,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy
 
-from .files import FILE, USAGE, Failure, count, import_extra, inform, quote_message
+from .files import FILE, USAGE, Failure, count, import_extra, inform, join, quote_message
 from .isomorphic import isomorphic_triangulation, rectangle, within
 
 _COLUMNS = ("source_x", "source_y", "target_x", "target_y")
@@ -53,9 +54,9 @@ class Landmarks:
 
     def without(self, names: Sequence[str]) -> Landmarks:
         """The landmarks except those of the given names, which are left out."""
-        unknown = [name for name in names if name not in self.names]
+        unknown = set(names) - {*self.names, *(name for name, _ in self.left_out)}
         if unknown:
-            raise LandmarkFileError(f"there is no landmark {', '.join(unknown[:5])} to leave out")
+            raise LandmarkFileError(f"there is no landmark {', '.join(sorted(unknown)[:5])} to leave out")
         kept = [i for i, name in enumerate(self.names) if name not in names]
         left_out = self.left_out + [(name, "on request") for name in self.names if name in names]
         return replace(self, source=self.source[kept], target=self.target[kept], names=[self.names[i] for i in kept],
@@ -71,14 +72,20 @@ def _collect(rows, path: str, **facts) -> Landmarks:
             reason = f"no position in the {' and the '.join(missing)}"
         (left_out if reason else used).append((name, reason or row))
     if len(used) < 3:
-        raise LandmarkFileError(f"{path}: {len(used)} usable landmarks; at least 3 are needed")
+        raise LandmarkFileError(f"{path}: {count(len(used), 'usable landmark')}; at least 3 are needed")
     values = numpy.array([row for _, row in used], float)
     return Landmarks(values[:, :2].copy(), values[:, 2:].copy(), [name for name, _ in used], left_out, **facts)
 
 
+def _records(lines: List[str]):
+    """The rows of a table, whose fields are separated by commas, semicolons or tabs."""
+    first = next((line for line in lines if line.strip()), "")
+    return csv.reader(lines, delimiter=next((s for s in ";\t" if first.count(s) >= 3), ","))
+
+
 def _read_table(lines: List[str], path: str, header: Optional[List[str]], columns: Sequence[str], first: int = 1):
     """Yields the columns' numbers and a dict of all fields for each row of a table."""
-    reader = csv.reader(lines)
+    reader = _records(lines)
     for record in reader:
         line = first + reader.line_num - 1
         if not any(f.strip() for f in record):
@@ -94,10 +101,10 @@ def _read_table(lines: List[str], path: str, header: Optional[List[str]], column
         fields, values = dict(zip(header, record)), []
         for name in columns:
             try:
-                values.append(float(fields[name]))
+                values.append(float(fields[name].strip() or "nan"))
             except ValueError:
-                found = fields[name].strip()[:40]
-                raise LandmarkFileError(f"{path}, line {line}: {name} is {found!r}, not a number") from None
+                found, hint = fields[name].strip()[:40], " (write 0.5, not 0,5)" if "," in fields[name] else ""
+                raise LandmarkFileError(f"{path}, line {line}: {name} is {found!r}, not a number{hint}") from None
         yield values, fields
 
 
@@ -149,7 +156,7 @@ def _read_bigwarp(lines: List[str], path: str) -> Landmarks:
 
 
 def _read_csv(lines: List[str], path: str) -> Landmarks:
-    header = first = [f.strip().lower() for f in next(csv.reader(lines))]
+    header = first = [f.strip().lower() for f in next(_records(lines))]
     if all(column in first for column in _COLUMNS):
         # As the first line, in small letters.
         lines = [""] + lines[1:]
@@ -179,7 +186,7 @@ def read_landmarks(path) -> Landmarks:
         return _read_iiif(text, path)
     if "mapX" in content and "mapY" in content:
         return _read_qgis(lines, path)
-    first = next(csv.reader([content]))
+    first = next(_records([content]))
     bigwarp = len(first) == 6 and first[1].strip().lower() in ("true", "false")
     return (_read_bigwarp if bigwarp else _read_csv)(lines, path)
 
@@ -202,16 +209,14 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
 
 
 def is_landmark_file(path) -> bool:
-    """Whether a file name and content are those of landmarks: `.points`, `.csv` with at least four columns, or JSON
-    with a georeference annotation."""
+    """Whether a file name and content are those of landmarks: `.points`, `.csv`, or JSON with a georeference
+    annotation."""
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
-    if suffix not in (".csv", ".json", ".geojson") or not os.path.isfile(path):
-        return suffix == ".points"
+    if suffix not in (".json", ".geojson") or not os.path.isfile(path):
+        return suffix in (".points", ".csv")
     with open(path, "rb") as file:
         start = file.read(1 << 20)
-    if suffix == ".csv":
-        return start.split(b"\n", 1)[0].count(b",") >= 3
     words = (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
     return b"FeatureCollection" in start and any(word in start for word in words)
 
@@ -222,6 +227,9 @@ def read(file, options) -> Landmarks:
         marks = read_landmarks(file.path).without([name for name in options.without.split(",") if name])
     except LandmarkFileError as error:
         raise Failure(f"{quote_message(error, file)}.", FILE) from None
+    twice = [name for name, number in collections.Counter(marks.names).items() if number > 1]
+    if twice:
+        inform(f"{file.name}: several landmarks have the same id: {join(twice)}.")
     if marks.left_out:
         names = ", ".join(f"{name} ({reason})" for name, reason in marks.left_out[:10])
         inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}"

@@ -59,6 +59,21 @@ def test_a_pair_is_made_and_described(dhm):
     dhm.refuse(FILE, "check", "marks.csv", "--without", "m70", says="m70")
 
 
+@pytest.mark.parametrize("rows, says", [
+    ("source_x;source_y;target_x;target_y\n0;0;0;0\n1;0;1;0\n0;1;0;1\n", "3 landmarks"),
+    ("source_x;source_y;target_x;target_y\n0;0;0,5;0\n", "'0,5', not a number (write 0.5"),
+    ("Name;Rechtswert;Hochwert;x;y\na;1;2;3;4\n", "need the columns source_x"),
+    ("E,N\n1,2\n", "need the columns source_x"),
+    ("id,source_x,source_y,target_x,target_y\na,0,0,0,0\nb,1,0,1,0\nc,0,1,0,1\nd,,,,\n", "left out: d (no position"),
+    ("id,source_x,source_y,target_x,target_y\na,0,0,0,0\na,1,0,1,0\nc,0,1,0,1\nd,1,1,,\n", "same id: a."),
+    ("source_x,source_y,target_x,target_y\n0,0,0,0\n", "1 usable landmark;"),
+])
+def test_tables_are_read_or_the_columns_named(dhm, rows, says):
+    dhm.path("marks.csv").write_text(rows)
+    without = ("--without", "d") if "\nd," in rows else ()
+    assert says in dhm("check", "--quick", "marks.csv", *without, status={0, FILE}).err
+
+
 def test_landmarks_are_a_pair_for_every_command(dhm):
     source, target = landmarks()
     write_landmarks(dhm.path("marks.csv"), source, target)
@@ -187,6 +202,11 @@ def test_conflicts_and_necessary_points_are_named(dhm):
     dhm.refuse(REFUSED, *words, says=("marks.csv", "cross"))
     write_landmarks(dhm.path("twice.csv"), *2 * [source[[0, 1, 2, 3, 1]]], ["a", "b", "c", "d", "e"])
     dhm.refuse(REFUSED, "triangulate", "twice.csv", "--without", "a", "-o", "new.json", says=": b, e.")
+    dhm.refuse(USAGE, "triangulate", "twice.csv", "--domain", "outline", "-o", "new.json", says="no outlines")
+    dhm.refuse(USAGE, "triangulate", "twice.csv", "--target-angle", "61", "-o", "new.json", says="--target-angle")
+    write_landmarks(dhm.path("narrow.csv"), *2 * [[[0, 0], [1, 0], [1, 0.01], [0, 1]]])
+    narrow = dhm("triangulate", "narrow.csv", "--target-angle", "50", "--maximum-added-points", "1", "-o", "narrow.json")
+    assert "misses --target-angle 50" in narrow.err
     assert "line 1 is left out" in dhm(*words, "--leave-out-conflicts").err
     # Landmarks that change places on a line, between others: not without a point.
     random = numpy.random.default_rng(2)

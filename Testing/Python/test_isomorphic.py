@@ -91,6 +91,15 @@ def test_points_that_do_not_exist_are_refused():
         isomorphic_triangulation(source, target, segments=[[0, 99]])
 
 
+@pytest.mark.parametrize("wrong", [
+    {"maximum_added_points": -1}, {"target_minimum_angle": float("nan")}, {"target_minimum_angle": 61},
+    {"maximum_triangle_size": -0.1}, {"frame": ((1, 0, 1, 0), (1, 0, 1, 0))}, {"frame": ((1, 0, 0, 1), None)},
+])
+def test_wrong_options_are_refused(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        isomorphic_triangulation(*_landmarks(5), **wrong)
+
+
 def test_necessary_points_are_refused_beyond_the_limit():
     random = numpy.random.default_rng(4)
     source, target = random.random((20, 2)), random.random((20, 2))

@@ -9,7 +9,7 @@ import click
 
 from .. import options, plots
 from ..arrays import SYSTEMS
-from ..files import Failure, Output, inform
+from ..files import Failure, Output, count, inform
 from ..report import Report
 
 
@@ -68,7 +68,9 @@ def command(inputs, as_json, quick, plot, force):
     if as_json:
         click.echo(json.dumps(found, indent=2, ensure_ascii=False))
     else:
-        click.echo(f"{pair.name}: {'a valid pair' if report.valid else 'NOT a valid pair'}")
+        uncertified = found.get("cubic", {}).get("uncertified_triangles", 0)
+        but = f", but its Cubic map is not certified in {count(uncertified, 'triangle')}" if uncertified else ""
+        click.echo(f"{pair.name}: {'a valid pair' if report.valid else 'NOT a valid pair'}{but}")
         for problem in found["problems"]:
             click.echo(f"  - {problem['message']}")
         print_table({name: found[name] for name in ("source", "target")})

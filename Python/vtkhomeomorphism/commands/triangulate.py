@@ -7,7 +7,7 @@ import numpy
 
 from .. import landmarks, meshes, options, pair, vtkfiles
 from ..arrays import points_of
-from ..files import FILE, USAGE, Failure, Input
+from ..files import FILE, USAGE, Failure, Input, inform
 from ..isomorphic import DOMAINS, QUALITIES
 from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lines
 
@@ -66,7 +66,7 @@ def print_report(made, marks):
                    "outline if there are outlines, else frame.")
 @click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", show_default=True,
               help="Quality measure for which triangles are optimized.")
-@click.option("--target-angle", type=options.Number(0, 90), default=0.0, metavar="DEGREES",
+@click.option("--target-angle", type=options.Number(0, 60), default=0.0, metavar="DEGREES",
               help="Add points until no angle is smaller than this (default: necessary points only).")
 @click.option("--maximum-added-points", type=click.IntRange(0), metavar="NUMBER",
               help="Greatest number of added points (default: the necessary ones, and up to 100 for --target-angle).")
@@ -97,10 +97,16 @@ def command(inputs, output, lines, outlines, domain, quality, target_angle, maxi
             segments, loops = (read_lines(file, marks.names) if file else [] for file in (lines, outlines))
         except (LandmarkFileError, OSError) as error:
             raise Failure(f"{error}.", FILE) from None
+    if domain == "outline" and not loops and not are_loops(segments):
+        raise Failure("There are no outlines for --domain outline (--outlines).", USAGE)
     both, made = pair.from_landmarks(
         marks, " and ".join(inputs.pair), inputs, outlines=loops, segments=segments, domain=domain, quality=quality,
         target_minimum_angle=target_angle, maximum_added_points=maximum_added_points,
         maximum_triangle_size=maximum_size, leave_out_conflicting_segments=leave_out_conflicts)
+    smallest = min(made.report["smallest_angles"])
+    if smallest < target_angle:
+        inform(f"the smallest angle is {smallest:.3g} degrees and misses --target-angle {target_angle:g}: allow more points "
+               "(--maximum-added-points); angles between landmarks and lines cannot be enlarged.")
     with output.writing():
         pair.write(both, output)
     if report:
