@@ -53,7 +53,7 @@ class Data:
                 layers, outside = vectors.map_layers(
                     vectors.read(input), lambda points: self.work.map_points(points)[0], self.densify, *self.crs)
                 self._write(layers, vectors.write, outside, "feature",
-                            f"its geometry is empty, and it is marked 1 in {vectors.MARK}")
+                            f"without a geometry in the result, and marked 1 in {vectors.MARK}")
             elif kind in TABLES:
                 self._process_table(tables.Table(input, self.columns, bool(self.shift and self.shift.heights)))
             else:

@@ -354,6 +354,12 @@ def brightest(dtype):
     return numpy.iinfo(dtype).max if dtype.kind in "iu" else 1.0
 
 
+def add_alpha(pixels, mask=True):
+    """The pixels with an alpha band: opaque, or transparent where the mask is 0."""
+    alpha = numpy.where(mask, brightest(pixels.dtype), 0).astype(pixels.dtype)
+    return numpy.dstack((pixels, numpy.broadcast_to(alpha, pixels.shape[:2])))
+
+
 def finish(pixels, mask, has_alpha, background, nodata=None):
     """Sets pixels outside to the background: a color, no data, or transparency (adding an alpha band if needed)."""
     full, colors = brightest(pixels.dtype), pixels.shape[2] - has_alpha
@@ -364,7 +370,7 @@ def finish(pixels, mask, has_alpha, background, nodata=None):
     fill = (numpy.rint(fill) if pixels.dtype.kind in "iu" else fill).astype(pixels.dtype)
     pixels = pixels if mask.all() else numpy.where(mask[:, :, None], pixels, fill)
     if background is None and nodata is None and not has_alpha and colors <= 3:
-        pixels = numpy.dstack((pixels, numpy.where(mask, full, 0).astype(pixels.dtype)))
+        pixels = add_alpha(pixels, mask)
     return pixels
 
 

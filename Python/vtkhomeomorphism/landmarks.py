@@ -209,14 +209,16 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
 
 
 def is_landmark_file(path) -> bool:
-    """Whether a file name and content are those of landmarks: `.points`, `.csv`, or JSON with a georeference
-    annotation."""
+    """Whether a file name and content are those of landmarks: `.points`, `.csv` with at least four columns, or JSON
+    with a georeference annotation."""
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
-    if suffix not in (".json", ".geojson") or not os.path.isfile(path):
-        return suffix in (".points", ".csv")
+    if suffix not in (".csv", ".json", ".geojson") or not os.path.isfile(path):
+        return suffix == ".points"
     with open(path, "rb") as file:
         start = file.read(1 << 20)
+    if suffix == ".csv":
+        return max(map(start.split(b"\n", 1)[0].count, (b",", b";", b"\t"))) >= 3
     words = (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
     return b"FeatureCollection" in start and any(word in start for word in words)
 
@@ -237,9 +239,14 @@ def read(file, options) -> Landmarks:
     if options.crs and marks.crs and options.crs != marks.crs:
         rasterio = import_extra("rasterio.warp", f"Taking landmarks from {marks.crs} to {options.crs}")
         try:
-            target = numpy.column_stack(rasterio.transform(marks.crs, options.crs, *marks.target.T))
+            known = rasterio.CRS.from_user_input(marks.crs)
+        except ValueError:
+            inform(f"{file.name} states no coordinate reference system that GDAL knows: it is taken for {options.crs} (--crs).")
+            return replace(marks, crs=options.crs)
+        try:
+            target = numpy.column_stack(rasterio.transform(known, options.crs, *marks.target.T))
         except Exception as error:
-            raise Failure(f"Cannot take the landmarks from {marks.crs} to {options.crs}: {error}", USAGE) from None
+            raise Failure(f"Cannot take the landmarks from {marks.crs} to {options.crs}: {error}", FILE) from None
         marks = replace(marks, target=target)
     return replace(marks, crs=options.crs or marks.crs)
 

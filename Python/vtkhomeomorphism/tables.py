@@ -7,7 +7,7 @@ import re
 
 import numpy
 
-from .files import USAGE, Failure, import_extra, quote
+from .files import USAGE, Failure, import_extra, inform, quote
 
 USUAL_NAMES = [
     names.split()
@@ -162,6 +162,8 @@ class Table:
             own = name if values.ndim == 1 else f"{name}_{k}"
             place = self.frame.shape[1]
             if self.names is not None:
+                if own in self.names:
+                    inform(f"{self.input.name}: the column {own} is replaced.")
                 place = self.names.index(own) if own in self.names else place
                 self.names = self.names[:place] + [own] + self.names[place + 1 :]
             self.frame[place] = list(map(repr, column.tolist()))

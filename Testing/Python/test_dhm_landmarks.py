@@ -63,7 +63,6 @@ def test_a_pair_is_made_and_described(dhm):
     ("source_x;source_y;target_x;target_y\n0;0;0;0\n1;0;1;0\n0;1;0;1\n", "3 landmarks"),
     ("source_x;source_y;target_x;target_y\n0;0;0,5;0\n", "'0,5', not a number (write 0.5"),
     ("Name;Rechtswert;Hochwert;x;y\na;1;2;3;4\n", "need the columns source_x"),
-    ("E,N\n1,2\n", "need the columns source_x"),
     ("id,source_x,source_y,target_x,target_y\na,0,0,0,0\nb,1,0,1,0\nc,0,1,0,1\nd,,,,\n", "left out: d (no position"),
     ("id,source_x,source_y,target_x,target_y\na,0,0,0,0\na,1,0,1,0\nc,0,1,0,1\nd,1,1,,\n", "same id: a."),
     ("source_x,source_y,target_x,target_y\n0,0,0,0\n", "1 usable landmark;"),
@@ -109,6 +108,11 @@ def test_landmarks_of_images_have_y_down(dhm, form):
         text += "".join(f"{x},{y},{u},{-v},1\n" for (u, v), (x, y) in zip(centers, moved))
         dhm.path("marks.points").write_text(text)
         dhm.refuse(USAGE, "warp", "marks.points", "image.png", "-o", "out.png", says="--crs")
+        pytest.importorskip("rasterio")
+        dhm.path("marks.points").write_text('#CRS: PROJCRS["x\n' + text)
+        refusal = dhm.refuse(USAGE, "warp", "marks.points", "image.png", "-o", "out.tif", says="PROJCRS")
+        assert "was taken for" not in refusal.err
+        assert "EPSG:3857" in dhm("warp", "marks.points", "image.png", "-o", "out.tif", "--crs", "EPSG:3857").err
         return
     else:
         write_landmarks(dhm.path("marks.csv"), centers, moved)

@@ -169,6 +169,8 @@ def test_tables_keep_every_digit_and_column(dhm, pair):
     assert [(l[0], l[3], l[4]) for l in lines[1:]] == [('Old "Oak"', "x", "007"), ("Stone", "two\nlines", "1.10")]
     image = [float(lines[1][2]), float(lines[1][1])]
     numpy.testing.assert_allclose(image, interpolate(numpy.array([[0.5, 0.25]]), pair)[0], atol=1e-15)
+    dhm.path("again.csv").write_text(out)
+    assert f"column {MASK} is replaced" in dhm("map", "pair.json", "again.csv", "-o", "-").err
     # Coordinates that do not move keep their text.
     out = dhm("coordinates", "pair.json", "t.csv", "-o", "-").out.decode()
     assert ";0.250;0.50;x;007;" in out and ";3;3;" in out

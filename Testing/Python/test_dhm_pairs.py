@@ -145,6 +145,16 @@ def test_frames_begin_and_end_with_the_images(dhm, faces):
     assert numpy.abs(frames[1] - (halves[0] + halves[1]) / 2).max() <= 1.001
 
 
+def test_opaque_and_transparent_images_are_mixed(dhm, faces):
+    pair, pixels = faces
+    Image.fromarray(numpy.dstack((pixels[1], pixels[0, :, :, 0]))).save(dhm.path("1.png"))
+    dhm("morph", "pair.json", "--source-image", "0.ppm", "--target-image", "1.png", "-n", "2", "-o", "f%d.png")
+    frames = [numpy.asarray(Image.open(dhm.path(f"f{k}.png"))) for k in range(2)]
+    numpy.testing.assert_array_equal(frames[0][:, :, :3], pixels[0])
+    numpy.testing.assert_array_equal(frames[1], numpy.asarray(Image.open(dhm.path("1.png"))))
+    assert (frames[0][:, :, 3] == 255).all()
+
+
 def test_meshes_move_and_folds_are_avoided_or_refused(dhm, faces):
     pair, _ = faces
     dhm("morph", "pair.json", "-n", "3", "-o", "m%d.obj", "-q")

@@ -109,6 +109,7 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
         ends = [images.Grid(*size) if size and not both.extents else grid for grid in inputs.grids]
         ends = [grid.hanging() if both.landmarks else grid for grid in ends]
     times = [k / (frames - 1) for k in range(frames)]
+    has_alpha = any(raster.has_alpha for raster in rasters.values())
     steps = zip(times, outputs, make_meshes(both, settings["mask_invalid"], path, times))
     for t, frame, mesh in progress(list(steps), "Morphing"):
         with frame.writing():
@@ -118,8 +119,9 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
             grid = grid_between(ends, size or ends[0].size, t)
             warped = [images.Warp(replace(both, meshes=[both.meshes[side], mesh]), settings).warp(raster, grid, "")
                       for side, raster in rasters.items()]
+            warped = [(pixels if raster.has_alpha or not has_alpha else images.add_alpha(pixels), mask)
+                      for (pixels, mask), raster in zip(warped, rasters.values())]
             pixels, mask = warped[0]
             if len(warped) == 2:
                 pixels, mask = blend(pixels, warped[1][0], (mask, warped[1][1]), t)
-            has_alpha = all(raster.has_alpha for raster in rasters.values())
             images.write(images.finish(pixels, mask, has_alpha, color), frame, grid)

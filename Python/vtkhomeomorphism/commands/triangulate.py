@@ -91,7 +91,8 @@ def command(inputs, output, lines, outlines, domain, quality, target_angle, maxi
         name = inputs.pair[0]
         with Input(name, inputs.format or "csv") as file:
             if not is_landmark_file(file.path):
-                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv, .points and IIIF's .json.", USAGE)
+                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv (source_x, source_y, target_x, "
+                              "target_y), .points and IIIF's .json.", USAGE)
             marks = landmarks.read(file, inputs)
         try:
             segments, loops = (read_lines(file, marks.names) if file else [] for file in (lines, outlines))
