@@ -107,8 +107,6 @@ class Input:
     """A file to read, as a context; `-` is standard input, of the given format, kept in a temporary file."""
 
     def __init__(self, name, standard_format=""):
-        if not name:
-            raise Failure("The name of an input file is empty.", USAGE)
         self.standard, self.path = name == "-", name
         self.name = "standard input" if self.standard else name
         self.format = standard_format if self.standard else format_of(name)
@@ -147,8 +145,6 @@ class Output:
         self.name = "standard output" if self.standard else name
         self.special = self.standard or os.path.exists(name) and not os.path.isfile(name)
         self.format = standard_format if self.standard else format_of(name) or self.special and standard_format
-        if not name:
-            raise Failure("The name of the output is empty.", USAGE)
         if self.format not in formats:
             found = f"extension .{self.format}" if self.format else "no extension"
             raise Failure(f"Cannot write {what} to {self.name}, which has {found}; use {dotted(formats)}.", USAGE)

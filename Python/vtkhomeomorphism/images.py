@@ -9,7 +9,6 @@ import warnings
 from dataclasses import dataclass, field, replace
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import meshes
@@ -82,9 +81,8 @@ class Grid:
         (a, b), (c, d) = steps / spacing
         image.SetDirectionMatrix(a, b, 0, c, d, 0, 0, 0, 1)
         if values is not None:
-            array = numpy_to_vtk(numpy.ascontiguousarray(values[::-1]).reshape(-1, values.shape[2]))
-            array.SetName("Pixels")
-            image.GetPointData().SetScalars(array)
+            add_array(image, "Pixels", values[::-1].reshape(-1, values.shape[2]))
+            image.GetPointData().SetActiveScalars("Pixels")
         return image
 
 
@@ -93,9 +91,9 @@ class Raster:
 
     nodata = None
 
-    def __init__(self, pixels, grid=None):
-        self.pixels = pixels if pixels.ndim == 3 else pixels[:, :, None]
-        self.grid = grid or Grid(self.pixels.shape[1], self.pixels.shape[0])
+    def __init__(self, pixels):
+        self.pixels = numpy.atleast_3d(pixels)
+        self.grid = Grid(self.pixels.shape[1], self.pixels.shape[0])
         self.bands, self.dtype = self.pixels.shape[2], self.pixels.dtype
         self.has_alpha = self.bands in (2, 4)
 
@@ -182,8 +180,8 @@ def read(input):
 def _read_picture(input):
     from PIL import Image, ImageOps
 
-    # Larger ones by half are refused.
-    Image.MAX_IMAGE_PIXELS = 2**31
+    # Images of twice as many pixels are refused.
+    Image.MAX_IMAGE_PIXELS = 2**30
     with Image.open(input.path, formats=[PILLOW_FORMATS.get(input.format, "PPM")]) as image:
         if "16B" in str(image.tile) and image.mode not in ("I", "I;16"):
             # Pillow would reduce 16 bits to 8.
@@ -261,7 +259,7 @@ class Warp:
         return points[numpy.isfinite(points[:, 0])], numpy.nanmax(numpy.abs(numpy.vstack(steps)), axis=0)
 
     def fit_grid(self, raster, size=None, resolution=0.0, crs=None):
-        """A grid over the image of a placed raster, with pixels of its size unless that changes by more than 1 %."""
+        """A grid over the image of a placed raster, with square pixels of its size unless that changes by 1 %."""
         grid = raster.grid
         reduced = numpy.minimum(grid.size, 4000)
         factors = (numpy.array(grid.size) - 1) / numpy.maximum(reduced - 1, 1)
@@ -273,10 +271,8 @@ class Warp:
             spacing = (high - low) / numpy.maximum(numpy.array(size) - 1, 1)
         else:
             extents = [numpy.hypot(*numpy.ptp(rim.reshape(-1, 2), axis=0)) for rim in self.rims]
-            factor, spacing = extents[1] / extents[0], numpy.hypot(*grid.steps)
-            if abs(factor - 1) >= 0.01 or not numpy.array_equal(numpy.abs(grid.steps), numpy.diag(spacing)):
-                spacing = numpy.full(2, factor * numpy.hypot(*(grid.size * spacing)) / numpy.hypot(*grid.size))
-            spacing = numpy.full(2, resolution) if resolution else spacing
+            factor = extents[1] / extents[0] if abs(extents[1] / extents[0] - 1) >= 0.01 else 1.0
+            spacing = numpy.full(2, resolution or factor * math.sqrt(abs(numpy.linalg.det(grid.steps))))
             numbers = [length / step for length, step in zip((high - low).tolist(), spacing.tolist())]
             if math.prod(numbers) > LARGEST:
                 raise Failure("The result would have {:.6g} x {:.6g} pixels, more than 2^32: use a larger "

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import click
 
 from . import pair
-from .arrays import BENDINGS, CENTERS, SYSTEMS
+from .arrays import BENDINGS, SYSTEMS
 from .files import PICTURES, USAGE, VECTORS, Failure, Input, Output, format_of, set_quiet
 from .images import LARGEST, read
 from .landmarks import is_landmark_file
@@ -146,8 +146,6 @@ def map_settings(default):
                      help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
         click.option("--fairness", "fairness_refinement", type=click.IntRange(0, 4), default=0, metavar="LEVELS",
                      help="Cubic: number of times that triangles are divided into four, for less bending."),
-        click.option("--center", type=click.Choice(list(CENTERS)), default="centroid",
-                     help="Contour: where the contours start."),
         click.option("--linear-where-discordant", "discordant_by_linear", is_flag=True,
                      help="Contour: map discordant triangles by Linear instead of refusing the pair."),
         click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",

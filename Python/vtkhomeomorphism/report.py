@@ -73,18 +73,18 @@ class Report:
     def statistics(self):
         """The filter's statistics for JSON: a dict, with one each of the source, the target and the systems in it.
         Values that occur in a cell are dicts with value and cell; what was not measured is left out."""
-        table, result = self.filter.GetStatistics(), {name: {} for name in ("source", "target", *SYSTEMS)}
+        table, groups = self.filter.GetStatistics(), ("source", "target", *SYSTEMS)
+        result = {name: {} for name in groups}
         kinds = {"vtkIntArray": bool, "vtkIdTypeArray": int}
-        columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
-        values = {column.GetName(): column.GetVariantValue(0).ToDouble() for column in columns}
-        for column in columns:
-            name = column.GetName()
-            if not numpy.isfinite(values[name]) or values[name] == -1 or name.endswith("Cell") and name[:-4] in values:
+        for column in map(table.GetColumn, range(table.GetNumberOfColumns())):
+            name, kind = column.GetName(), kinds.get(column.GetClassName(), float)
+            cell, value = table.GetColumnByName(name + "Cell"), column.GetTuple1(0)
+            if not numpy.isfinite(value) or (kind, value) == (int, -1):
                 continue
-            group = next((g for g in result if name.lower().startswith(g) and name.lower() != g), "")
-            value = kinds.get(column.GetClassName(), float)(values[name])
-            if name + "Cell" in values:
-                value = {"value": value, "cell": int(values[name + "Cell"])}
+            if name.endswith("Cell") and table.GetColumnByName(name[:-4]):
+                continue
+            group = next((g for g in groups if name.lower().startswith(g) and name.lower() != g), "")
+            value = {"value": kind(value), "cell": int(cell.GetTuple1(0))} if cell else kind(value)
             (result[group] if group else result)[in_words(name[len(group) :], "_")] = value
         return result
 

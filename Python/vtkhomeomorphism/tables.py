@@ -63,7 +63,7 @@ class Table:
         self.first = self.frame.iloc[0].tolist()
         self.columns = self._choose_named(columns) if columns else self._choose(with_height)
         texts = [self.first[column] for column in self.columns]
-        if self.names is None and all(_number(text) is None for text in texts) and not self._has_decimal_commas(0):
+        if self.names is None and all(_number(text) is None for text in texts):
             if not columns:
                 input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x "
                            "and y: name them (--columns).")
@@ -124,14 +124,6 @@ class Table:
                 self._fail_at(values.index(None), column)
         return values
 
-    def _has_decimal_commas(self, row):
-        fields = self.frame.iloc[row]
-        if self.separator != ",":
-            return any("," in field and _number(field.replace(",", ".", 1)) is not None for field in fields)
-        # If the separator was guessed wrong, one field contains two numbers.
-        parts = [re.split("[; \t]", field.strip("; \t"), 1) for field in fields]
-        return any(len(part) == 2 and None not in map(_number, part) for part in parts)
-
     def _line(self, row):
         """The line of the file where a row of the frame begins, header included."""
         with open(self.input.path, newline="", **ENCODING) as file:
@@ -141,12 +133,10 @@ class Table:
         return self.skipped + begins[min(row, len(begins) - 1)] + 1
 
     def _fail_at(self, row, column):
-        line = self._line(row + (self.names is not None))
-        if self._has_decimal_commas(row):
-            self.input.fail(f"line {line}: its numbers have decimal commas: write them with points, such as 0.5.")
+        line, text = self._line(row + (self.names is not None)), self.frame.iloc[row][column]
         hint = "" if self.names else " (--columns names the columns of the coordinates)"
-        self.input.fail(f'line {line}: expected a coordinate in column {column + 1}, '
-                        f'found "{quote(self.frame.iloc[row][column])}"{hint}.')
+        hint = " (write decimal points, not commas)" if "," in text else hint
+        self.input.fail(f'line {line}: expected a coordinate in column {column + 1}, found "{quote(text)}"{hint}.')
 
     def move(self, points):
         """Replaces the coordinates. Unchanged ones keep their text."""

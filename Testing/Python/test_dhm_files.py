@@ -212,10 +212,8 @@ def test_target_in_the_same_file(dhm):
     pair = make_pair(4, 3)
     write_vtk(dhm.path("both.vtk"), pair.source, pair.triangles, target=pair.target)
     dhm.refuse(USAGE, "convert", "both.vtk", "-o", "new.json", says=('"Target"', "--target-array"))
-    dhm("convert", "both.vtk", "--target-array", "Moved", "-o", "again.json", "--input-crs", "EPSG:2393")
-    again, document = read_json(dhm.path("again.json"))
-    numpy.testing.assert_array_equal(again.target, pair.target)
-    assert document["input_crs"] == "EPSG:2393"
+    dhm("convert", "both.vtk", "--target-array", "Moved", "-o", "again.json")
+    numpy.testing.assert_array_equal(read_json(dhm.path("again.json"))[0].target, pair.target)
     # Texture coordinates, and a file with a seam.
     write_obj(dhm.path("uv.obj"), pair.source, pair.triangles, texture=pair.target)
     dhm.refuse(USAGE, "convert", "uv.obj", "-o", "new.json", says="--target-uv")

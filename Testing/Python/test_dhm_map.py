@@ -232,8 +232,8 @@ def test_columns_are_chosen(dhm, pair):
     ("x,y\n1,2\n3,b\n", "line 3"), ('x,y\n1,"2\n', "line 2"), ("x,y\n0.1,0.2\n0.3,\n", "line 3"),
     ("x\n1\n", "two coordinates"), ("x,y\n1,2,3\n", "line 2"), ("x,y\n1,1e999\n", "line 2"),
     ("x,y\n0x1,2\n", "line 2"), ("x,y\n1_0,2\n", "line 2"), ('# c\n\nx,y,n\n1,2,"a\nb"\n3,b,c\n', "line 6"),
-    ("x;y\n0,5;0,25\n", "decimal commas"), ("0,5;0,25\n", "decimal commas"), ("x y\n0.5 1\n0,5 0,25\n", "line 3"),
-    ("id\tx\ty\n1\t0,5\t1\n", "line 2"),
+    ("x;y\n0,5;0,25\n", "decimal points"), ("0,5;0,25\n", "line 1"), ("x y\n0.5 1\n0,5 0,25\n", "line 3"),
+    ("id\tx\ty\n1\t0,5\t1\n", "line 2"), ("0,5;0,25;a;b\n1,5;2,5;c;d\n", "0,25"), ("0,5 0,25\n", "line 1"),
 ])
 def test_damaged_tables(dhm, pair, text, says):
     dhm.path("bad.csv").write_text(text)
@@ -286,7 +286,7 @@ def test_meshes_with_points_outside_are_not_written_where_they_cannot_be_marked(
 def test_kinds_that_do_not_fit(dhm, pair):
     write_csv(dhm.path("p.csv"), [[0.5, 0.5]])
     for data, output, says in (("a.off", "new.csv", ".vtp"), ("p.csv", "new.vtu", ".csv"), ("p.csv", "new.xyzzy", ".csv"),
-                               ("p.csv", "new", "no extension"), ("p.csv", "", "empty"), ("p.csv", "new.gpkg", ".gpkg")):
+                               ("p.csv", "new", "no extension"), ("p.csv", "", "no extension"), ("p.csv", "new.gpkg", ".gpkg")):
         dhm.refuse(USAGE, "map", "pair.json", data, "-o", output, says=says)
     dhm.refuse(USAGE, "coordinates", "pair.json", "a.off", "-o", "new.obj", says=".vtp")
 

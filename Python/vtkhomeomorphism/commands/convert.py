@@ -7,22 +7,15 @@ import click
 from .. import meshes, options, pair, report
 from ..files import USAGE, Failure, Output, dotted
 
-crs_options = options.replacing(
-    "systems", lambda **systems: {name: crs for name, crs in systems.items() if crs},
-    click.option("--input-crs", metavar="CRS", help="Name of the source's coordinate reference system (.json)."),
-    click.option("--output-crs", metavar="CRS", help="Name of the target's coordinate reference system (.json)."),
-)
-
 
 @click.command("convert")
 @options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk with the target's positions as the "
                 "point array Target; with --target-output, the source only: .vtp .vtk .obj .off .ply.", "json",
                 ("json",) + meshes.WRITE, "a pair")
 @click.option("--target-output", default="", metavar="FILE", help="Write the target to a separate file.")
-@crs_options
 @options.mask_option
 @options.pair_files("SOURCE [TARGET]")
-def command(inputs, output, target_output, systems, mask_invalid):
+def command(inputs, output, target_output, mask_invalid):
     """Write a pair in another format."""
     if target_output == output.name:
         raise Failure(f"Source and target cannot both be written to {output.name} (--target-output).", USAGE)
@@ -30,7 +23,6 @@ def command(inputs, output, target_output, systems, mask_invalid):
         raise Failure(f"Cannot write {'the source' if target_output else 'both meshes'} to {output.name}: one file of "
                       f"both is {dotted(pair.FORMATS)}, two (--target-output) are {dotted(meshes.WRITE)}.", USAGE)
     both = options.read_pair(inputs)
-    both.metadata.update(systems)
     if target_output:
         second = Output(target_output, output.format, output.force, meshes.WRITE, "a mesh")
         with output.writing(), second.writing():

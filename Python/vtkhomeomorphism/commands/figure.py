@@ -39,10 +39,8 @@ def grid_lines(points, count):
 @click.option("--image", default="", metavar="FILE", help="Draw an image over the source, and warped over the target.")
 @click.option("--close-up", type=(options.Number(), options.Number(), options.POSITIVE), metavar="X Y R",
               help="Add close-ups of a square in the target: its center and half its side.")
-@click.option("--width", type=options.Number(50, 5000), default=420.0, metavar="NUMBER",
-              help="Width of a panel in pixels.")
 @options.pair_files("SOURCE [TARGET]")
-def command(inputs, output, settings, all_systems, grid, image, close_up, width):
+def command(inputs, output, settings, all_systems, grid, image, close_up):
     """Draw a grid over the source and its image over the target. Meshes must be planar."""
     raster = None
     if image:
@@ -65,7 +63,7 @@ def command(inputs, output, settings, all_systems, grid, image, close_up, width)
         panels.append((system.capitalize(), 1, own, mapped))
     # Lines of the source end at the boundary of the domain.
     panels.insert(0, ("Source", 0, panels[-1][2], numpy.where(numpy.isnan(panels[0][3]), numpy.nan, lines)))
-    figure, axes = plots.new_figure(width, [panel[0] for panel in panels], [points[panel[1]] for panel in panels],
+    figure, axes = plots.new_figure(420, [panel[0] for panel in panels], [points[panel[1]] for panel in panels],
                                     2 if close_up else 1)
     colors = raster and raster.all()[:, :, : raster.bands - raster.has_alpha]
     dark = raster and colors.mean() < 0.5 * images.brightest(raster.dtype)

@@ -12,7 +12,6 @@ from ..arrays import add_array, arrays_of, points_of
 from ..files import Failure, inform
 from ..mapping import run, set_up
 from ..vtkFiltersHomeomorphism import vtkRefinedTriangulationPair
-from .convert import crs_options
 
 PROJ_LIMIT = 10 * 1024 * 1024  # the largest file that PROJ reads, in bytes
 
@@ -25,9 +24,8 @@ PROJ_LIMIT = 10 * 1024 * 1024  # the largest file that PROJ reads, in bytes
 @click.option("--max-triangles", type=click.IntRange(1), default=2000000, metavar="NUMBER",
               help="Greatest number of triangles.")
 @options.map_settings("smooth")
-@crs_options
 @options.pair_files("SOURCE [TARGET]")
-def command(inputs, output, max_error, max_triangles, settings, systems):
+def command(inputs, output, max_error, max_triangles, settings):
     """Refine a pair until its piecewise linear map is close to the map.
 
     PROJ can then use the refined pair instead of the map. The pair must be planar. Heights of a triangulation file
@@ -55,10 +53,8 @@ def command(inputs, output, max_error, max_triangles, settings, systems):
     inform(f"{both.source.GetNumberOfPolys()} triangles became {finer.source.GetNumberOfPolys()}; farthest from "
            f"{system}: {refining.GetLargestError():.4g}, at {refining.GetNumberOfSamples()} points.")
     # Mark the file as different from the published one.
-    published = finer.metadata.get("description")
-    finer.metadata["description"] = (f"{published}. " if isinstance(published, str) else "") + (
-        f"Refined by dhm: its piecewise linear map is within {max_error:g} of the {system} map of the original")
-    finer.metadata.update(systems)
+    published = f"{finer.metadata['description']}. " if "description" in finer.metadata else ""
+    finer.metadata["description"] = f"{published}Refined by dhm: within {max_error:g} of the original's {system} map"
     if both.shift:
         arrays = arrays_of(finer.source.GetPointData())
         points = [points_of(mesh)[:, :2] for mesh in finer.meshes]
