@@ -63,8 +63,8 @@ def command(inputs, output, settings, inverse, size, resolution, like, crs, back
         grid = scan or (own if placed else sized or own)
         expected = both.crs(inverse)[0]
         if own.crs and expected and own.crs != expected:
-            raise Failure(f"{file.name} is in the coordinate reference system {own.crs.to_string()}, but the map is from "
-                          f"{expected}: reproject it first.")
+            raise Failure(f"{file.name} is in the coordinate reference system {own.crs.to_string()}, but the map is "
+                          f"from {expected}: reproject it first.")
         if like:
             with Input(like) as model:
                 grid = images.read(model).grid
