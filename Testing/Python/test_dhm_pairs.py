@@ -89,6 +89,17 @@ def test_meshes_that_do_not_match(dhm):
             dhm.refuse(REFUSED, *command, says=name)
 
 
+def test_maps_that_are_not_certified_are_named(dhm):
+    rows = numpy.random.default_rng(1).random((20, 4)).tolist()
+    dhm.path("marks.csv").write_text("source_x,source_y,target_x,target_y\n" +
+                                     "".join(",".join(map(repr, row)) + "\n" for row in rows))
+    dhm("triangulate", "marks.csv", "-o", "mixed.json", "-q")
+    number = json.loads(dhm("check", "--json", "mixed.json").out)["cubic"]["uncertified_triangles"]
+    assert number > 1
+    words = f"mixed.json: a valid pair, but its Cubic map is not certified in {number} triangles\n"
+    assert dhm("check", "mixed.json").out.decode().startswith(words)
+
+
 def test_reports_and_plots(dhm):
     write_json(dhm.path("pair.json"), make_pair())
     out = dhm("check", "pair.json").out.decode()

@@ -35,7 +35,8 @@ def command(inputs, output, settings, inverse, size, resolution, like, crs, back
     system, in tiles, to a GeoTIFF.
 
     The value of each pixel is interpolated linearly at its exact preimage. Up to half a pixel beyond the centers of the
-    pixels at the border, where the image ends, it is that of the border."""
+    pixels at the border, where the image ends, it is that of the border. If the result's pixels are at least twice as
+    wide, the image is reduced first, by averaging."""
     color = images.read_background(background, output.format)
     inputs.crs = None if inverse else crs
     order = slice(None, None, -1 if inverse else 1)
