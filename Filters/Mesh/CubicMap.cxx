@@ -807,7 +807,7 @@ bool CubicMap::FindByWalking(
     {
       this->Walk(at, from);
     }
-    if (isInside && isShort && next <= 0.05 * this->ResidualTolerance)
+    if (isInside && isShort && next <= 1e-3 * this->ResidualTolerance)
     {
       x = from;
       size = next;

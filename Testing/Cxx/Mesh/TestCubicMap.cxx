@@ -464,8 +464,8 @@ TEST(CubicMap, ClosedFormsAgreeWithTheElements)
         (strength < 2.0 ? 1e-9 : 1e-7) * Norm(derivative) * (1e-3 + Norm(step)));
       // Whether the element of the last point is tried first does not matter.
       const Vector2 near = 0.97 * point;
-      EXPECT_LT(Norm(triangle.GetResidual(near, wanted, true, step) -
-                  triangle.GetResidual(near, wanted, false, step)),
+      const Vector2 tried = triangle.GetResidual(near, wanted, true, step);
+      EXPECT_LT(Norm(triangle.GetResidual(near, wanted, false, step) - tried),
         strength < 2.0 ? 1e-14 : 1e-12);
     }
   }
