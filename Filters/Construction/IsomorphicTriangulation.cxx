@@ -1470,7 +1470,8 @@ IsomorphicTriangulationResult MakeIsomorphicTriangulation(
     {
       best = std::move(builder);
     }
-    if (!best->CanImprove() || !best->HasAutomaticFrame() || best->CountAdded() > FewPoints)
+    const int enough = margin < 1.0 ? ManyPoints : FewPoints;
+    if (!best->CanImprove() || !best->HasAutomaticFrame() || best->CountAdded() > enough)
     {
       break;
     }
