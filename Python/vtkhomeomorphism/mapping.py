@@ -3,6 +3,7 @@
 """Use of the filters by the commands: settings, errors, and the additions of PROJ's triangulation files to the map
 (heights, points outside, the distance from the piecewise linear map on the ground)."""
 
+import warnings
 from dataclasses import replace
 
 import numpy
@@ -37,13 +38,14 @@ def set_up(algorithm, settings, pair=None):
 def run(algorithm, name):
     """Updates a filter. Raises Failure with its errors, and passes its warnings on."""
     take_messages()
-    try:
-        result = update(algorithm)
-    except ValueError as error:
-        raise Failure(f"{name}: {error}") from None
-    warnings = take_messages()
-    if warnings:
-        inform(f"{name}: {warnings}")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            result = update(algorithm)
+        except ValueError as error:
+            raise Failure(f"{name}: {error}") from None
+    for text in filter(None, (*(str(warning.message) for warning in caught), take_messages())):
+        inform(f"{name}: {text}")
     return result
 
 
