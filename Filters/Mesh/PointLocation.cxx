@@ -181,9 +181,10 @@ void PointLocation::PlantSeeds()
   const double width = bounds.Greatest[0] - bounds.Least[0];
   const double height = bounds.Greatest[1] - bounds.Least[1];
   const double cells = 0.5 * static_cast<double>(this->Topology.GetNumberOfTriangles());
-  // Cells are about as long and as wide as triangles are.
+  // Cells are squares, or as long and as wide as triangles that are long.
   const Vector2 extent = this->GetMeanExtent();
-  const double columns = std::sqrt(cells * (width / height) * (extent.y / extent.x));
+  const bool isLong = !(std::max(extent.x, extent.y) <= 2.0 * std::min(extent.x, extent.y));
+  const double columns = std::sqrt(cells * (width / height) * (isLong ? extent.y / extent.x : 1.0));
   if (!(cells >= 1.0 && columns <= std::numeric_limits<double>::max()))
   {
     return;
@@ -224,8 +225,24 @@ void PointLocation::FillSeeds()
   // Where triangles are about as long as wide, few cells are empty.
   const auto empty =
     static_cast<std::size_t>(std::count(this->Seeds.begin(), this->Seeds.end(), -1));
-  if (4 * empty < cells || empty == cells)
+  if (empty == cells)
   {
+    return;
+  }
+  if (4 * empty < cells)
+  {
+    // The triangle of the cell before is near enough, in its row or in the row before.
+    for (std::size_t cell = 0; empty > 0 && cell < cells; ++cell)
+    {
+      if (this->Seeds[cell] < 0 && cell % columns > 0)
+      {
+        this->Seeds[cell] = this->Seeds[cell - 1];
+      }
+      if (this->Seeds[cell] < 0 && cell >= columns)
+      {
+        this->Seeds[cell] = this->Seeds[cell - columns];
+      }
+    }
     return;
   }
   // Row by row, to and fro, from the first seed to the last row and then to the first one, walks go
