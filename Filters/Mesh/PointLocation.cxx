@@ -232,15 +232,15 @@ void PointLocation::FillSeeds()
   if (4 * empty < cells)
   {
     // The triangle of the cell before is near enough, in its row or in the row before.
-    for (std::size_t cell = 0; empty > 0 && cell < cells; ++cell)
+    for (std::size_t row = 0; empty > 0 && row < cells; row += columns)
     {
-      if (this->Seeds[cell] < 0 && cell % columns > 0)
+      TriangleIndex last = -1;
+      for (std::size_t cell = row; cell < row + columns; ++cell)
       {
-        this->Seeds[cell] = this->Seeds[cell - 1];
-      }
-      if (this->Seeds[cell] < 0 && cell >= columns)
-      {
-        this->Seeds[cell] = this->Seeds[cell - columns];
+        TriangleIndex& seed = this->Seeds[cell];
+        seed = seed < 0 ? last : seed;
+        seed = seed < 0 && row > 0 ? this->Seeds[cell - columns] : seed;
+        last = seed;
       }
     }
     return;
