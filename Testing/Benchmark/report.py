@@ -227,7 +227,7 @@ def plot(results, path):
         axis.set_xlim(1.0, 20.0 * max(b[0] for b in bars))
         triangles = 2 * results["settings"]["large" if part.startswith("large") else "small"] ** 2
         axis.set_title(PARTS[part].format(triangles=f"{triangles:,}").replace(", fewer points than triangles", ""), fontsize=10)
-        axis.set_xlabel("nanoseconds per point, forward, one thread (log scale)", fontsize=9)
+        axis.set_xlabel("ns per point, forward, one thread (log scale)", fontsize=9)
         for side in ("top", "right"):
             axis.spines[side].set_visible(False)
         axis.grid(axis="x", color="#eeeeee")
