@@ -7,8 +7,8 @@
     landmarks.py extract FOLDER LANDMARKS.csv
         the points of gtkmorph's meshes image1.png.mesh and image2.png.mesh, in pixels, without their cells
     landmarks.py folds LANDMARKS.csv PAIR.vtp SOURCE_IMAGE TARGET_IMAGE PICTURE.png
-        the Delaunay triangulation of one domain's landmarks drawn in the other domain, where more triangles fold, folded
-        ones in red, and the pair that dhm triangulate made (y upwards from 0 at the upper edge of the image)
+        the Delaunay triangulation of one domain's landmarks drawn in the other, where more triangles fold or lose
+        their area, these in red, and the pair that dhm triangulate made (y upwards from 0 at the image's upper edge)
 """
 
 import os
@@ -60,29 +60,32 @@ def folds(landmarks, pair, source_image, target_image, output):
     for name, first, second in (("source", source, target), ("target", target, source)):
         triangles = tri.Triangulation(*first.T).triangles
         areas = doubled_areas(second, triangles)
-        reused.append((triangles, areas <= 0))
+        reused.append((triangles, areas))
         print(f"{landmarks}: of the {len(triangles)} Delaunay triangles of the {name}'s {len(first)} landmarks, "
               f"{(areas < 0).sum()} fold in the other domain and {(areas == 0).sum()} have no area there")
     ours, made = read_pair(pair)
     bad = [int((doubled_areas(points, made) * doubled_areas(ours[0], made) <= 0).sum()) for points in ours]
-    print(f"{pair}: of {len(made)} triangles, {max(bad)} fold")
+    print(f"{pair}: of {len(made)} triangles, {max(bad)} fold or have no area")
 
-    # The picture shows the domain in which more triangles fold.
-    shown = 1 if reused[0][1].sum() > reused[1][1].sum() else 0
-    triangles, folded = reused[1 - shown]
+    # The picture shows the domain in which more triangles are bad.
+    shown = 1 if (reused[0][1] <= 0).sum() > (reused[1][1] <= 0).sum() else 0
+    triangles, areas = reused[1 - shown]
+    folded = areas <= 0
     if not folded.any():
         print(f"{output} is not drawn, since no triangle folds")
         return
     points = (source, target)[shown]
-    panels = ((f"Delaunay triangles of the {('target', 'source')[shown]}'s landmarks", points, triangles, folded),
-              ("made for both domains", ours[shown], made, numpy.zeros(len(made), bool)))
+    panels = ((f"Delaunay triangles of the {('target', 'source')[shown]}'s landmarks:\n{(areas < 0).sum()} folded, "
+               f"{(areas == 0).sum()} without area", points, triangles, folded),
+              (f"made for both domains:\n{max(bad)} folded or without area", ours[shown], made,
+               numpy.zeros(len(made), bool)))
     pixels = image.imread((source_image, target_image)[shown])
     rows, columns = pixels.shape[:2]
     # The whole, and the place with the most folded triangles.
     centers = points[triangles[folded]].mean(axis=1)
     near = numpy.hypot(*(centers[:, None] - centers).transpose(2, 0, 1)) < 0.12 * rows
-    x, y = centers[near.sum(axis=1).argmax()]
     r = 0.11 * rows
+    x, y = numpy.clip(centers[near.sum(axis=1).argmax()], [r, 0.9 * r - rows], [columns - r, -0.9 * r])
     views = [(0, columns, -rows, 0), (x - r, x + r, y - r, y + r)]
     figure, axes = pyplot.subplots(2, 2, figsize=(9, 8.0 * rows / columns), squeeze=False, layout="constrained",
                                    gridspec_kw={"height_ratios": [rows / columns, 1]})
@@ -95,7 +98,7 @@ def folds(landmarks, pair, source_image, target_image, output):
                                 alpha=0.75, edgecolor="red", linewidth=1)
             panel.set(xlim=view[:2], ylim=view[2:], xticks=[], yticks=[])
             if view == views[0]:
-                panel.set_title(f"{title}: {red.sum()} folded")
+                panel.set_title(title)
     figure.savefig(output, dpi=90)
 
 

@@ -167,7 +167,7 @@ double Determinant(const Differential&, const Differential&, const TriangleShape
 }
 
 // The matrix's own cancels where a triangle or its neighbor is so thin that the columns are almost
-// parallel; these charts know better.
+// parallel; those of these charts are products without cancellation.
 double Determinant(const LinearChart::Differential&, const LinearChart::Differential&,
   const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
 {
