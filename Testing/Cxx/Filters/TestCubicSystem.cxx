@@ -174,6 +174,7 @@ TEST(CubicSystem, LeavesWhatIsNotCertified)
     }
   }
   EXPECT_GT(inside, 3000);
+  EXPECT_LT(inside, 4000);
 }
 
 } // namespace
