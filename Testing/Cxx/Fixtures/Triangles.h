@@ -20,8 +20,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <sstream>
 #include <string>
+#include <type_traits>
 
 namespace homeomorphism_test
 {
@@ -78,21 +79,13 @@ struct PlaneTriangle
       v.x * this->Tangent.y + v.y * this->Tangent.x };
   }
 
-  /// The neighbor with this apex across the edge opposite corner @a edge.
-  Neighbor NeighborWithApex(int edge, const Vector2& apex) const
-  {
-    if (std::isnan(apex.x))
-    {
-      return {};
-    }
-    return { true,
-      ViewFromEdge(this->Corners[NextCorner(edge)], this->Corners[PreviousCorner(edge)], apex) };
-  }
-
   EdgeViews Views() const
   {
     return ViewsFromEdges(this->Corners[0], this->Corners[1], this->Corners[2]);
   }
+
+  /// The condition of its frame: how much the rounding of its corners changes derivatives.
+  double Aspect() const { return this->Shape.Base / this->Shape.Height; }
 };
 
 /// Transforms the derivative of a homeomorphism from the frames of two triangles to coordinates of
@@ -138,13 +131,6 @@ inline Corners Moved(Random& random, const Vector2& apex, double scale)
   const Corners corners{ turn({ 0.0, 0.0 }), turn({ 1.0, 0.0 }), turn(apex) };
   const int first = random.Below(3);
   return { corners[first], corners[NextCorner(first)], corners[PreviousCorner(first)] };
-}
-
-/// The height over the longest edge is at least a quarter of that edge.
-inline Corners FatTriangle(Random& random)
-{
-  const Vector2 apex{ random.Uniform(0.1, 0.9), random.Uniform(0.25, 0.86) };
-  return Moved(random, apex, random.PowerOfTen(-0.5, 0.5));
 }
 
 /// From fat triangles to needles with a height of a millionth of the longest edge.
@@ -341,68 +327,53 @@ struct SystemName
   }
 };
 
-/// The largest |D ToPoint| / longest edge at a reference point, at least 1. This is the factor by
-/// which the Smooth chart magnifies the rounding of (e, p, c) beside a sheared or far larger
-/// neighbor.
-template <typename Chart>
-double Magnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
+/// How much a chart magnifies rounding at a reference point: the largest |D ToPoint| over the
+/// longest edge and the largest |D ToReference| times the longest edge, both at least 1. The Smooth
+/// chart magnifies the rounding of (e, p, c) beside a sheared or far larger neighbor, and the
+/// rounding of a point beside a far smaller one.
+struct Magnification
 {
-  return 1.0;
-}
+  double Forward = 1.0;
+  double Inverse = 1.0;
 
-inline double Magnification(
-  const SmoothChart& chart, const TriangleShape& shape, const Barycentric& l)
-{
-  double largest = 0.0;
-  for (int k = 0; k < 3; ++k)
+  template <typename Chart>
+  Magnification(
+    const Chart& chart, const TriangleShape& shape, const typename Chart::Reference& reference)
   {
-    Barycentric direction{};
-    direction[NextCorner(k)] = -1.0;
-    direction[PreviousCorner(k)] = 1.0;
-    largest = std::max(largest, Norm(chart.Pushforward(l, direction)));
-    // Between the directions of the two corners: across the edge.
-    direction = { -0.5, -0.5, -0.5 };
-    direction[k] = 1.0;
-    largest = std::max(largest, Norm(chart.Pushforward(l, direction)));
-  }
-  return std::max(1.0, largest / shape.Base);
-}
-
-/// The largest |D ToReference| times the longest edge. This is the factor by which the Smooth chart
-/// magnifies the rounding of a point beside a far smaller neighbor.
-template <typename Chart>
-double InverseMagnification(const Chart&, const TriangleShape&, const typename Chart::Reference&)
-{
-  return 1.0;
-}
-
-inline double InverseMagnification(
-  const SmoothChart& chart, const TriangleShape& shape, const Barycentric& l)
-{
-  // Use directions of the affine chart, so that the shape of the triangle does not matter.
-  double largest = 0.0;
-  for (int k = 0; k < 3; ++k)
-  {
-    Barycentric direction{ -0.5, -0.5, -0.5 };
-    direction[k] = 1.0;
-    for (const double component : chart.Pullback(l, shape.FromBarycentric(direction)))
+    if constexpr (std::is_same_v<Chart, SmoothChart>)
     {
-      largest = std::max(largest, std::abs(component));
+      for (int k = 0; k < 3; ++k)
+      {
+        Barycentric along{};
+        along[NextCorner(k)] = -1.0;
+        along[PreviousCorner(k)] = 1.0;
+        Barycentric across{ -0.5, -0.5, -0.5 };
+        across[k] = 1.0;
+        this->Forward =
+          std::max({ this->Forward, Norm(chart.Pushforward(reference, along)) / shape.Base,
+            Norm(chart.Pushforward(reference, across)) / shape.Base });
+        // Directions of the affine chart, so that the shape of the triangle does not matter.
+        for (const double component : chart.Pullback(reference, shape.FromBarycentric(across)))
+        {
+          this->Inverse = std::max(this->Inverse, std::abs(component));
+        }
+      }
     }
   }
-  return std::max(1.0, largest);
-}
+};
 
-/// Prints the corners of a triangle and a point of it with all digits.
+/// The corners of a triangle and a point of it, with all digits.
 inline std::string Description(const PlaneTriangle& t, const Vector2& inFrame)
 {
-  char text[1024];
-  std::snprintf(text, sizeof(text),
-    "corners (%.17g, %.17g) (%.17g, %.17g) (%.17g, %.17g); shape base %.17g apexX %.17g height "
-    "%.17g apex %d; point in frame (%.17g, %.17g)",
-    t.Corners[0].x, t.Corners[0].y, t.Corners[1].x, t.Corners[1].y, t.Corners[2].x, t.Corners[2].y,
-    t.Shape.Base, t.Shape.ApexX, t.Shape.Height, t.Shape.Apex, inFrame.x, inFrame.y);
-  return text;
+  std::ostringstream text;
+  text.precision(17);
+  text << "corners";
+  for (const Vector2& corner : t.Corners)
+  {
+    text << " (" << corner.x << ", " << corner.y << ")";
+  }
+  text << ", point in frame (" << inFrame.x << ", " << inFrame.y << ")";
+  return text.str();
 }
 
 /// The largest of many values, NaN above all, and where it occurs.

@@ -25,25 +25,31 @@ __extension__ using Wide = __int128;
 
 using Point = std::array<std::int64_t, 3>;
 
-/// Coordinates are multiples of this power of two. Products of two differences stay far from the
-/// ends of the exponent range.
-constexpr std::array<int, 4> units{ 0, -52, 380, -420 };
-
-std::array<double, 3> ToDouble(const Point& p, int unit)
+/// Three points of the plane or of space, whose coordinates are in units of a power of two.
+struct Triple
 {
-  std::array<double, 3> result;
-  for (int i = 0; i < 3; ++i)
+  std::array<Point, 3> Points{};
+  int Dimension = 2;
+  int Unit = 0;
+
+  std::array<double, 3> ToDouble(int i) const
   {
-    result[i] = std::ldexp(static_cast<double>(p[i]), unit);
-    // The test requires exactly these numbers.
-    EXPECT_EQ(static_cast<std::int64_t>(std::ldexp(result[i], -unit)), p[i]);
+    std::array<double, 3> result;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      result[axis] = std::ldexp(static_cast<double>(this->Points[i][axis]), this->Unit);
+      // The test requires exactly these numbers.
+      EXPECT_EQ(
+        static_cast<std::int64_t>(std::ldexp(result[axis], -this->Unit)), this->Points[i][axis]);
+    }
+    return result;
   }
-  return result;
-}
+};
 
-int SignOf(Wide value)
+/// Products of two differences stay far from the ends of the exponent range.
+int AnyUnit(Random& random)
 {
-  return value > 0 ? 1 : (value < 0 ? -1 : 0);
+  return std::array<int, 4>{ 0, -52, 380, -420 }[random.Below(4)];
 }
 
 Wide Difference(std::int64_t a, std::int64_t b)
@@ -51,10 +57,11 @@ Wide Difference(std::int64_t a, std::int64_t b)
   return static_cast<Wide>(a) - b;
 }
 
-int IntegerOrientation(const Point& a, const Point& b, const Point& c)
+int IntegerOrientation(const std::array<Point, 3>& p)
 {
-  return SignOf(Difference(b[0], a[0]) * Difference(c[1], a[1]) -
-    Difference(b[1], a[1]) * Difference(c[0], a[0]));
+  const Wide area = Difference(p[1][0], p[0][0]) * Difference(p[2][1], p[0][1]) -
+    Difference(p[1][1], p[0][1]) * Difference(p[2][0], p[0][0]);
+  return area > 0 ? 1 : (area < 0 ? -1 : 0);
 }
 
 Wide Dot3(const Point& a, const Point& b, const Point& c, const Point& d)
@@ -68,35 +75,14 @@ Wide Dot3(const Point& a, const Point& b, const Point& c, const Point& d)
 }
 
 /// By the definition, times 3: 0 < (A + B + C - 3 A).(B - A) < 3 |B - A|^2.
-bool IntegerConcordant(const Point& a, const Point& b, const Point& c)
+bool IntegerConcordant(const std::array<Point, 3>& p)
 {
-  const auto isInside = [](const Point& from, const Point& to, const Point& third) {
-    const Wide square = Dot3(from, to, from, to);
-    const Wide foot = square + Dot3(from, to, from, third);
+  const auto isInside = [&p](int from, int to, int third) {
+    const Wide square = Dot3(p[from], p[to], p[from], p[to]);
+    const Wide foot = square + Dot3(p[from], p[to], p[from], p[third]);
     return foot > 0 && foot < 3 * square;
   };
-  return isInside(a, b, c) && isInside(b, c, a) && isInside(c, a, b);
-}
-
-bool KernelConcordant(const Point& a, const Point& b, const Point& c, int dimension, int unit)
-{
-  return homeomorphism::IsConcordant(
-    ToDouble(a, unit).data(), ToDouble(b, unit).data(), ToDouble(c, unit).data(), dimension);
-}
-
-int KernelOrientation(const Point& a, const Point& b, const Point& c, int unit)
-{
-  const auto inPlane = [unit](const Point& p) {
-    const std::array<double, 3> x = ToDouble(p, unit);
-    return Vector2{ x[0], x[1] };
-  };
-  const Vector2 p = inPlane(a);
-  const Vector2 q = inPlane(b);
-  const Vector2 r = inPlane(c);
-  const int sign = Orientation(p, q, r);
-  // The floating-point filter must agree with the exact evaluation.
-  EXPECT_EQ(ExactOrientation(p, q, r), sign);
-  return sign;
+  return isInside(0, 1, 2) && isInside(1, 2, 0) && isInside(2, 0, 1);
 }
 
 /// An integer with at most @a bits bits, often small, of which at most 53 bits are not trailing
@@ -109,70 +95,6 @@ std::int64_t AnyInteger(Random& random, int bits)
   return random.Chance(0.5) ? magnitude : -magnitude;
 }
 
-/// One of the three points, moved by one bit in one coordinate: an ulp of the largest coordinates.
-void Nudge(Random& random, std::array<Point, 3>& points, int dimension)
-{
-  std::int64_t& x = points[random.Below(3)][random.Below(dimension)];
-  const double moved = std::nextafter(static_cast<double>(x), random.Chance(0.5) ? 1e300 : -1e300);
-  // Below 2^53 the next double is not an integer. The next integer is exact too.
-  const auto asInteger = static_cast<std::int64_t>(moved);
-  x = asInteger != x ? asInteger : x + (random.Chance(0.5) ? 1 : -1);
-}
-
-void ExpectConcordance(const std::array<Point, 3>& p, int dimension, int unit)
-{
-  const bool expected = IntegerConcordant(p[0], p[1], p[2]);
-  for (int first = 0; first < 3; ++first)
-  {
-    const Point& a = p[first];
-    const Point& b = p[NextCorner(first)];
-    const Point& c = p[PreviousCorner(first)];
-    EXPECT_EQ(KernelConcordant(a, b, c, dimension, unit), expected);
-    EXPECT_EQ(KernelConcordant(b, a, c, dimension, unit), expected);
-  }
-}
-
-/// Three points with coordinates in units of a power of two.
-struct ScaledPoints
-{
-  std::array<Point, 3> Points;
-  int Unit;
-};
-
-/// The signs of many triples are exact; neither may be rare.
-template <typename Make>
-void ExpectExactOrientations(std::uint64_t seed, Make&& make)
-{
-  Random random(seed);
-  std::array<int, 3> seen{};
-  int wrongWithout = 0;
-  for (int n = 0; n < 100000; ++n)
-  {
-    const ScaledPoints scaled = make(random);
-    const std::array<Point, 3>& p = scaled.Points;
-    const int expected = IntegerOrientation(p[0], p[1], p[2]);
-    for (int first = 0; first < 3; ++first)
-    {
-      const Point& a = p[first];
-      const Point& b = p[NextCorner(first)];
-      const Point& c = p[PreviousCorner(first)];
-      EXPECT_EQ(KernelOrientation(a, b, c, scaled.Unit), expected);
-      EXPECT_EQ(KernelOrientation(b, a, c, scaled.Unit), -expected);
-    }
-    ++seen[expected + 1];
-    // A plain evaluation in doubles.
-    std::array<std::array<double, 3>, 3> x;
-    std::transform(p.begin(), p.end(), x.begin(),
-      [&scaled](const Point& point) { return ToDouble(point, scaled.Unit); });
-    const double plain =
-      x[0][0] * (x[1][1] - x[2][1]) + x[1][0] * (x[2][1] - x[0][1]) + x[2][0] * (x[0][1] - x[1][1]);
-    wrongWithout += ((plain > 0.0) - (plain < 0.0)) != expected;
-  }
-  EXPECT_GT(seen[0], 10000);
-  EXPECT_GT(seen[2], 10000);
-  EXPECT_GT(wrongWithout, 10);
-}
-
 Point AnyPoint(Random& random, int dimension, int bits)
 {
   Point point{ AnyInteger(random, bits), AnyInteger(random, bits), 0 };
@@ -180,150 +102,189 @@ Point AnyPoint(Random& random, int dimension, int bits)
   return point;
 }
 
-TEST(ExactSign, OrientationIsExact)
+/// In half of the cases one of the three points is moved by one bit in one coordinate: an ulp of
+/// the largest coordinates.
+void Nudge(Random& random, Triple& triple)
 {
-  // Anywhere; and exactly collinear, as multiples of one direction that are so small that the sums
-  // are doubles, with one bit changed in half of the cases.
-  ExpectExactOrientations(12, [](Random& random) {
-    ScaledPoints scaled{ {}, units[random.Below(4)] };
-    const bool anywhere = random.Chance(0.2);
-    const Point d = AnyPoint(random, 2, 26);
-    const Point start = AnyPoint(random, 2, 51);
-    for (Point& point : scaled.Points)
-    {
-      const std::int64_t factor = AnyInteger(random, 25);
-      point = anywhere ? AnyPoint(random, 2, 60)
-                       : Point{ start[0] + factor * d[0], start[1] + factor * d[1], 0 };
-    }
-    if (random.Chance(0.5))
-    {
-      Nudge(random, scaled.Points, 2);
-    }
-    return scaled;
-  });
-}
-
-TEST(ExactSign, OrientationOfRoundedPointsOnALineIsExact)
-{
-  ExpectExactOrientations(13, [](Random& random) {
-    ScaledPoints scaled{ {}, -52 };
-    const double dx = random.Uniform(-1.0, 1.0);
-    const double dy = random.Uniform(-1.0, 1.0);
-    for (Point& point : scaled.Points)
-    {
-      // In [1, 2), where one ulp is 2^-52.
-      const double t = 0.4 * random.Uniform(-1.0, 1.0);
-      point = { static_cast<std::int64_t>(std::ldexp(1.5 + t * dx, 52)),
-        static_cast<std::int64_t>(std::ldexp(1.5 + t * dy, 52)), 0 };
-    }
-    return scaled;
-  });
-}
-
-TEST(ExactSign, OrientationFromRoundedDifferencesIsExact)
-{
-  // One point near the origin, two far from it on a line through the origin: the rounding errors of
-  // the differences decide.
-  ExpectExactOrientations(19, [](Random& random) {
-    ScaledPoints scaled{ {}, units[random.Below(4)] };
-    const Point d = AnyPoint(random, 2, 26);
-    scaled.Points[0] = { random.Integer(-512, 512), random.Integer(-512, 512), 0 };
-    for (const int k : { 1, 2 })
-    {
-      const std::int64_t factor = 256 * AnyInteger(random, 25);
-      scaled.Points[k] = { factor * d[0], factor * d[1], 0 };
-    }
-    return scaled;
-  });
-}
-
-TEST(ExactSign, ConcordanceIsExact)
-{
-  Random random(14);
-  int concordant = 0;
-  for (int n = 0; n < 100000; ++n)
+  if (random.Chance(0.5))
   {
-    const int dimension = random.Integer(2, 3);
-    const int bits = random.Chance(0.5) ? 4 : 60;
-    std::array<Point, 3> p{};
-    for (Point& point : p)
-    {
-      point = AnyPoint(random, dimension, bits);
-    }
-    ExpectConcordance(p, dimension, units[random.Below(4)]);
-    concordant += IntegerConcordant(p[0], p[1], p[2]);
+    return;
   }
-  EXPECT_GT(concordant, 1000);
+  std::int64_t& x = triple.Points[random.Below(3)][random.Below(triple.Dimension)];
+  const double moved = std::nextafter(static_cast<double>(x), random.Chance(0.5) ? 1e300 : -1e300);
+  // Below 2^53 the next double is not an integer. The next integer is exact too.
+  const auto asInteger = static_cast<std::int64_t>(moved);
+  x = asInteger != x ? asInteger : x + (random.Chance(0.5) ? 1 : -1);
+}
+
+Triple MakeAnywhere(Random& random)
+{
+  Triple triple{ {}, random.Integer(2, 3), AnyUnit(random) };
+  const int bits = random.Chance(0.5) ? 4 : 60;
+  for (Point& point : triple.Points)
+  {
+    point = AnyPoint(random, triple.Dimension, bits);
+  }
+  return triple;
+}
+
+/// Exactly collinear, as multiples of one direction that are so small that the sums are doubles.
+Triple MakeCollinear(Random& random)
+{
+  Triple triple{ {}, 2, AnyUnit(random) };
+  const Point d = AnyPoint(random, 2, 26);
+  const Point start = AnyPoint(random, 2, 51);
+  for (Point& point : triple.Points)
+  {
+    const std::int64_t factor = AnyInteger(random, 25);
+    point = { start[0] + factor * d[0], start[1] + factor * d[1], 0 };
+  }
+  Nudge(random, triple);
+  return triple;
+}
+
+Triple MakeRoundedToALine(Random& random)
+{
+  Triple triple{ {}, 2, -52 };
+  const double dx = random.Uniform(-1.0, 1.0);
+  const double dy = random.Uniform(-1.0, 1.0);
+  for (Point& point : triple.Points)
+  {
+    // In [1, 2), where one ulp is 2^-52.
+    const double t = 0.4 * random.Uniform(-1.0, 1.0);
+    point = { static_cast<std::int64_t>(std::ldexp(1.5 + t * dx, 52)),
+      static_cast<std::int64_t>(std::ldexp(1.5 + t * dy, 52)), 0 };
+  }
+  return triple;
+}
+
+/// Within a few ulp of the other two's coordinates from the origin.
+Point NearTheOrigin(Random& random, int dimension)
+{
+  return { random.Integer(-512, 512), random.Integer(-512, 512),
+    dimension == 3 ? random.Integer(-512, 512) : 0 };
+}
+
+/// One point near the origin, two far from it on a line through the origin: the rounding errors of
+/// the differences decide.
+Triple MakeCollinearFarAway(Random& random)
+{
+  Triple triple{ {}, 2, AnyUnit(random) };
+  const Point d = AnyPoint(random, 2, 26);
+  triple.Points[0] = NearTheOrigin(random, 2);
+  for (const int k : { 1, 2 })
+  {
+    const std::int64_t factor = 256 * AnyInteger(random, 25);
+    triple.Points[k] = { factor * d[0], factor * d[1], 0 };
+  }
+  return triple;
 }
 
 /// Three corners whose foot on the edge from the first to the second is exactly the first: with u =
 /// B - A and v = C - A, u.(u + v) = 0, that is, v = -u + w with w perpendicular to u. u has up to
 /// @a bits bits, w is up to @a otherBits bits longer.
-std::array<Point, 3> OnTheLimit(Random& random, int dimension, int bits, int otherBits)
+Triple OnTheLimit(Random& random, int bits, int otherBits)
 {
-  const Point a = AnyPoint(random, dimension, 52);
-  Point u = AnyPoint(random, dimension, bits);
+  Triple triple{ {}, random.Integer(2, 3), AnyUnit(random) };
+  Point u = AnyPoint(random, triple.Dimension, bits);
   u[0] += u[0] == 0 && u[1] == 0;
   const Point other = AnyPoint(random, 3, otherBits);
-  const Point w = dimension == 2
+  const Point w = triple.Dimension == 2
     ? Point{ -u[1] * other[0], u[0] * other[0], 0 }
     : Point{ u[1] * other[2] - u[2] * other[1], u[2] * other[0] - u[0] * other[2],
         u[0] * other[1] - u[1] * other[0] };
-  std::array<Point, 3> p{ a, a, a };
+  triple.Points.fill(AnyPoint(random, triple.Dimension, 52));
   for (int i = 0; i < 3; ++i)
   {
-    p[1][i] += u[i];
-    p[2][i] += w[i] - u[i];
+    triple.Points[1][i] += u[i];
+    triple.Points[2][i] += w[i] - u[i];
   }
-  return p;
+  return triple;
 }
 
-TEST(ExactSign, ConcordanceAtTheLimitIsExact)
+Triple MakeAtTheLimit(Random& random)
 {
-  Random random(15);
-  std::array<int, 2> seen{};
-  for (int n = 0; n < 100000; ++n)
-  {
-    const int dimension = random.Integer(2, 3);
-    std::array<Point, 3> p = OnTheLimit(random, dimension, random.Integer(3, 25), 25);
-    EXPECT_FALSE(IntegerConcordant(p[0], p[1], p[2]));
-    const int unit = units[random.Below(4)];
-    ExpectConcordance(p, dimension, unit);
-    Nudge(random, p, dimension);
-    ExpectConcordance(p, dimension, unit);
-    ++seen[IntegerConcordant(p[0], p[1], p[2])];
-  }
-  EXPECT_GT(seen[0], 10000);
-  EXPECT_GT(seen[1], 10000);
+  Triple triple = OnTheLimit(random, random.Integer(3, 25), 25);
+  EXPECT_FALSE(IntegerConcordant(triple.Points));
+  Nudge(random, triple);
+  return triple;
 }
 
-TEST(ExactSign, ConcordanceFromRoundedDifferencesIsExact)
+/// Two corners far from the origin, the third within a few of their ulps of it. The differences of
+/// coordinates are rounded, and their rounding errors decide.
+Triple MakeAtTheLimitFarAway(Random& random)
 {
-  // Two corners far from the origin, the third within a few of their ulps of it. The differences of
-  // coordinates are rounded, and their rounding errors decide.
-  Random random(19);
-  std::array<int, 2> concordances{};
-  for (int n = 0; n < 100000; ++n)
+  Triple triple = random.Chance(0.5) ? OnTheLimit(random, 48, 1) : OnTheLimit(random, 25, 25);
+  auto& p = triple.Points;
+  for (int i = 0; i < 3; ++i)
   {
-    const int dimension = random.Integer(2, 3);
-    std::array<Point, 3> p = random.Chance(0.5) ? OnTheLimit(random, dimension, 48, 1)
-                                                : OnTheLimit(random, dimension, 25, 25);
-    constexpr std::int64_t far = 256;
-    const Point origin = p[0];
-    const int last = random.Integer(0, 2);
-    for (int i = 0; i < 3; ++i)
+    p[1][i] = 256 * (p[1][i] - p[0][i]);
+    p[2][i] = 256 * (p[2][i] - p[0][i]);
+  }
+  p[0] = NearTheOrigin(random, triple.Dimension);
+  std::rotate(p.begin(), p.begin() + random.Integer(0, 2), p.end());
+  return triple;
+}
+
+/// In every order of the three points.
+void ExpectExact(const Triple& triple, int orientation, bool isConcordant)
+{
+  const std::array<std::array<double, 3>, 3> p{ triple.ToDouble(0), triple.ToDouble(1),
+    triple.ToDouble(2) };
+  for (int first = 0; first < 3; ++first)
+  {
+    for (const int sense : { 1, -1 })
     {
-      p[0][i] = i < dimension ? random.Integer(-512, 512) : 0;
-      p[1][i] = far * (p[1][i] - origin[i]);
-      p[2][i] = far * (p[2][i] - origin[i]);
+      const auto& a = p[first];
+      const auto& b = p[(first + 3 + sense) % 3];
+      const auto& c = p[(first + 3 - sense) % 3];
+      EXPECT_EQ(
+        homeomorphism::IsConcordant(a.data(), b.data(), c.data(), triple.Dimension), isConcordant);
+      if (triple.Dimension == 2)
+      {
+        const std::array<Vector2, 3> v{ Vector2{ a[0], a[1] }, { b[0], b[1] }, { c[0], c[1] } };
+        EXPECT_EQ(Orientation(v[0], v[1], v[2]), sense * orientation);
+        // Without the floating-point filter.
+        EXPECT_EQ(ExactOrientation(v[0], v[1], v[2]), sense * orientation);
+      }
     }
-    std::rotate(p.begin(), p.begin() + last, p.end());
-    const int unit = units[random.Below(4)];
-    ExpectConcordance(p, dimension, unit);
-    ++concordances[IntegerConcordant(p[0], p[1], p[2])];
   }
-  EXPECT_GT(concordances[0], 10000);
-  EXPECT_GT(concordances[1], 10000);
+}
+
+TEST(ExactSign, OrientationAndConcordanceAreExact)
+{
+  struct Family
+  {
+    const char* Name;
+    Triple (*Make)(Random&);
+    int LeastOfEachOrientation;
+    int LeastConcordant;
+  };
+  for (const Family& family : { Family{ "anywhere", MakeAnywhere, 10000, 1000 },
+         { "collinear, or one bit beside", MakeCollinear, 10000, 0 },
+         { "rounded to a line", MakeRoundedToALine, 10000, 0 },
+         { "collinear to rounding", MakeCollinearFarAway, 10000, 0 },
+         { "limit of concordance, or one bit beside", MakeAtTheLimit, 10000, 5000 },
+         { "limit of concordance to rounding", MakeAtTheLimitFarAway, 10000, 10000 } })
+  {
+    SCOPED_TRACE(family.Name);
+    Random random(12);
+    std::array<int, 3> orientations{};
+    int concordant = 0;
+    for (int n = 0; n < 100000; ++n)
+    {
+      const Triple triple = family.Make(random);
+      const int orientation = IntegerOrientation(triple.Points);
+      const bool isConcordant = IntegerConcordant(triple.Points);
+      ExpectExact(triple, orientation, isConcordant);
+      ++orientations[orientation + 1];
+      concordant += isConcordant;
+    }
+    // No result may be rare.
+    EXPECT_GE(std::min(orientations[0], orientations[2]), family.LeastOfEachOrientation);
+    EXPECT_GE(concordant, family.LeastConcordant);
+    EXPECT_GE(100000 - concordant, 10000);
+  }
 }
 
 } // namespace

@@ -4,20 +4,12 @@
 // Coordinates, mapped points and derivatives agree with values computed to 50 digits by
 // Testing/Reference/reference_values.py, which shares no code with the library.
 
+#include "Fixtures/Tables.h"
 #include "Fixtures/Triangles.h"
-
-#include "Kernel/ContourChart.h"
-#include "Kernel/LinearChart.h"
-#include "Kernel/SmoothChart.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,47 +17,11 @@ namespace
 {
 
 using namespace homeomorphism_test;
-
-using Row = std::map<std::string, double>;
-
-std::vector<Row> ReadTable(const std::string& name)
-{
-  std::ifstream file(REFERENCE_DATA_DIR "/" + name);
-  std::vector<Row> rows;
-  std::vector<std::string> header;
-  std::string line;
-  while (std::getline(file, line))
-  {
-    if (line.empty() || line[0] == '#')
-    {
-      continue;
-    }
-    std::istringstream cells(line);
-    std::string cell;
-    std::vector<std::string> values;
-    while (std::getline(cells, cell, ','))
-    {
-      values.push_back(cell);
-    }
-    if (header.empty())
-    {
-      header = values;
-      continue;
-    }
-    EXPECT_EQ(values.size(), header.size()) << name << ": " << line;
-    Row row;
-    for (std::size_t i = 0; i < header.size(); ++i)
-    {
-      row[header[i]] = std::strtod(values[i].c_str(), nullptr);
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
+using fixtures::Row;
 
 PlaneTriangle Triangle(const Row& row, const std::string& side)
 {
-  std::array<Vector2, 3> corners;
+  Corners corners;
   for (int k = 0; k < 3; ++k)
   {
     const std::string number = std::to_string(k + 1);
@@ -74,6 +30,7 @@ PlaneTriangle Triangle(const Row& row, const std::string& side)
   return PlaneTriangle(corners);
 }
 
+/// The neighbors across the edges, where the table has their apexes.
 std::array<Neighbor, 3> Neighbors(
   const Row& row, const std::string& side, const PlaneTriangle& triangle)
 {
@@ -81,38 +38,26 @@ std::array<Neighbor, 3> Neighbors(
   for (int k = 0; k < 3; ++k)
   {
     const std::string number = std::to_string(k + 1);
-    neighbors[k] =
-      triangle.NeighborWithApex(k, { row.at(side + "nx" + number), row.at(side + "ny" + number) });
+    const Vector2 apex{ row.at(side + "nx" + number), row.at(side + "ny" + number) };
+    if (!std::isnan(apex.x))
+    {
+      neighbors[k] = { true,
+        ViewFromEdge(triangle.Corners[NextCorner(k)], triangle.Corners[PreviousCorner(k)], apex) };
+    }
   }
   return neighbors;
 }
 
-/// Condition number of the change of frame that the derivative passes through: the larger ratio of
-/// base to height of the two triangles. It magnifies the rounding of the corners.
-double Aspect(const PlaneTriangle& p)
-{
-  return p.Shape.Base / p.Shape.Height;
-}
-
-constexpr double ulp = std::numeric_limits<double>::epsilon();
-
-struct Worst
-{
-  double Coordinates = 0.0;
-  double Point = 0.0;
-  double Derivative = 0.0;
-};
-
 template <typename MakeChart>
 void CompareTable(const std::string& name, std::size_t least, MakeChart makeChart)
 {
-  const std::vector<Row> rows = ReadTable(name);
+  const std::vector<Row> rows = fixtures::ReadTable(REFERENCE_DATA_DIR "/" + name);
   ASSERT_GE(rows.size(), least) << "cannot read " << name;
-  Worst worst;
-  int number = 0;
+  Worst worstCoordinates;
+  Worst worstPoint;
+  Worst worstDerivative;
   for (const Row& row : rows)
   {
-    SCOPED_TRACE(name + " row " + std::to_string(++number));
     const PlaneTriangle p = Triangle(row, "p");
     const PlaneTriangle q = Triangle(row, "q");
     const auto chartP = makeChart(row, "p", p);
@@ -128,7 +73,7 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
     const double distance =
       std::hypot((found.EdgeParameter - expected.EdgeParameter) * expected.ContourParameter,
         found.ContourParameter - expected.ContourParameter);
-    worst.Coordinates = std::max(worst.Coordinates, distance / Aspect(p));
+    worstCoordinates.Take(distance / p.Aspect(), p, point);
 
     const Vector2 expectedImage{ row.at("u"), row.at("v") };
     const Vector2 image = q.FromFrame(chartQ.ToPoint(reference));
@@ -144,16 +89,16 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
       imageExtent = std::max(imageExtent, Norm(q.Corners[k]));
     }
     const double mapped = extent * Norm(expectedDerivative) + imageExtent;
-    worst.Point = std::max(worst.Point, Norm(image - expectedImage) / mapped);
+    worstPoint.Take(Norm(image - expectedImage) / mapped, p, point);
 
     const Matrix2 derivative = InPlane(p, q, MapDerivative(chartP, chartQ, reference));
     // Near the center of a Contour triangle and near the vertices, the derivative depends on the
     // direction from there and thus on the last bit of the point. The expected error is the change
     // of the derivative when the point moves by that much.
     double unavoidable = 0.0;
-    for (const double dx : { -ulp, 0.0, ulp })
+    for (const double dx : { -Ulp, 0.0, Ulp })
     {
-      for (const double dy : { -ulp, 0.0, ulp })
+      for (const double dy : { -Ulp, 0.0, Ulp })
       {
         const Vector2 moved = p.ToFrame(point + Vector2{ dx * extent, dy * extent });
         const Matrix2 there =
@@ -162,12 +107,12 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
       }
     }
     const double allowed =
-      unavoidable + ulp * std::max(Aspect(p), Aspect(q)) * Norm(expectedDerivative);
-    worst.Derivative = std::max(worst.Derivative, Norm(derivative - expectedDerivative) / allowed);
+      unavoidable + Ulp * std::max(p.Aspect(), q.Aspect()) * Norm(expectedDerivative);
+    worstDerivative.Take(Norm(derivative - expectedDerivative) / allowed, p, point);
   }
-  EXPECT_LT(worst.Coordinates, 1e-14);
-  EXPECT_LT(worst.Point, 2e-15);
-  EXPECT_LT(worst.Derivative, 8.0);
+  EXPECT_LT(worstCoordinates.Value, 1e-14) << worstCoordinates.Where;
+  EXPECT_LT(worstPoint.Value, 2e-15) << worstPoint.Where;
+  EXPECT_LT(worstDerivative.Value, 8.0) << worstDerivative.Where;
 }
 
 TEST(ReferenceValues, Linear)

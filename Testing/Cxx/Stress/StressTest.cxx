@@ -376,7 +376,8 @@ private:
   double StretchAt(Domain domain, const SurfacePoint& surfacePoint, const Barycentric& l) const
   {
     return Magnification(this->Map->GetCharts(domain).GetSmoothChart(surfacePoint.Triangle),
-      this->GeometryOf(domain).GetShape(surfacePoint.Triangle), l);
+      this->GeometryOf(domain).GetShape(surfacePoint.Triangle), l)
+      .Forward;
   }
 
   double DistanceFromDomain(Domain domain, const Vector3& point) const
