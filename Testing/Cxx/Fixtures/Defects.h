@@ -7,7 +7,7 @@
 #ifndef fixtures_Defects_h
 #define fixtures_Defects_h
 
-#include "Meshes.h"
+#include "FilterRuns.h"
 
 #include "Mesh/Homeomorphism.h"
 #include "Pipeline/DiagnosticMessages.h"
@@ -18,6 +18,7 @@
 #include <memory>
 #include <numeric>
 #include <ostream>
+#include <set>
 #include <vector>
 
 namespace fixtures
@@ -106,8 +107,80 @@ inline void ExpectAccepted(const Reading& reading)
   EXPECT_EQ(reading.Defects(), std::vector<Defect>());
 }
 
-/// A defect that either mesh can have is found in the source, in the target and in a mesh alone.
-inline void ExpectRefusedInEachMesh(const MeshPair& valid,
+/// Whether points can be inside a triangle and not in a neighbor across an edge.
+inline bool HasInterior(vtkPolyData* mesh, const Triangle& t)
+{
+  const Point a = PointOf(mesh, t[0]);
+  const double area = Norm(Cross(PointOf(mesh, t[1]) - a, PointOf(mesh, t[2]) - a));
+  return std::isfinite(area) && area > 1e-6;
+}
+
+/// With MaskInvalidTriangles the defects are found, exactly their cells are masked, and the rest is
+/// mapped as if they had been removed from the meshes.
+inline void ExpectMasked(const MeshPair& pair, const std::vector<Defect>& defects)
+{
+  homeomorphism::HomeomorphismOptions masking;
+  masking.MaskInvalidTriangles = true;
+  const Reading reading = Read(pair, masking);
+  ASSERT_TRUE(reading.Map);
+  EXPECT_EQ(reading.Defects(), defects);
+  std::set<vtkIdType> masked;
+  for (const MeshDiagnostic& one : reading.Diagnostics)
+  {
+    EXPECT_EQ(one.Result, Outcome::Masked);
+    masked.insert(one.Ids.begin(), one.Ids.end());
+  }
+  const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
+  std::vector<Triangle> rest;
+  std::array<std::vector<Point>, 2> points;
+  std::array<Ids, 2> expectedTriangles;
+  for (vtkIdType t = 0; t < static_cast<vtkIdType>(triangles.size()); ++t)
+  {
+    const bool isMasked = masked.count(t) > 0;
+    EXPECT_EQ(
+      reading.Map->GetPair().GetTriangulation().IsMasked(static_cast<std::int32_t>(t)), isMasked);
+    if (!isMasked)
+    {
+      rest.push_back(triangles[t]);
+    }
+    for (const bool inverse : { false, true })
+    {
+      vtkPolyData* from = inverse ? pair.Target : pair.Source;
+      if (HasInterior(from, triangles[t]))
+      {
+        const std::vector<Point> inside = SamplePoints(from, { triangles[t] }, 4, t);
+        points[inverse].insert(points[inverse].end(), inside.begin(), inside.end());
+        expectedTriangles[inverse].insert(expectedTriangles[inverse].end(), 4, isMasked ? -1 : t);
+      }
+    }
+  }
+  const MeshPair pierced = WithTriangles(pair, rest);
+  for (const bool inverse : { false, true })
+  {
+    for (const System& system : { Linear, Contour, Smooth })
+    {
+      MapOptions options;
+      options.Inverse = inverse;
+      options.CoordinateSystem = system.CoordinateSystem;
+      options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
+      const MappedPoints expected = MapPoints(pierced, points[inverse], options);
+      options.Mask = true;
+      const MappedPoints mapped = MapPoints(pair, points[inverse], options);
+      ASSERT_EQ(expected.Error + expected.Warning + mapped.Error, "");
+      EXPECT_NE(mapped.Warning, "");
+      EXPECT_EQ(mapped.Triangles, expectedTriangles[inverse]);
+      for (std::size_t i = 0; i < points[inverse].size(); ++i)
+      {
+        EXPECT_EQ(expected.IsInside(i), mapped.IsInside(i));
+        EXPECT_LE(Distance(expected.Images[i], mapped.Images[i]), 1e-14) << system.Name;
+      }
+    }
+  }
+}
+
+/// A defect that either mesh can have is found in the source, in the target and in a mesh alone,
+/// and masked where that is a remedy.
+inline void ExpectFoundInEachMesh(const MeshPair& valid,
   const std::function<void(vtkPolyData*)>& damage, Kind kind, const Ids& cells,
   Remedy remedy = Remedy::RepairOrMask)
 {
@@ -118,9 +191,13 @@ inline void ExpectRefusedInEachMesh(const MeshPair& valid,
     pair.Target->DeepCopy(valid.Target);
     vtkPolyData* damaged = inSource ? pair.Source : pair.Target;
     damage(damaged);
-    ExpectRefused(
-      Read(pair), { { kind, inSource ? Where::Source : Where::Target, cells } }, remedy);
+    const std::vector<Defect> defects{ { kind, inSource ? Where::Source : Where::Target, cells } };
+    ExpectRefused(Read(pair), defects, remedy);
     ExpectRefused(Read(damaged), { { kind, Where::Triangulation, cells } }, remedy);
+    if (remedy == Remedy::RepairOrMask)
+    {
+      ExpectMasked(pair, defects);
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 // on the hint, the order or the size of the coordinates.
 
 #include "Fixtures/FilterRuns.h"
+#include "Fixtures/Triangulations.h"
 
 #include "Mesh/Homeomorphism.h"
 
@@ -55,140 +56,66 @@ void ExpectSameLocation(const SurfacePoint& a, const SurfacePoint& b)
 
 // --- In the plane, compared with exact arithmetic ------------------------------------------------
 
-struct GridPoint
+/// The triangle with the lowest number that contains the point, including its boundary, and its
+/// corner that is the point; -1 if there is none.
+std::pair<TriangleIndex, int> Find(const IntegerMesh& mesh, const IntegerPoint& p)
 {
-  std::int64_t X;
-  std::int64_t Y;
-};
-
-int Turn(const GridPoint& a, const GridPoint& b, const GridPoint& c)
-{
-  const std::int64_t area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
-  return area > 0 ? 1 : (area < 0 ? -1 : 0);
+  for (std::size_t t = 0; t < mesh.Triangles.size(); ++t)
+  {
+    std::array<std::int64_t, 3> turns;
+    int cornerAt = -1;
+    for (int k = 0; k < 3; ++k)
+    {
+      const IntegerPoint& corner = mesh.Points[mesh.Triangles[t][k]];
+      turns[k] = Turn(corner, mesh.Points[mesh.Triangles[t][(k + 1) % 3]], p);
+      cornerAt = corner.X == p.X && corner.Y == p.Y ? k : cornerAt;
+    }
+    const auto [least, greatest] = std::minmax_element(turns.begin(), turns.end());
+    if (*least >= 0 || *greatest <= 0)
+    {
+      return { static_cast<TriangleIndex>(t), cornerAt };
+    }
+  }
+  return { -1, -1 };
 }
 
-/// A mesh whose points lie on the integer grid, with holes and concave boundary.
-struct GridMesh
+/// Vertices, points on edges, points of a line beyond an edge, and points anywhere.
+std::vector<IntegerPoint> Queries(const IntegerMesh& mesh, int anywhere, Random& random)
 {
-  std::vector<GridPoint> Points;
-  std::vector<Triangle> Triangles;
-
-  GridMesh(int squares, int size, int jitter, double holes, std::uint64_t seed)
+  std::vector<IntegerPoint> queries = mesh.Points;
+  int size = 0;
+  for (const IntegerPoint& p : mesh.Points)
   {
-    std::mt19937_64 generator(seed);
-    std::uniform_int_distribution<int> offset(-jitter, jitter);
-    for (int j = 0; j <= squares; ++j)
+    size = std::max({ size, static_cast<int>(p.X), static_cast<int>(p.Y) });
+  }
+  for (const Triangle& t : mesh.Triangles)
+  {
+    for (int k = 0; k < 3; ++k)
     {
-      for (int i = 0; i <= squares; ++i)
+      const IntegerPoint& a = mesh.Points[t[k]];
+      const IntegerPoint& b = mesh.Points[t[(k + 1) % 3]];
+      for (const std::int64_t quarter : { -1, 1, 2, 3, 5 })
       {
-        const bool inside = i > 0 && j > 0 && i < squares && j < squares;
-        const int dx = offset(generator);
-        const int dy = offset(generator);
-        this->Points.push_back({ i * size + (inside ? dx : 0), j * size + (inside ? dy : 0) });
+        // Points of the grid, because all coordinates are multiples of four.
+        queries.push_back({ a.X + (b.X - a.X) / 4 * quarter, a.Y + (b.Y - a.Y) / 4 * quarter });
       }
     }
-    std::uniform_real_distribution<double> chance(0.0, 1.0);
-    for (Triangle t : GridTriangles(squares))
-    {
-      if (chance(generator) >= holes)
-      {
-        std::shuffle(t.begin(), t.end(), generator);
-        this->Triangles.push_back(t);
-      }
-    }
-    std::shuffle(this->Triangles.begin(), this->Triangles.end(), generator);
   }
-
-  /// The triangle with the lowest number that contains the point, including its boundary; -1 if
-  /// there is none.
-  TriangleIndex Find(const GridPoint& p) const
+  for (int n = 0; n < anywhere; ++n)
   {
-    for (std::size_t t = 0; t < this->Triangles.size(); ++t)
-    {
-      int sides[3];
-      for (int k = 0; k < 3; ++k)
-      {
-        sides[k] = Turn(
-          this->Points[this->Triangles[t][k]], this->Points[this->Triangles[t][(k + 1) % 3]], p);
-      }
-      if (*std::min_element(sides, sides + 3) >= 0 || *std::max_element(sides, sides + 3) <= 0)
-      {
-        return static_cast<TriangleIndex>(t);
-      }
-    }
-    return -1;
+    queries.push_back(
+      { random.Integer(-size / 8, size + size / 8), random.Integer(-size / 8, size + size / 8) });
   }
+  return queries;
+}
 
-  int CornerAt(TriangleIndex triangle, const GridPoint& p) const
-  {
-    for (int k = 0; triangle >= 0 && k < 3; ++k)
-    {
-      const GridPoint& corner = this->Points[this->Triangles[triangle][k]];
-      if (corner.X == p.X && corner.Y == p.Y)
-      {
-        return k;
-      }
-    }
-    return -1;
-  }
-
-  /// The mesh with the given grid spacing, in the plane of two of the axes.
-  vtkSmartPointer<vtkPolyData> ToMesh(double unit, int normalAxis = 2) const
-  {
-    std::vector<Point> points;
-    for (const GridPoint& p : this->Points)
-    {
-      points.push_back(MeshPoint(p, unit, normalAxis));
-    }
-    return MakeMesh(points, this->Triangles);
-  }
-
-  static Point MeshPoint(const GridPoint& p, double unit, int normalAxis)
-  {
-    Point point;
-    point[(normalAxis + 1) % 3] = static_cast<double>(p.X) * unit;
-    point[(normalAxis + 2) % 3] = static_cast<double>(p.Y) * unit;
-    point[normalAxis] = 0.0;
-    return point;
-  }
-
-  /// Vertices, points on edges, points of a line beyond an edge, and points anywhere.
-  std::vector<GridPoint> Queries(int anywhere, std::uint64_t seed) const
-  {
-    std::mt19937_64 generator(seed);
-    std::vector<GridPoint> queries = this->Points;
-    std::int64_t size = 0;
-    for (const GridPoint& p : this->Points)
-    {
-      size = std::max({ size, p.X, p.Y });
-    }
-    for (const Triangle& t : this->Triangles)
-    {
-      for (int k = 0; k < 3; ++k)
-      {
-        const GridPoint& a = this->Points[t[k]];
-        const GridPoint& b = this->Points[t[(k + 1) % 3]];
-        for (const std::int64_t quarter : { -1, 1, 2, 3, 5 })
-        {
-          // Points of the grid, because all coordinates are multiples of four.
-          queries.push_back({ a.X + (b.X - a.X) / 4 * quarter, a.Y + (b.Y - a.Y) / 4 * quarter });
-        }
-      }
-    }
-    std::uniform_int_distribution<std::int64_t> coordinate(-size / 8, size + size / 8);
-    for (int n = 0; n < anywhere; ++n)
-    {
-      queries.push_back({ coordinate(generator), coordinate(generator) });
-    }
-    return queries;
-  }
-};
-
-/// A mesh with coordinates that are multiples of four.
-GridMesh FourfoldMesh(int squares, double holes, std::uint64_t seed)
+/// A mesh whose coordinates are multiples of four, with holes and concave boundary.
+IntegerMesh FourfoldMesh(Random& random, int squares, double holes)
 {
-  GridMesh mesh(squares, 16, 4, holes, seed);
-  for (GridPoint& p : mesh.Points)
+  IntegerMesh mesh(random, squares, 16, 4);
+  mesh.Pierce(random, holes);
+  mesh.Shuffle(random);
+  for (IntegerPoint& p : mesh.Points)
   {
     p = { 4 * p.X, 4 * p.Y };
   }
@@ -199,27 +126,28 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
 {
   int found = 0;
   int outside = 0;
+  Random random(1);
   for (int n = 0; n < 120; ++n)
   {
-    const GridMesh grid = FourfoldMesh(1 + n % 5, n % 3 == 0 ? 0.0 : 0.3, n);
+    const IntegerMesh grid = FourfoldMesh(random, 1 + n % 5, n % 3 == 0 ? 0.0 : 0.3);
     // Multiples of the least positive number, too, which are exact.
     const double unit =
       n % 10 == 9 ? std::numeric_limits<double>::denorm_min() : std::ldexp(1.0, n % 7 - 3);
     const auto mesh = grid.ToMesh(unit, n % 3);
     const auto map = Make({ mesh, mesh });
-    for (const GridPoint& query : grid.Queries(200, n))
+    for (const IntegerPoint& query : Queries(grid, 200, random))
     {
-      const TriangleIndex expected = grid.Find(query);
-      const Point point = GridMesh::MeshPoint(query, unit, n % 3);
+      const auto [triangle, corner] = Find(grid, query);
+      const Point point = IntegerMesh::InSpace(query, unit, n % 3);
       const SurfacePoint location = Locate(*map, point);
-      ASSERT_EQ(expected, location.Triangle) << n << ": " << query.X << " " << query.Y;
-      ASSERT_EQ(grid.CornerAt(expected, query), location.Corner);
-      ++(expected >= 0 ? found : outside);
+      ASSERT_EQ(triangle, location.Triangle) << n << ": " << query.X << " " << query.Y;
+      ASSERT_EQ(corner, location.Corner);
+      ++(triangle >= 0 ? found : outside);
       for (std::size_t hint = 0; hint < grid.Triangles.size(); ++hint)
       {
         ExpectSameLocation(location, Locate(*map, point, static_cast<TriangleIndex>(hint)));
       }
-      if (expected >= 0)
+      if (triangle >= 0)
       {
         ASSERT_LE(Distance(point, PositionOf(*map, location)), 2e-13 * unit);
       }
@@ -230,11 +158,9 @@ TEST(PointLocation, AgreesWithExactArithmeticForEveryHint)
 }
 
 /// Triangles around a point, or between two points far away and those of a line, in random order.
-GridMesh ThinMesh(int count, bool isFan, std::uint64_t seed)
+IntegerMesh ThinMesh(Random& random, int count, bool isFan)
 {
-  GridMesh mesh = FourfoldMesh(1, 0.0, seed);
-  mesh.Points.clear();
-  mesh.Triangles.clear();
+  IntegerMesh mesh;
   for (vtkIdType i = 0; i <= count; ++i)
   {
     mesh.Points.push_back({ 4 * i, 0 });
@@ -242,35 +168,29 @@ GridMesh ThinMesh(int count, bool isFan, std::uint64_t seed)
     const vtkIdType own = 2 * i;
     if (i > 0)
     {
-      mesh.Triangles.push_back({ own - 2, own, own - 1 });
+      mesh.Triangles.push_back({ own - 2, own, isFan ? 1 : own - 1 });
     }
     if (i > 0 && !isFan)
     {
       mesh.Triangles.push_back({ own, own + 1, own - 1 });
     }
   }
-  if (isFan)
-  {
-    for (Triangle& t : mesh.Triangles)
-    {
-      t[2] = 1;
-    }
-  }
-  std::shuffle(mesh.Triangles.begin(), mesh.Triangles.end(), std::mt19937_64(seed));
+  mesh.Shuffle(random);
   return mesh;
 }
 
 TEST(PointLocation, FansAndSliversAgreeWithExactArithmetic)
 {
+  Random random(41);
   for (const bool isFan : { true, false })
   {
-    const GridMesh grid = ThinMesh(1000, isFan, 41);
+    const IntegerMesh grid = ThinMesh(random, 1000, isFan);
     const auto map = Make({ grid.ToMesh(0.25), nullptr });
     int found = 0;
-    for (const GridPoint& query : grid.Queries(1000, 42))
+    for (const IntegerPoint& query : Queries(grid, 1000, random))
     {
-      const TriangleIndex expected = grid.Find(query);
-      ASSERT_EQ(expected, Locate(*map, GridMesh::MeshPoint(query, 0.25, 2)).Triangle)
+      const TriangleIndex expected = Find(grid, query).first;
+      ASSERT_EQ(expected, Locate(*map, IntegerMesh::InSpace(query, 0.25, 2)).Triangle)
         << isFan << ": " << query.X << " " << query.Y;
       found += expected >= 0;
     }
@@ -409,28 +329,24 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
 {
   const auto map = Make({ mesh, nullptr });
   const MeshGeometry& geometry = map->GetPair().GetGeometry(Domain::Source);
-  const bool planar = geometry.IsPlanar();
-  const std::vector<Point> points = PointsOf(mesh);
-  const std::vector<Triangle> triangles = TrianglesOf(mesh);
+  const TriangleIndex count = static_cast<TriangleIndex>(mesh->GetNumberOfCells());
   const double allowed = tolerance * geometry.GetDiagonal() / geometry.GetScale();
-  std::mt19937_64 generator(seed);
-  std::normal_distribution<double> offset(0.0, spread);
-  std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
+  Random random(seed);
   int found = 0;
   int outside = 0;
   double worst = 0.0;
   TriangleIndex hint = -1;
   for (int n = 0; n < queries; ++n)
   {
-    Point query = points[any(generator)];
-    for (int axis = 0; axis < (planar ? 2 : 3); ++axis)
+    Point query = PointOf(mesh, random.Below(mesh->GetNumberOfPoints()));
+    for (int axis = 0; axis < (geometry.IsPlanar() ? 2 : 3); ++axis)
     {
-      query[axis] += offset(generator);
+      query[axis] += random.Uniform(-2.0 * spread, 2.0 * spread);
     }
     std::vector<double> distances;
-    for (const Triangle& t : triangles)
+    for (TriangleIndex t = 0; t < count; ++t)
     {
-      distances.push_back(DistanceToTriangle(query, { points[t[0]], points[t[1]], points[t[2]] }));
+      distances.push_back(DistanceToTriangle(query, CornersOf(mesh, t)));
     }
     const double least = *std::min_element(distances.begin(), distances.end());
     if (std::abs(least - allowed) < 1e-12 * allowed)
@@ -452,9 +368,7 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
     SurfacePoint foot = location;
     foot.Point.Offset = 0.0;
     const Point surfacePoint = PositionOf(*map, foot);
-    const Triangle& t = triangles[location.Triangle];
-    const double off =
-      DistanceToTriangle(surfacePoint, { points[t[0]], points[t[1]], points[t[2]] });
+    const double off = DistanceToTriangle(surfacePoint, CornersOf(mesh, location.Triangle));
     worst = std::max({ worst, off, std::abs(Distance(surfacePoint, query) - least) });
   }
   EXPECT_GE(found, leastFound);
@@ -464,7 +378,9 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
 
 TEST(PointLocation, ToleranceFindsTheNearestPoint)
 {
-  const GridMesh grid(8, 16, 4, 0.3, 10);
+  Random random(10);
+  IntegerMesh grid(random, 8, 16, 4);
+  grid.Pierce(random, 0.3);
   ExpectNearest(grid.ToMesh(1.0 / 16.0), 0.01, 0.8, 3000, 10, 1500, 200);
   ExpectNearest(grid.ToMesh(1.0 / 16.0), 0.001, 0.8, 3000, 11, 1000, 300);
   const auto needles = Moved(MakePlanarPair(8, 13, 0.2).Source, [](const Point& p) -> Point {

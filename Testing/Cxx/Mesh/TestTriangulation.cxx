@@ -3,13 +3,19 @@
 
 // Adjacency, orientability and unfolding of neighbors.
 
-#include "Fixtures/FilterRuns.h"
+#include "Fixtures/Triangulations.h"
 
 #include "Mesh/ChartedTriangulation.h"
 #include "Mesh/MeshGeometry.h"
 #include "Mesh/Triangulation.h"
 
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
 #include <numeric>
+#include <set>
+#include <string>
 
 namespace
 {
@@ -17,25 +23,11 @@ namespace
 using namespace homeomorphism;
 using namespace fixtures;
 
-std::vector<Triangulation::Corners> Narrow(const std::vector<Triangle>& triangles)
-{
-  std::vector<Triangulation::Corners> narrow;
-  for (const Triangle& t : triangles)
-  {
-    narrow.push_back({ static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
-      static_cast<std::int32_t>(t[2]) });
-  }
-  return narrow;
-}
-
 /// The start and end of an edge in the triangle's cyclic order.
 std::pair<std::int32_t, std::int32_t> EdgeOf(const Triangulation::Corners& corners, int edge)
 {
   return { corners[(edge + 1) % 3], corners[(edge + 2) % 3] };
 }
-
-//------------------------------------------------------------------------------------------------
-// Adjacency.
 
 /// Compares the adjacency with a map from pairs of points to triangles.
 void ExpectAdjacency(Triangulation& triangulation, vtkIdType numberOfPoints)
@@ -83,26 +75,33 @@ void ExpectAdjacency(Triangulation& triangulation, vtkIdType numberOfPoints)
   }
 }
 
+/// Three different ones of some points.
+Triangulation::Corners AnyCorners(Random& random, int points)
+{
+  Triangulation::Corners t;
+  do
+  {
+    t = { random.Below(points), random.Below(points), random.Below(points) };
+  } while (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]);
+  return t;
+}
+
 TEST(Triangulation, AdjacencyOfRandomTriangles)
 {
-  std::mt19937_64 generator(1);
+  Random random(1);
   for (int n = 0; n < 3000; ++n)
   {
     const int points = 3 + n % 12;
-    std::uniform_int_distribution<std::int32_t> point(0, points - 1);
     std::vector<Triangulation::Corners> triangles(n % 25);
     Triangulation triangulation;
-    for (auto& t : triangles)
+    for (Triangulation::Corners& t : triangles)
     {
-      do
-      {
-        t = { point(generator), point(generator), point(generator) };
-      } while (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]);
+      t = AnyCorners(random, points);
     }
     triangulation.SetTriangles(triangles, 0);
     for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
     {
-      if (n % 3 == 0 && point(generator) == 0)
+      if (n % 3 == 0 && random.Below(points) == 0)
       {
         triangulation.Mask(t);
       }
@@ -117,9 +116,6 @@ TEST(Triangulation, AdjacencyOfRandomTriangles)
     ASSERT_FALSE(HasFatalFailure()) << n;
   }
 }
-
-//------------------------------------------------------------------------------------------------
-// Orientability.
 
 /// Whether the triangles can be oriented consistently: no triangle may be connected to its own
 /// reverse through a chain of neighbors. Disjoint sets of (triangle, orientation).
@@ -155,23 +151,17 @@ bool IsOrientable(const Triangulation& triangulation)
 
 TEST(Triangulation, OrientabilityOfRandomTriangles)
 {
-  std::mt19937_64 generator(3);
+  Random random(3);
   int oneSided = 0;
   for (int n = 0; n < 4000; ++n)
   {
     const int points = 5 + n % 6;
-    std::uniform_int_distribution<std::int32_t> point(0, points - 1);
     std::vector<Triangulation::Corners> triangles;
     Triangulation triangulation;
     // Grows a surface without non-manifold edges.
-    for (int attempt = 0; attempt < 40; ++attempt)
+    for (int attempt = 0; attempt < 25; ++attempt)
     {
-      const Triangulation::Corners t{ point(generator), point(generator), point(generator) };
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-      {
-        continue;
-      }
-      triangles.push_back(t);
+      triangles.push_back(AnyCorners(random, points));
       triangulation.SetTriangles(triangles, 0);
       if (!triangulation.FindAdjacency(points).empty())
       {
@@ -188,12 +178,9 @@ TEST(Triangulation, OrientabilityOfRandomTriangles)
   EXPECT_LT(oneSided, 3800);
 }
 
-//------------------------------------------------------------------------------------------------
-// Unfolding.
-
 TEST(Triangulation, UnfoldedNeighborsKeepTheirLengths)
 {
-  std::mt19937_64 generator(4);
+  Random random(4);
   double worst = 0.0;
   int neighborsSeen = 0;
   for (const std::string name : { "plane", "sheet", "closed", "steep" })
@@ -201,14 +188,13 @@ TEST(Triangulation, UnfoldedNeighborsKeepTheirLengths)
     const auto mesh = name == "plane" ? MakePlanarPair(12, 4).Source
       : name == "closed"              ? MakeClosedPair(3, 4).Target
                                       : MakeSheet(12, 5, name == "steep" ? 8.0 : 0.5);
-    std::vector<Triangulation::Corners> triangles = Narrow(TrianglesOf(mesh));
-    for (Triangulation::Corners& corners : triangles)
+    std::vector<Triangle> triangles = TrianglesOf(mesh);
+    for (Triangle& corners : triangles)
     {
-      std::shuffle(corners.begin(), corners.end(), generator);
+      std::shuffle(corners.begin(), corners.end(), random.Engine);
     }
-    Triangulation triangulation;
-    triangulation.SetTriangles(triangles, 0);
-    triangulation.FindAdjacency(mesh->GetNumberOfPoints());
+    SetTriangles(mesh, triangles);
+    const Triangulation triangulation = TriangulationOf(mesh);
     MeshGeometry geometry(mesh->GetPoints(), triangulation);
     geometry.ComputeFrames(triangulation);
     EXPECT_EQ(name == "plane", geometry.IsPlanar());

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// With MaskInvalidTriangles exactly the defective triangles are masked, and the rest is mapped as
-// if they had been removed from the meshes.
+// Defects of several triangles with MaskInvalidTriangles: masking some triangles may uncover or
+// hide others. See TestMeshValidation for the defects of single triangles.
 
 #include "Fixtures/Defects.h"
-#include "Fixtures/FilterRuns.h"
 
 namespace
 {
@@ -17,149 +16,6 @@ Reading ReadMasked(const MeshPair& pair)
   homeomorphism::HomeomorphismOptions options;
   options.MaskInvalidTriangles = true;
   return Read(pair, options);
-}
-
-/// Whether points can be inside a triangle and not in a neighbor across an edge.
-bool HasInterior(vtkPolyData* mesh, const Triangle& t)
-{
-  const Point a = PointOf(mesh, t[0]);
-  const double area = Norm(Cross(PointOf(mesh, t[1]) - a, PointOf(mesh, t[2]) - a));
-  return std::isfinite(area) && area > 1e-6;
-}
-
-/// The defects are found, and all their cells are masked. Of @a forwardOnly pairs the inverse map
-/// is not compared.
-void ExpectMasked(
-  const MeshPair& pair, const std::vector<Defect>& defects, bool forwardOnly = false)
-{
-  const Reading reading = ReadMasked(pair);
-  ASSERT_TRUE(reading.Map);
-  EXPECT_EQ(reading.Defects(), defects);
-  const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
-  std::vector<bool> masked(triangles.size(), false);
-  for (const MeshDiagnostic& one : reading.Diagnostics)
-  {
-    EXPECT_EQ(one.Result, Outcome::Masked);
-    for (const vtkIdType cell : one.Ids)
-    {
-      masked[static_cast<std::size_t>(cell)] = true;
-    }
-  }
-  std::vector<Triangle> rest;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-  {
-    EXPECT_EQ(reading.Map->GetPair().GetTriangulation().IsMasked(static_cast<int>(t)), masked[t]);
-    if (!masked[t])
-    {
-      rest.push_back(triangles[t]);
-    }
-  }
-  const MeshPair pierced = WithTriangles(pair, rest);
-  for (const bool inverse : { false, true })
-  {
-    if (inverse && forwardOnly)
-    {
-      continue;
-    }
-    vtkPolyData* from = inverse ? pair.Target : pair.Source;
-    std::vector<Point> points;
-    Ids expectedTriangles;
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-    {
-      if (HasInterior(from, triangles[t]))
-      {
-        const std::vector<Point> inside = SamplePoints(from, { triangles[t] }, 4, t);
-        points.insert(points.end(), inside.begin(), inside.end());
-        expectedTriangles.insert(
-          expectedTriangles.end(), 4, masked[t] ? -1 : static_cast<vtkIdType>(t));
-      }
-    }
-    for (const System& system : { Linear, Contour, Smooth })
-    {
-      MapOptions options;
-      options.Inverse = inverse;
-      options.CoordinateSystem = system.CoordinateSystem;
-      options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
-      const MappedPoints expected = MapPoints(pierced, points, options);
-      options.Mask = true;
-      const MappedPoints mapped = MapPoints(pair, points, options);
-      ASSERT_EQ(expected.Error + expected.Warning + mapped.Error, "");
-      EXPECT_NE(mapped.Warning, "");
-      EXPECT_EQ(mapped.Triangles, expectedTriangles);
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        EXPECT_EQ(expected.IsInside(i), mapped.IsInside(i));
-        EXPECT_LE(Distance(expected.Images[i], mapped.Images[i]), 1e-14) << system.Name;
-      }
-    }
-  }
-}
-
-TEST(Masking, DefectsOfSingleTriangles)
-{
-  std::vector<Triangle> repeated = GridTriangles(4);
-  repeated[9] = { 6, 12, 12 };
-  ExpectMasked(WithTriangles(MakePlanarPair(4, 1), repeated),
-    { { Kind::RepeatedCorner, Where::Source, { 9 } } });
-  for (const bool inSource : { true, false })
-  {
-    const Where where = inSource ? Where::Source : Where::Target;
-    for (const Point& bad : { Point{ NotANumber, 2, 0 }, { 2, Infinity, 0 }, { 2, 2, -Infinity } })
-    {
-      const MeshPair pair = MakePlanarPair(4, 2);
-      MovePoint(inSource ? pair.Source : pair.Target, 12, bad);
-      ExpectMasked(pair, { { Kind::NotFinite, where, { 10, 11, 13, 18, 20, 21 } } });
-    }
-    // On the line from point 18 to point 23, so that only one of its two triangles collapses.
-    const MeshPair pair = MakePlanarPair(4, 4, 0.0);
-    MovePoint(inSource ? pair.Source : pair.Target, 24, { 3.0, 3.5, 0.0 });
-    ExpectMasked(pair, { { Kind::DegenerateTriangle, where, { 31 } } });
-  }
-  // On a surface the inverse map finds its neighbors instead of the collapsed triangle.
-  const MeshPair sheets{ MakeSheet(4, 5, 0.3), MakeSheet(4, 6, 0.4) };
-  MovePoint(sheets.Target, 24, PointIn(sheets.Target, { 18, 23, 24 }, { 0.6, 0.4, 0.0 }));
-  ExpectMasked(sheets, { { Kind::DegenerateTriangle, Where::Target, { 31 } } }, true);
-}
-
-TEST(Masking, DifferentDefectsInBothMeshes)
-{
-  const MeshPair pair = MakePlanarPair(4, 3, 0.0);
-  MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
-  MovePoint(pair.Target, 24, { 3.0, 3.5, NotANumber });
-  ExpectMasked(pair,
-    { { Kind::DegenerateTriangle, Where::Source, { 0, 1 } },
-      { Kind::NotFinite, Where::Target, { 30, 31 } } });
-}
-
-TEST(Masking, NonManifoldEdges)
-{
-  // A fin on the edge of triangles 0 and 1, and a second one on the edge of the last two.
-  std::vector<Triangle> triangles = GridTriangles(3);
-  triangles.push_back({ 0, 5, 16 });
-  triangles.push_back({ 10, 15, 16 });
-  const MeshPair pair{ MakeSheet(3, 7, 0.4), MakeSheet(3, 8, 0.4) };
-  for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
-  {
-    mesh->GetPoints()->InsertNextPoint(0.5, 0.5, 2.0);
-    SetTriangles(mesh, triangles);
-  }
-  ExpectMasked(pair, { { Kind::NonManifoldEdge, Where::Source, { 0, 1, 16, 17, 18, 19 } } });
-}
-
-TEST(Masking, FlippedTriangles)
-{
-  const std::vector<Point> points{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 2, 0, 0 }, { 3, 0, 0 },
-    { 2, 1, 0 }, { 4, 0, 0 }, { 5, 0, 0 }, { 4, 1, 0 } };
-  const std::vector<Triangle> triangles{ { 0, 1, 2 }, { 3, 4, 5 }, { 6, 7, 8 } };
-  const MeshPair alone{ MakeMesh(points, triangles), MakeMesh(points, triangles) };
-  MovePoint(alone.Target, 5, { 2, -1, 0 });
-  ExpectMasked(alone, { { Kind::Flipped, Where::Pair, { 1 } } });
-  // Cell 31 is flipped in the target. Its neighbor across the edge to the moved point, cell 30,
-  // then lies on cell 28.
-  const MeshPair pair = MakePlanarPair(4, 9, 0.0);
-  MovePoint(pair.Target, 24, { 2.9, 3.5, 0.0 });
-  ExpectMasked(pair,
-    { { Kind::Flipped, Where::Pair, { 31 } }, { Kind::Overlapping, Where::Target, { 28, 30 } } });
 }
 
 /// Grids at some places, whole or only their outermost squares, as one mesh.
