@@ -145,32 +145,41 @@ inline bool IsConcordant(const Corners& corners)
   return homeomorphism::IsConcordant(&corners[0].x, &corners[1].x, &corners[2].x, 2);
 }
 
-/// Concordant triangles: fat ones, flat caps and tall needles down to a millionth, and triangles of
-/// each kind that one bit separates from discordant ones.
+/// The apex of a concordant triangle over the edge from (0, 0) to (1, 0): of a fat triangle, or, if
+/// it may be thin, also of a flat cap or a tall needle down to a millionth.
+inline Vector2 ConcordantApex(Random& random, bool mayBeThin)
+{
+  for (;;)
+  {
+    const double thin = mayBeThin ? random.PowerOfTen(-6.0, 0.0) : 1.0;
+    Vector2 apex;
+    switch (mayBeThin ? random.Below(3) : 0)
+    {
+      case 0:
+        apex = { random.Uniform(-0.5, 1.5), random.Uniform(0.1, 1.5) };
+        break;
+      case 1:
+        // A flat cap is concordant approximately for |x - 1/2| < 2 thin^2.
+        apex = { 0.5 + random.Uniform(-2.5, 2.5) * thin * thin, thin };
+        break;
+      default:
+        // With the short edge as unit, a tall needle is concordant for -1 < x < 2.
+        apex = { random.Chance(0.3) ? 0.5 : random.Uniform(-1.2, 2.2), 1.0 / thin };
+    }
+    if (IsConcordant({ Vector2{ 0.0, 0.0 }, Vector2{ 1.0, 0.0 }, apex }))
+    {
+      return apex;
+    }
+  }
+}
+
+/// Triangles of each such kind, and those that one bit separates from discordant ones.
 inline Corners ConcordantTriangle(Random& random)
 {
   for (;;)
   {
-    Corners corners;
-    const double scale = random.PowerOfTen(-3.0, 3.0);
-    const double thin = random.PowerOfTen(-6.0, 0.0);
-    const int kind = random.Below(3);
-    Vector2 apex;
-    if (kind == 0)
-    {
-      apex = { random.Uniform(-0.5, 1.5), random.Uniform(0.05, 1.5) };
-    }
-    else if (kind == 1)
-    {
-      // A flat cap is concordant approximately for |x - 1/2| < 2 thin^2.
-      apex = { 0.5 + random.Uniform(-2.5, 2.5) * thin * thin, thin };
-    }
-    else
-    {
-      // With the short edge as unit, a tall needle is concordant for -1 < x < 2.
-      apex = { random.Chance(0.3) ? 0.5 : random.Uniform(-1.2, 2.2), 1.0 / thin };
-    }
-    corners = Moved(random, apex, kind == 2 ? scale * thin : scale);
+    Corners corners = Moved(random, ConcordantApex(random, true), random.PowerOfTen(-6.0, 3.0));
+    // Rounding may have made it discordant.
     if (!IsConcordant(corners))
     {
       continue;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // In the Smooth system, derivatives agree from both sides of an edge (the second ones, too: see
-// TestJacobianContinuity), the determinant is positive, and only neighbors influence the chart.
+// TestJacobianContinuity), and the determinant is positive.
 
 #include "Fixtures/Triangles.h"
 
@@ -186,60 +186,6 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivativeAndOnAnEdgeTheShareOfTheNeighbo
   }
   EXPECT_LT(worst.Value, 1e-14) << worst.Where;
   EXPECT_LT(worstShare.Value, 4.0 * Ulp) << worstShare.Where;
-}
-
-TEST(SmoothEdge, ANeighborChangesOnlyItsStrip)
-{
-  Random random(57);
-  int inside = 0;
-  int changed = 0;
-  int wrong = 0;
-  for (int n = 0; n < 20000; ++n)
-  {
-    const PlaneTriangle t(AnyTriangle(random));
-    const EdgeViews views = t.Views();
-    std::array<Neighbor, 3> neighbors = AnyNeighbors(random, views);
-    const SmoothChart before(t.Shape, views, neighbors);
-    const int k = random.Below(3);
-    neighbors[k] = AnyNeighbor(random, views[k]);
-    const SmoothChart after(t.Shape, views, neighbors);
-    const double tau = std::max(before.StripWidth(k), after.StripWidth(k));
-    for (int i = 0; i < 20; ++i)
-    {
-      const Barycentric l =
-        i < 10 ? random.Weights() : OnStripBorder(k, random.Uniform(), random.Uniform());
-      const double domains = l[NextCorner(k)] * l[PreviousCorner(k)];
-      const double least = l[k] * (l[NextCorner(k)] + l[PreviousCorner(k)]);
-      const Vector2 x = before.ToPoint(l);
-      const Vector2 y = after.ToPoint(l);
-      const bool isSame = x.x == y.x && x.y == y.y;
-      if (least < tau * domains)
-      {
-        // Deep enough inside the strip for a visible change.
-        if (least < 0.5 * std::min(before.StripWidth(k), after.StripWidth(k)) * domains &&
-          least > 0.01 * tau * domains)
-        {
-          ++inside;
-          changed += !isSame;
-        }
-      }
-      else
-      {
-        const Barycentric back = before.ToReference(x);
-        const Barycentric backAfter = after.ToReference(x);
-        // The inverse is the same too, except for a point that rounding moves across the border.
-        double difference = 0.0;
-        for (int j = 0; j < 3; ++j)
-        {
-          difference = std::max(difference, std::abs(back[j] - backAfter[j]));
-        }
-        wrong += !isSame || !(difference < 1e-15);
-      }
-    }
-  }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GT(inside, 10000);
-  EXPECT_GT(changed, 0.99 * inside);
 }
 
 TEST(SmoothEdge, WithoutNeighborsTheChartIsThatOfTheLinearSystem)

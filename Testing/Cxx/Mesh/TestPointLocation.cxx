@@ -341,7 +341,7 @@ void ExpectNearest(vtkPolyData* mesh, double tolerance, double spread, int queri
     Point query = PointOf(mesh, random.Below(mesh->GetNumberOfPoints()));
     for (int axis = 0; axis < (geometry.IsPlanar() ? 2 : 3); ++axis)
     {
-      query[axis] += random.Uniform(-2.0 * spread, 2.0 * spread);
+      query[axis] += random.Uniform(-1.7 * spread, 1.7 * spread);
     }
     std::vector<double> distances;
     for (TriangleIndex t = 0; t < count; ++t)

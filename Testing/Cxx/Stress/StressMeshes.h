@@ -110,37 +110,13 @@ inline Vector2 AnyApex(Random& random, Shape shape, double malice, double thinne
   }
 }
 
-/// The apex of a concordant triangle.
-inline Vector2 ConcordantApex(Random& random, Shape shape)
-{
-  for (;;)
-  {
-    const double thin = shape == Shape::Fair ? 1.0 : random.PowerOfTen(-6.0, 0.0);
-    Vector2 apex;
-    switch (shape == Shape::Fair ? 0 : random.Below(3))
-    {
-      case 0:
-        apex = { random.Uniform(-0.5, 1.5), random.Uniform(0.1, 1.5) };
-        break;
-      case 1:
-        apex = { 0.5 + random.Uniform(-2.5, 2.5) * thin * thin, thin };
-        break;
-      default:
-        apex = { random.Chance(0.3) ? 0.5 : random.Uniform(-1.2, 2.2), 1.0 / thin };
-    }
-    if (IsConcordant({ Vector2{ 0.0, 0.0 }, Vector2{ 1.0, 0.0 }, apex }))
-    {
-      return apex;
-    }
-  }
-}
-
 /// Two triangles with a common edge.
 inline std::vector<Vector2> TwoTriangles(
   Random& random, Shape shape, double malice, double thinnest, bool concordant)
 {
   const auto apex = [&]() {
-    return concordant ? ConcordantApex(random, shape) : AnyApex(random, shape, malice, thinnest);
+    return concordant ? ConcordantApex(random, shape != Shape::Fair)
+                      : AnyApex(random, shape, malice, thinnest);
   };
   const Vector2 left = apex();
   const Vector2 right = apex();

@@ -12,6 +12,7 @@
 
 #include "Fixtures/Meshes.h"
 
+#include "Kernel/CubicElement.h"
 #include "Kernel/ExactSign.h"
 #include "Mesh/Homeomorphism.h"
 
@@ -32,18 +33,6 @@ namespace
 {
 
 using namespace homeomorphism_stress;
-using homeomorphism::ChartedTriangulation;
-using homeomorphism::Domain;
-using homeomorphism::Homeomorphism;
-using homeomorphism::HomeomorphismOptions;
-using homeomorphism::Jacobian;
-using homeomorphism::MeshDiagnostics;
-using homeomorphism::MeshGeometry;
-using homeomorphism::Opposite;
-using homeomorphism::SurfacePoint;
-using homeomorphism::TriangleIndex;
-using homeomorphism::Vector3;
-
 constexpr double HalfUlp = Ulp / 2.0;
 constexpr int PointsPerCase = 256;
 
@@ -315,7 +304,7 @@ private:
       case homeomorphism::CoordinateSystem::Contour:
       {
         // A wing segment, in the frame of the triangle.
-        const homeomorphism::ContourChart& chart = charts.GetContourChart(triangle);
+        const ContourChart& chart = charts.GetContourChart(triangle);
         const MeshGeometry& geometry = this->GeometryOf(domain);
         const Vector2 middle = 0.5 * (chart.Center() + chart.Foot(k + 1));
         const Vector2 end =
@@ -343,10 +332,6 @@ private:
 
     double Norm() const { return homeomorphism_test::Norm(this->Matrix); }
     double InverseNorm() const { return this->Norm() / std::abs(this->Determinant); }
-    Vector2 operator*(const Vector2& v) const
-    {
-      return v.x * this->Matrix.ImageOfX + v.y * this->Matrix.ImageOfY;
-    }
   };
 
   Derivative DerivativeAt(Domain from, const SurfacePoint& surfacePoint) const
@@ -535,7 +520,7 @@ private:
       {
         continue;
       }
-      const homeomorphism::TriangleShape& shape = geometry.GetShape(t);
+      const TriangleShape& shape = geometry.GetShape(t);
       const Vector2 center = geometry.ToFrame(t, normalized).InPlane;
       // A triangle may be thinner than the distance; then its whole thickness counts.
       for (int i = 0; i < 5; ++i)
@@ -561,36 +546,17 @@ private:
   /// The derivative between the frames of the triangles, in which needles are well-conditioned.
   Matrix2 FrameDerivativeAt(Domain from, const SurfacePoint& surfacePoint) const
   {
-    const ChartedTriangulation& charts = this->Map->GetCharts(from);
-    const ChartedTriangulation& others = this->Map->GetCharts(Opposite(from));
-    const auto derivative = [&](const auto& chart, const auto& other) {
-      return MapDerivative(chart, other, chart.ToReference(surfacePoint.Point.InPlane));
-    };
-    switch (this->System.System)
-    {
-      case homeomorphism::CoordinateSystem::Contour:
-        return derivative(charts.GetContourChart(surfacePoint.Triangle),
-          others.GetContourChart(surfacePoint.Triangle));
-      case homeomorphism::CoordinateSystem::Smooth:
-        return derivative(charts.GetSmoothChart(surfacePoint.Triangle),
-          others.GetSmoothChart(surfacePoint.Triangle));
-      default:
-        return derivative(charts.GetLinearChart(surfacePoint.Triangle),
-          others.GetLinearChart(surfacePoint.Triangle));
-    }
-  }
-
-  static Vector2 Times(const Matrix2& matrix, const Vector2& v)
-  {
-    return v.x * matrix.ImageOfX + v.y * matrix.ImageOfY;
+    return this->Map->GetCharts(from).VisitCharts(this->Map->GetCharts(Opposite(from)),
+      surfacePoint.Triangle, [&](const auto& chart, const auto& other) {
+        return MapDerivative(chart, other, chart.ToReference(surfacePoint.Point.InPlane));
+      });
   }
 
   /// Maps a triangle around the point, so small that the map is almost affine on it and so large
   /// that rounding does not matter, and checks its orientation.
   void MeasureOrientation(int i, Domain from, const SurfacePoint& surfacePoint, double targetSize)
   {
-    const homeomorphism::TriangleShape& shape =
-      this->GeometryOf(from).GetShape(surfacePoint.Triangle);
+    const TriangleShape& shape = this->GeometryOf(from).GetShape(surfacePoint.Triangle);
     const Barycentric l = shape.ToBarycentric(surfacePoint.Point.InPlane);
     const double room = std::min({ l[0], l[1], l[2] });
     const int turn = this->Numbers.Below(2);
@@ -641,16 +607,16 @@ private:
         return;
       }
       // Almost affine: the image is nearly the same for each of the derivatives.
-      const double predicted = Cross(Times(derivatives[0], first), Times(derivatives[0], second));
+      const double predicted = Cross(derivatives[0] * first, derivatives[0] * second);
       bool tame = predicted > 0.0;
       double longest = 0.0;
       for (int a = 0; a < count && tame; ++a)
       {
-        longest = std::max(
-          { longest, Norm(Times(derivatives[a], first)), Norm(Times(derivatives[a], second)) });
+        longest =
+          std::max({ longest, Norm(derivatives[a] * first), Norm(derivatives[a] * second) });
         for (int b = 0; b < count; ++b)
         {
-          const double other = Cross(Times(derivatives[a], first), Times(derivatives[b], second));
+          const double other = Cross(derivatives[a] * first, derivatives[b] * second);
           tame = tame && other > 0.8 * predicted && other < 1.25 * predicted;
         }
       }
