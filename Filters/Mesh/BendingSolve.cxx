@@ -191,8 +191,8 @@ private:
   const std::vector<std::uint8_t>& IsFree;
   const ParallelFor& Parallel;
   const PointFans Fans;
-  std::vector<std::uint8_t> IsCut;
-  std::vector<int> Failures;
+  LargeVector<std::uint8_t> IsCut;
+  LargeVector<int> Failures;
   std::map<int, BoundaryPoint> Boundary;
   std::vector<Node> Nodes;
   std::vector<NodeForms> Forms;
@@ -885,7 +885,7 @@ bool Solver::SolveWhole(BendingSolution& solution)
   }
   LargeArray<Matrix2> gradients(count);
   // The directions in which a derivative is unknown: both, one along a straight boundary, or none.
-  std::vector<std::uint8_t> isBoundary(count, 0);
+  LargeVector<std::uint8_t> isBoundary(count, 0);
   for (int point = 0; point < points; ++point)
   {
     gradients[point] = this->Template.GetDerivative(point);
@@ -914,7 +914,7 @@ bool Solver::SolveWhole(BendingSolution& solution)
     return Matrix2{ b[0] * m.ImageOfX + b[1] * m.ImageOfY, b[2] * m.ImageOfX + b[3] * m.ImageOfY };
   };
   // A point has as many neighbors as triangles, one more on the boundary, and itself.
-  std::vector<std::int32_t> first(count + 1, 0);
+  LargeVector<std::int32_t> first(count + 1, 0);
   for (const std::array<std::int32_t, 3>& corners : this->Pair.Triangles)
   {
     for (const std::int32_t point : corners)

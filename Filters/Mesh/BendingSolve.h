@@ -53,14 +53,14 @@ struct BendingStatistics
 struct BendingSolution
 {
   /// At the points.
-  std::vector<BendingNode> Points;
+  LargeVector<BendingNode> Points;
   /// Of each triangle, where its nodes are in CutNodes, or -1.
-  std::vector<std::int32_t> Cuts;
+  LargeVector<std::int32_t> Cuts;
   /// Of whole triangles, relative to corner 0; empty if all triangles are cut.
   LargeArray<CubicNet> Nets;
   /// Of each triangle, a lower bound of the determinant over the affine one, if all triangles are
   /// whole and their first solution is certified; empty otherwise.
-  std::vector<double> Certificates;
+  LargeVector<double> Certificates;
   /// Nodes 3 to 14 of a TriangleCut.
   std::vector<std::array<BendingNode, 12>> CutNodes;
   BendingStatistics Statistics;

@@ -22,7 +22,7 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
   PlanarPair planar;
   this->Numbers.assign(count, -1);
   // Parts that touch in a point may be mirrored independently: then the point is taken twice.
-  std::array<std::vector<std::int32_t>, 2> pointNumbers;
+  std::array<LargeVector<std::int32_t>, 2> pointNumbers;
   std::int32_t greatest = -1;
   for (TriangleIndex t = 0; t < count; ++t)
   {
@@ -50,7 +50,7 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
     {
       std::swap(corners[1], corners[2]);
     }
-    std::vector<std::int32_t>& numbers = pointNumbers[mirrored ? 1 : 0];
+    LargeVector<std::int32_t>& numbers = pointNumbers[mirrored ? 1 : 0];
     for (std::int32_t& corner : corners)
     {
       if (numbers.empty())

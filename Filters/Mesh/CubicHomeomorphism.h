@@ -78,14 +78,14 @@ private:
   const TriangulationPair& Pair;
   std::unique_ptr<CubicMap> Map;
   /// Triangles and points of the map by those of the meshes, and back; -1 for masked ones.
-  std::vector<std::int32_t> Numbers;
-  std::vector<std::int32_t> Triangles;
-  std::vector<std::int32_t> Points;
-  std::vector<std::uint8_t> Mirrored;
+  LargeVector<std::int32_t> Numbers;
+  LargeVector<std::int32_t> Triangles;
+  LargeVector<std::int32_t> Points;
+  LargeVector<std::uint8_t> Mirrored;
   /// Whether any is.
   bool IsMirrored = false;
   /// Whether a triangle's corners 1 and 2 are exchanged in the map.
-  std::vector<std::uint8_t> Reversed;
+  LargeVector<std::uint8_t> Reversed;
 };
 
 } // namespace homeomorphism

@@ -290,7 +290,7 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
   {
     this->Certificates.assign(this->Pair.Triangles.size(), 0.0);
   }
-  std::vector<std::int64_t> elements(this->Pair.Triangles.size(), 0);
+  LargeVector<std::int64_t> elements(this->Pair.Triangles.size(), 0);
   parallelFor(this->Pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {

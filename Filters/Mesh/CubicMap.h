@@ -72,7 +72,7 @@ public:
   /// Of each triangle of the pair: the least Bernstein coefficient of the determinant over the
   /// determinant of the piecewise linear map. The map is certified in the triangle if it is
   /// positive.
-  const std::vector<double>& GetCertificates() const { return this->Certificates; }
+  const LargeVector<double>& GetCertificates() const { return this->Certificates; }
   bool IsCertified(int triangle) const { return this->Certificates[triangle] > 0.0; }
 
   /// What the functions below need to be fast for many points, one triangle after another.
@@ -155,7 +155,7 @@ private:
   int Levels = 0;
   std::unique_ptr<CubicTemplate> Template;
   std::unique_ptr<BendingSolution> Bending;
-  std::vector<double> Certificates;
+  LargeVector<double> Certificates;
   double ResidualTolerance = 0.0;
   CubicMapStatistics Statistics;
 };

@@ -25,7 +25,7 @@ double Length(const Vector2& v)
   return std::sqrt(Dot(v, v));
 }
 
-void SortUnique(std::vector<std::int32_t>& numbers)
+void SortUnique(LargeVector<std::int32_t>& numbers)
 {
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -285,12 +285,12 @@ CubicTemplate::CubicTemplate(
     }
   });
   // Of the points, those that are not differentiable.
-  std::vector<std::unique_ptr<Exception>> exceptions(static_cast<std::size_t>(points));
-  std::vector<std::int32_t> changed(static_cast<std::size_t>(points));
+  LargeVector<std::unique_ptr<Exception>> exceptions(static_cast<std::size_t>(points));
+  LargeVector<std::int32_t> changed(static_cast<std::size_t>(points));
   std::iota(changed.begin(), changed.end(), 0);
-  std::vector<std::int32_t> triangles(pair.Triangles.size());
+  LargeVector<std::int32_t> triangles(pair.Triangles.size());
   std::iota(triangles.begin(), triangles.end(), 0);
-  std::vector<double> factors(static_cast<std::size_t>(points), 1.0);
+  LargeVector<double> factors(static_cast<std::size_t>(points), 1.0);
   // Corners that stray too far are made smaller, until none does.
   while (!changed.empty())
   {
@@ -328,7 +328,7 @@ CubicTemplate::CubicTemplate(
         }
       });
     // The corners' heights, and those of the neighbors' along the same edges, shrink as well.
-    std::vector<std::int32_t> next;
+    LargeVector<std::int32_t> next;
     triangles.clear();
     for (const std::int32_t point : changed)
     {
@@ -546,7 +546,7 @@ std::unique_ptr<CubicTemplate::Exception> CubicTemplate::FindDerivative(
     int turns[2];
     for (int domain = 0; domain < 2; ++domain)
     {
-      const std::vector<Vector2>& points = domain == 0 ? this->Pair.Source : this->Pair.Target;
+      const LargeVector<Vector2>& points = domain == 0 ? this->Pair.Source : this->Pair.Target;
       const Vector2 here = points[point];
       const Vector2 start = points[ends[0]] - here;
       const Vector2 end = points[ends[1]] - here;

@@ -25,13 +25,13 @@ void* AllocateLarge(std::size_t bytes)
   void* memory = ::operator new(bytes, CacheLine);
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   constexpr std::size_t largePage = std::size_t(1) << 21;
-  if (bytes >= 2 * largePage)
+  if (bytes >= largePage / 2)
   {
-    // Only for whole huge pages within the array. Failure is harmless.
-    const auto smallPage = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    const std::size_t before = smallPage - reinterpret_cast<std::uintptr_t>(memory) % smallPage;
-    madvise(
-      static_cast<char*>(memory) + before, (bytes - before) / smallPage * smallPage, MADV_HUGEPAGE);
+    // For the huge pages of which the array is a part, too: arrays often lie side by side. Failure
+    // is harmless.
+    const auto begin = reinterpret_cast<std::uintptr_t>(memory) / largePage * largePage;
+    const auto end = reinterpret_cast<std::uintptr_t>(memory) + bytes + largePage - 1;
+    madvise(reinterpret_cast<void*>(begin), end / largePage * largePage - begin, MADV_HUGEPAGE);
   }
 #endif
   return memory;

@@ -25,6 +25,38 @@ namespace homeomorphism
 void* AllocateLarge(std::size_t bytes);
 void ReleaseLarge(void* memory);
 
+/// An allocator for standard containers.
+template <typename T>
+struct LargeAllocator
+{
+  static_assert(alignof(T) <= 64, "See AllocateLarge");
+  using value_type = T;
+
+  LargeAllocator() = default;
+  template <typename Other>
+  LargeAllocator(const LargeAllocator<Other>&) // NOLINT(google-explicit-constructor)
+  {
+  }
+
+  T* allocate(std::size_t size) { return static_cast<T*>(AllocateLarge(size * sizeof(T))); }
+  void deallocate(T* memory, std::size_t) { ReleaseLarge(memory); }
+
+  template <typename Other>
+  bool operator==(const LargeAllocator<Other>&) const
+  {
+    return true;
+  }
+  template <typename Other>
+  bool operator!=(const LargeAllocator<Other>&) const
+  {
+    return false;
+  }
+};
+
+/// For arrays that grow, or whose elements are not trivial.
+template <typename T>
+using LargeVector = std::vector<T, LargeAllocator<T>>;
+
 /// An array of fixed size. Its elements are uninitialized until they are assigned, so memory is
 /// written only once.
 template <typename T>

@@ -18,7 +18,7 @@ void PlanarPair::FindNeighbors()
     std::int32_t Triangle;
     std::int32_t Edge;
   };
-  std::vector<HalfEdge> halfEdges;
+  LargeVector<HalfEdge> halfEdges;
   halfEdges.reserve(3 * this->Triangles.size());
   for (int t = 0; t < this->GetNumberOfTriangles(); ++t)
   {
@@ -59,7 +59,7 @@ PlanarPair PlanarPair::Refine() const
   PlanarPair fine;
   fine.Source = this->Source;
   fine.Target = this->Target;
-  std::vector<std::array<std::int32_t, 3>> middles(this->Triangles.size());
+  LargeVector<std::array<std::int32_t, 3>> middles(this->Triangles.size());
   for (int t = 0; t < this->GetNumberOfTriangles(); ++t)
   {
     for (int k = 0; k < 3; ++k)
@@ -101,7 +101,7 @@ PointFans::PointFans(const PlanarPair& pair)
   : First(pair.Source.size(), -1)
   , Touching(pair.Source.size(), 0)
 {
-  std::vector<std::int32_t> counts(pair.Source.size(), 0);
+  LargeVector<std::int32_t> counts(pair.Source.size(), 0);
   for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
   {
     for (int c = 0; c < 3; ++c)

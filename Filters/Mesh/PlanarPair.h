@@ -8,6 +8,7 @@
 #define homeomorphism_PlanarPair_h
 
 #include "Kernel/CubicElement.h"
+#include "Mesh/LargeArray.h"
 
 #include <array>
 #include <cmath>
@@ -22,11 +23,11 @@ namespace homeomorphism
 /// through their edge in opposite directions.
 struct PlanarPair
 {
-  std::vector<Vector2> Source;
-  std::vector<Vector2> Target;
-  std::vector<std::array<std::int32_t, 3>> Triangles;
+  LargeVector<Vector2> Source;
+  LargeVector<Vector2> Target;
+  LargeVector<std::array<std::int32_t, 3>> Triangles;
   /// Element k: the triangle across edge k, -1 on the boundary.
-  std::vector<std::array<std::int32_t, 3>> Neighbors;
+  LargeVector<std::array<std::int32_t, 3>> Neighbors;
 
   int GetNumberOfTriangles() const { return static_cast<int>(this->Triangles.size()); }
   int GetNumberOfPoints() const { return static_cast<int>(this->Source.size()); }
@@ -49,7 +50,7 @@ struct PlanarPair
 
   /// Corners of a triangle relative to one of them: differences of nearby coordinates are exact.
   static std::array<Vector2, 3> GetCorners(
-    const std::vector<Vector2>& points, const std::array<std::int32_t, 3>& corners, int origin = 0)
+    const LargeVector<Vector2>& points, const std::array<std::int32_t, 3>& corners, int origin = 0)
   {
     const Vector2 o = points[corners[origin]];
     return { points[corners[0]] - o, points[corners[1]] - o, points[corners[2]] - o };
@@ -113,8 +114,8 @@ struct PointFans
     return false;
   }
 
-  std::vector<std::int32_t> First;
-  std::vector<std::uint8_t> Touching;
+  LargeVector<std::int32_t> First;
+  LargeVector<std::uint8_t> Touching;
 };
 
 } // namespace homeomorphism

@@ -17,6 +17,7 @@
 namespace cubic_test
 {
 
+using homeomorphism::LargeVector;
 using homeomorphism::PlanarPair;
 using homeomorphism::Vector2;
 
@@ -130,7 +131,7 @@ inline double Norm(const Vector2& v)
 
 /// The triangle of a mesh that contains a point, walking from one of them; -1 outside.
 inline int Locate(
-  const PlanarPair& pair, const std::vector<Vector2>& points, int t, const Vector2& point)
+  const PlanarPair& pair, const LargeVector<Vector2>& points, int t, const Vector2& point)
 {
   for (int step = 0; step < 10000; ++step)
   {
@@ -160,7 +161,7 @@ struct Sample
   int Triangle;
   homeomorphism::Barycentric Weights;
 
-  Vector2 In(const PlanarPair& pair, const std::vector<Vector2>& points) const
+  Vector2 In(const PlanarPair& pair, const LargeVector<Vector2>& points) const
   {
     const auto& corners = pair.Triangles[this->Triangle];
     const std::array<Vector2, 3> c = PlanarPair::GetCorners(points, corners);

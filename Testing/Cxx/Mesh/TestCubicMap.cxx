@@ -151,7 +151,7 @@ CubicMapOptions Options(CubicBending bending)
 template <typename Move>
 PlanarPair Moved(PlanarPair pair, Move&& move)
 {
-  for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+  for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
   {
     std::transform(points->begin(), points->end(), points->begin(), move);
   }
@@ -171,7 +171,7 @@ PlanarPair SmoothPair(int cells, double jitter, double size)
 }
 
 /// A polygon with a vertex in its middle.
-PlanarPair Wheel(const std::vector<Vector2>& source, const std::vector<Vector2>& target)
+PlanarPair Wheel(const LargeVector<Vector2>& source, const LargeVector<Vector2>& target)
 {
   PlanarPair pair;
   pair.Source = source;
@@ -299,9 +299,9 @@ TEST(CubicMap, FarFromTheOrigin)
 TEST_P(CubicMaps, BoundaryCornersAreDifferentiableWhereTheyCanBe)
 {
   // A square with points on its sides, against itself with the points moved along the sides.
-  const std::vector<Vector2> square{ { -1.0, -1.0 }, { 0.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 0.0 },
+  const LargeVector<Vector2> square{ { -1.0, -1.0 }, { 0.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 0.0 },
     { 1.0, 1.0 }, { 0.0, 1.0 }, { -1.0, 1.0 }, { -1.0, 0.0 } };
-  std::vector<Vector2> moved = square;
+  LargeVector<Vector2> moved = square;
   moved[1].x = 0.5;
   moved[3].y = -0.4;
   moved[5].x = 0.3;
@@ -324,9 +324,9 @@ TEST_P(CubicMaps, BoundaryCornersAreDifferentiableWhereTheyCanBe)
 
 TEST_P(CubicMaps, BoundaryCornersStraightOnOneSideAreListed)
 {
-  const std::vector<Vector2> square{ { -1.0, -1.0 }, { 0.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 1.0 },
+  const LargeVector<Vector2> square{ { -1.0, -1.0 }, { 0.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 1.0 },
     { -1.0, 1.0 } };
-  std::vector<Vector2> bent = square;
+  LargeVector<Vector2> bent = square;
   bent[1].y = -1.5;
   const CubicMap map(Wheel(square, bent), Options(GetParam()));
   ExpectCertified(map);

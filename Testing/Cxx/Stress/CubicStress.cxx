@@ -211,7 +211,7 @@ void RunFar()
     {
       // A map sheet of 10 km at coordinates of 10^7 m, in millimeters.
       PlanarPair pair = RandomPair(seed, 0.5, 11);
-      for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+      for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
       {
         for (Vector2& p : *points)
         {
@@ -232,7 +232,7 @@ void RunFar()
     const auto grade = [](double x) {
       return (1.0 - std::pow(0.7, 11.0 * x)) / (1.0 - std::pow(0.7, 11.0));
     };
-    for (std::vector<Vector2>* points : { &pair.Source, &pair.Target })
+    for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
     {
       for (Vector2& p : *points)
       {
