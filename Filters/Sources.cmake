@@ -9,6 +9,7 @@ set(kernel_sources
   Kernel/ContourChart.cxx
   Kernel/CubicElement.cxx
   Kernel/ExactSign.cxx
+  Kernel/Simd/BendingBatch.cxx
   Kernel/Simd/CubicBatch.cxx
   Kernel/Simd/EdgeBatch.cxx
   Kernel/SmoothChart.cxx)
@@ -22,6 +23,7 @@ set(kernel_headers
   Kernel/LinearProgram.h
   Kernel/RootFinding.h
   Kernel/RunningError.h
+  Kernel/Simd/BendingBatch.h
   Kernel/Simd/CubicBatch.h
   Kernel/Simd/EdgeBatch.h
   Kernel/Simd/Vectorize.h
@@ -34,6 +36,7 @@ set(cubic_sources
   Mesh/CubicTemplate.cxx
   Mesh/CubicTriangle.cxx
   Mesh/LargeArray.cxx
+  Mesh/LeastBendingDerivatives.cxx
   Mesh/PlanarPair.cxx
   Mesh/VertexGradient.cxx)
 set(cubic_headers
@@ -43,6 +46,7 @@ set(cubic_headers
   Mesh/CubicTemplate.h
   Mesh/CubicTriangle.h
   Mesh/LargeArray.h
+  Mesh/LeastBendingDerivatives.h
   Mesh/PlanarPair.h
   Mesh/VertexGradient.h)
 

@@ -644,27 +644,22 @@ double GreatestDisplacement(const CubicElement& element)
   return std::sqrt(greatest);
 }
 
-namespace
+//------------------------------------------------------------------------------
+BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
 {
-
-// The matrix of an even number of the nine functions, or of all.
-template <std::size_t Count>
-BendingMatrix MakeBendingMatrix(
-  const std::array<Vector2, 3>& points, const std::array<int, Count>& functions)
-{
-  constexpr std::size_t pairs = (Count + 1) / 2;
+  constexpr int count = 9;
+  constexpr int pairs = (count + 1) / 2;
   // Two basis functions at a time, as the components of one map.
   std::array<CubicOrdinates<Vector2>, pairs> basis;
-  for (std::size_t n = 0; n < Count; n += 2)
+  for (int n = 0; n < count; n += 2)
   {
     CubicElement element{ points, {}, {}, {} };
-    for (std::size_t at = n; at < std::min(n + 2, Count); ++at)
+    for (int m = n; m < std::min(n + 2, count); ++m)
     {
-      const int m = functions[at];
       Vector2& target = m % 3 == 0
         ? element.Values[m / 3]
         : (m % 3 == 1 ? element.Gradients[m / 3].ImageOfX : element.Gradients[m / 3].ImageOfY);
-      (at == n ? target.x : target.y) = 1.0;
+      (m == n ? target.x : target.y) = 1.0;
     }
     basis[n / 2] = GetOrdinates(element);
   }
@@ -682,7 +677,7 @@ BendingMatrix MakeBendingMatrix(
     const Vector2 alongY{ -toCentroid.x / cross, edge.x / cross };
     // Second derivatives xx, xy, yy of the nine functions at the corners of the piece.
     double hessians[3][3][2 * pairs];
-    for (std::size_t pair = 0; pair < pairs; ++pair)
+    for (int pair = 0; pair < pairs; ++pair)
     {
       const CubicOrdinates<Vector2>& b = basis[pair];
       // Rows of the control net towards the end (columns) and the centroid (rows).
@@ -716,43 +711,29 @@ BendingMatrix MakeBendingMatrix(
       for (int part = 0; part < 3; ++part)
       {
         const double weight = (part == 1 ? 2.0 : 1.0) * area / 9.0 * 0.25;
-        double middle[Count];
-        for (std::size_t n = 0; n < Count; ++n)
+        double middle[count];
+        for (int n = 0; n < count; ++n)
         {
           middle[n] = hessians[corner][part][n] + hessians[NextCorner(corner)][part][n];
         }
-        for (std::size_t m = 0; m < Count; ++m)
+        for (int m = 0; m < count; ++m)
         {
-          for (std::size_t n = 0; n <= m; ++n)
+          for (int n = 0; n <= m; ++n)
           {
-            matrix[functions[m]][functions[n]] += weight * middle[m] * middle[n];
+            matrix[m][n] += weight * middle[m] * middle[n];
           }
         }
       }
     }
   }
-  for (int m = 0; m < 9; ++m)
+  for (int m = 0; m < count; ++m)
   {
-    for (int n = m + 1; n < 9; ++n)
+    for (int n = m + 1; n < count; ++n)
     {
       matrix[m][n] = matrix[n][m];
     }
   }
   return matrix;
-}
-
-} // anonymous namespace
-
-//------------------------------------------------------------------------------
-BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
-{
-  return MakeBendingMatrix<9>(points, { 0, 1, 2, 3, 4, 5, 6, 7, 8 });
-}
-
-//------------------------------------------------------------------------------
-BendingMatrix GetBendingMatrixOfDerivatives(const std::array<Vector2, 3>& points)
-{
-  return MakeBendingMatrix<6>(points, { 1, 2, 4, 5, 7, 8 });
 }
 
 } // namespace homeomorphism

@@ -313,9 +313,6 @@ using BendingMatrix = std::array<std::array<double, 9>, 9>;
 
 BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points);
 
-/// Only the rows and columns of derivatives, in less time; the others are 0.
-BendingMatrix GetBendingMatrixOfDerivatives(const std::array<Vector2, 3>& points);
-
 } // namespace homeomorphism
 
 #endif

@@ -3,6 +3,8 @@
 
 #include "Mesh/BendingSolve.h"
 
+#include "Mesh/LeastBendingDerivatives.h"
+
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -108,17 +110,6 @@ struct Element
   BendingMatrix Bending;
   /// Doubles cannot represent even the template's own element: its triangle is not certified.
   bool IsLost = false;
-};
-
-/// What the boundary prescribes at a point.
-struct BoundaryPoint
-{
-  bool Straight = false;
-  Vector2 Tangent;
-  /// The derivative along the tangent, if the boundary is straight.
-  Vector2 Slope;
-  /// The whole derivative at a corner.
-  Matrix2 Derivative;
 };
 
 class Solver
@@ -870,203 +861,29 @@ BendingSolution Solver::Extract() const
 }
 
 //------------------------------------------------------------------------------
-// All triangles whole, all values fixed: the derivatives at the points alone, by conjugate
-// gradients from the template's. They are well conditioned at any number of triangles. Returns
-// whether the result is certified.
+// All triangles whole, all values fixed: the derivatives at the points alone. Returns whether the
+// result is certified.
 bool Solver::SolveWhole(BendingSolution& solution)
 {
-  const int points = this->Pair.GetNumberOfPoints();
   const int triangles = this->Pair.GetNumberOfTriangles();
-  const auto count = static_cast<std::size_t>(points);
+  const std::size_t count = this->Pair.Source.size();
   if (std::find(this->Fans.Touching.begin(), this->Fans.Touching.end(), 1) !=
     this->Fans.Touching.end())
   {
     return false;
   }
-  LargeArray<Matrix2> gradients(count);
-  // The directions in which a derivative is unknown: both, one along a straight boundary, or none.
-  LargeVector<std::uint8_t> isBoundary(count, 0);
-  for (int point = 0; point < points; ++point)
+  double energy;
   {
-    gradients[point] = this->Template.GetDerivative(point);
-  }
-  for (const auto& entry : this->Boundary)
-  {
-    const BoundaryPoint& boundary = entry.second;
-    Matrix2& gradient = gradients[entry.first];
-    isBoundary[entry.first] = 1;
-    gradient = boundary.Straight
-      ? gradient + OuterProduct(boundary.Slope - gradient * boundary.Tangent, boundary.Tangent)
-      : boundary.Derivative;
-  }
-  const auto project = [&](int point, const Matrix2& m) {
-    if (isBoundary[point] == 0)
+    const LeastBendingDerivatives derivatives =
+      FindLeastBendingDerivatives(this->Template, this->Fans, this->Boundary, this->Parallel);
+    energy = derivatives.Energy;
+    solution.Points.resize(count);
+    for (std::size_t point = 0; point < count; ++point)
     {
-      return m;
+      solution.Points[point] = { {}, derivatives.AtPoints[point] };
     }
-    const BoundaryPoint& boundary = this->Boundary.at(point);
-    const Vector2 normal = Normal(boundary.Tangent);
-    return boundary.Straight ? OuterProduct(m * normal, normal) : Matrix2{};
-  };
-  // Symmetric blocks (xx, xy, yx, yy) between points, for each point those of larger number too.
-  using Block = std::array<double, 4>;
-  const auto times = [](const Matrix2& m, const Block& b) {
-    return Matrix2{ b[0] * m.ImageOfX + b[1] * m.ImageOfY, b[2] * m.ImageOfX + b[3] * m.ImageOfY };
-  };
-  // A point has as many neighbors as triangles, one more on the boundary, and itself.
-  LargeVector<std::int32_t> first(count + 1, 0);
-  for (const std::array<std::int32_t, 3>& corners : this->Pair.Triangles)
-  {
-    for (const std::int32_t point : corners)
-    {
-      ++first[point + 1];
-    }
-  }
-  for (int point = 0; point < points; ++point)
-  {
-    const std::int32_t t = this->Fans.First[point];
-    const bool isOpen =
-      t >= 0 && this->Pair.Neighbors[t][PreviousCorner(this->Pair.GetCorner(t, point))] < 0;
-    first[point + 1] += first[point] + (isOpen ? 2 : 1);
-  }
-  // The point itself comes first; the others are entered as triangles have them.
-  constexpr std::int32_t none = -1;
-  LargeArray<std::int32_t> columns(static_cast<std::size_t>(first.back()), none);
-  LargeArray<Block> blocks(columns.size(), Block{});
-  LargeArray<Matrix2> residual(count, Matrix2{});
-  for (int point = 0; point < points; ++point)
-  {
-    columns[first[point]] = point;
-  }
-  const auto find = [&](int row, int column) -> Block& {
-    int at = first[row];
-    while (columns[at] != column && columns[at] != none)
-    {
-      ++at;
-    }
-    columns[at] = column;
-    return blocks[at];
-  };
-  double energy = 0.0;
-  for (int t = 0; t < triangles; ++t)
-  {
-    const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[t];
-    const BendingMatrix bending = GetBendingMatrixOfDerivatives(this->Pair.GetSourceCorners(t));
-    std::array<Matrix2, 3> own;
-    for (int i = 0; i < 3; ++i)
-    {
-      own[i] = gradients[corners[i]] - this->Template.GetAffine(t);
-    }
-    for (int i = 0; i < 3; ++i)
-    {
-      Matrix2 force{};
-      for (int j = 0; j < 3; ++j)
-      {
-        Block& block = find(corners[i], corners[j]);
-        for (int a = 0; a < 2; ++a)
-        {
-          for (int b = 0; b < 2; ++b)
-          {
-            const double entry = bending[3 * i + 1 + a][3 * j + 1 + b];
-            block[2 * a + b] += entry;
-            Vector2& along = a == 0 ? force.ImageOfX : force.ImageOfY;
-            along = along + entry * (b == 0 ? own[j].ImageOfX : own[j].ImageOfY);
-          }
-        }
-      }
-      residual[corners[i]] = residual[corners[i]] - project(corners[i], force);
-      energy += Dot(force.ImageOfX, own[i].ImageOfX) + Dot(force.ImageOfY, own[i].ImageOfY);
-    }
-  }
-  // The inverses of the diagonal blocks precondition.
-  LargeArray<Block> inverses(count, Block{});
-  for (int point = 0; point < points; ++point)
-  {
-    const Block& b = blocks[first[point]];
-    if (this->Fans.First[point] < 0)
-    {
-      continue;
-    }
-    if (isBoundary[point] != 0)
-    {
-      const Vector2 n = Normal(this->Boundary.at(point).Tangent);
-      const double s = 1.0 / (b[0] * n.x * n.x + 2.0 * b[1] * n.x * n.y + b[3] * n.y * n.y);
-      inverses[point] = { s * n.x * n.x, s * n.x * n.y, s * n.x * n.y, s * n.y * n.y };
-      continue;
-    }
-    const double s = 1.0 / (b[0] * b[3] - b[1] * b[2]);
-    inverses[point] = { s * b[3], -s * b[1], -s * b[2], s * b[0] };
-  }
-  // Both components at once, each with its own steps. Sums in a fixed order, by blocks of points.
-  constexpr int blockSize = 1024;
-  std::vector<Vector2> sums(static_cast<std::size_t>((points + blockSize - 1) / blockSize));
-  const auto sumForAll = [&](auto&& body) {
-    this->Parallel(
-      static_cast<std::int64_t>(sums.size()), [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t block = begin; block < end; ++block)
-        {
-          Vector2 sum;
-          const int start = static_cast<int>(block) * blockSize;
-          for (int point = start; point < std::min(points, start + blockSize); ++point)
-          {
-            body(point, sum);
-          }
-          sums[static_cast<std::size_t>(block)] = sum;
-        }
-      });
-    return std::accumulate(sums.begin(), sums.end(), Vector2{});
-  };
-  const auto addProduct = [](Vector2& sum, const Matrix2& a, const Matrix2& b) {
-    sum.x += a.ImageOfX.x * b.ImageOfX.x + a.ImageOfY.x * b.ImageOfY.x;
-    sum.y += a.ImageOfX.y * b.ImageOfX.y + a.ImageOfY.y * b.ImageOfY.y;
-  };
-  const auto scaled = [](const Vector2& s, const Matrix2& m) {
-    return Matrix2{ { s.x * m.ImageOfX.x, s.y * m.ImageOfX.y },
-      { s.x * m.ImageOfY.x, s.y * m.ImageOfY.y } };
-  };
-  LargeArray<Matrix2> step(count);
-  LargeArray<Matrix2> image(count);
-  Vector2 product = sumForAll([&](int point, Vector2& sum) {
-    step[point] = times(residual[point], inverses[point]);
-    addProduct(sum, residual[point], step[point]);
-  });
-  const Vector2 start = product;
-  constexpr int mostSteps = 1000;
-  // Of the energy that is still too much, which is a square: derivatives are off by its root.
-  constexpr double enough = 1e-20;
-  for (int n = 0; n < mostSteps && (product.x > enough * start.x || product.y > enough * start.y);
-       ++n)
-  {
-    const Vector2 curvature = sumForAll([&](int point, Vector2& sum) {
-      Matrix2 total{};
-      for (int at = first[point]; at < first[point + 1]; ++at)
-      {
-        total = total + times(step[columns[at]], blocks[at]);
-      }
-      image[point] = project(point, total);
-      addProduct(sum, step[point], image[point]);
-    });
-    const Vector2 share{ curvature.x > 0.0 ? product.x / curvature.x : 0.0,
-      curvature.y > 0.0 ? product.y / curvature.y : 0.0 };
-    energy -= Dot(share, product);
-    const Vector2 next = sumForAll([&](int point, Vector2& sum) {
-      gradients[point] = gradients[point] + scaled(share, step[point]);
-      residual[point] = residual[point] - scaled(share, image[point]);
-      addProduct(sum, residual[point], times(residual[point], inverses[point]));
-    });
-    const Vector2 turn{ product.x > 0.0 ? next.x / product.x : 0.0,
-      product.y > 0.0 ? next.y / product.y : 0.0 };
-    product = next;
-    sumForAll([&](int point, Vector2&) {
-      step[point] = times(residual[point], inverses[point]) + scaled(turn, step[point]);
-    });
   }
   solution.Cuts.assign(static_cast<std::size_t>(triangles), -1);
-  solution.Points.resize(count);
-  for (int point = 0; point < points; ++point)
-  {
-    solution.Points[point] = { {}, gradients[point] };
-  }
   solution.Nets = LargeArray<CubicNet>(static_cast<std::size_t>(triangles));
   solution.Certificates.resize(static_cast<std::size_t>(triangles));
   std::atomic<bool> isCertified{ true };

@@ -9,6 +9,7 @@
 
 #include "Kernel/CubicElement.h"
 #include "Kernel/LinearProgram.h"
+#include "Kernel/Simd/BendingBatch.h"
 #include "Mesh/Vector3.h"
 
 #include <gtest/gtest.h>
@@ -236,6 +237,42 @@ TEST(CubicElement, ReproducesQuadraticMaps)
       0.5 * Cross(element.Points[1] - element.Points[0], element.Points[2] - element.Points[0]);
     const double expected = area * (4.0 * Dot(xx, xx) + 2.0 * Dot(xy, xy) + 4.0 * Dot(yy, yy));
     EXPECT_NEAR(energy, expected, 1e-8 * expected);
+  }
+}
+
+TEST(CubicElement, BendingOfManyTrianglesIsThatOfEach)
+{
+  Elements random(5);
+  BendingBatch batch;
+  std::array<std::array<Vector2, 3>, BendingBatch::Size> triangles;
+  for (int n = 0; n < BendingBatch::Size; ++n)
+  {
+    triangles[static_cast<std::size_t>(n)] = random.Triangle();
+    batch.SetCorners(n, triangles[static_cast<std::size_t>(n)]);
+  }
+  batch.SetMatrices();
+  for (int n = 0; n < BendingBatch::Size; ++n)
+  {
+    const BendingMatrix matrix = GetBendingMatrix(triangles[static_cast<std::size_t>(n)]);
+    double tolerance = 0.0;
+    for (const std::array<double, 9>& row : matrix)
+    {
+      tolerance = std::max(tolerance, 1e-13 * *std::max_element(row.begin(), row.end()));
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const std::size_t here = 3 * static_cast<std::size_t>(k) + 1;
+      const std::size_t start = 3 * static_cast<std::size_t>(NextCorner(k)) + 1;
+      const std::size_t end = 3 * static_cast<std::size_t>(PreviousCorner(k)) + 1;
+      for (std::size_t a = 0; a < 2; ++a)
+      {
+        for (std::size_t b = 0; b < 2; ++b)
+        {
+          EXPECT_NEAR(batch.Diagonal[k][a + b][n], matrix[here + a][here + b], tolerance);
+          EXPECT_NEAR(batch.Edge[k][2 * a + b][n], matrix[start + a][end + b], tolerance);
+        }
+      }
+    }
   }
 }
 
