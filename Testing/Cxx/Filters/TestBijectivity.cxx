@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The map of whole meshes is bijective: the images of small triangles have one orientation, their
-// areas add up to that of the other domain, and each point of it is in the image of one of them.
-// And maps that are ill-conditioned.
+// The map of whole meshes is bijective: the images of small triangles have one orientation, and
+// their areas add up to that of the other domain. And maps that are ill-conditioned.
 
 #include "Fixtures/FilterRuns.h"
 
@@ -15,61 +14,53 @@ namespace
 using namespace fixtures;
 using homeomorphism::Vector2;
 
-/// Number of subdivisions of each edge.
-constexpr int Divisions = 24;
-
-/// A piece of a triangle of a mesh, and three points of the subdivided mesh.
-struct Piece
+/// The mesh with its triangles divided into 24^2 parts each.
+vtkSmartPointer<vtkPolyData> Divided(vtkPolyData* mesh)
 {
-  vtkIdType Triangle;
-  std::array<std::size_t, 3> Points;
-};
-
-struct Subdivision
-{
-  std::vector<Point> Points;
-  std::vector<Piece> Pieces;
-};
-
-Subdivision Subdivide(vtkPolyData* mesh)
-{
-  Subdivision result;
+  constexpr vtkIdType n = 24;
+  std::vector<Point> points;
+  std::vector<Triangle> parts;
   for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
   {
-    std::array<std::array<std::size_t, Divisions + 1>, Divisions + 1> at{};
-    for (int i = 0; i <= Divisions; ++i)
+    // Row i has n + 1 - i points.
+    const auto at = [first = static_cast<vtkIdType>(points.size())](vtkIdType i, vtkIdType j) {
+      return first + i * (n + 1) - i * (i - 1) / 2 + j;
+    };
+    for (vtkIdType i = 0; i <= n; ++i)
     {
-      for (int j = 0; i + j <= Divisions; ++j)
+      for (vtkIdType j = 0; i + j <= n; ++j)
       {
-        const int k = Divisions - i - j;
-        at[i][j] = result.Points.size();
-        result.Points.push_back(PositionOf(
-          mesh, { t, { double(i) / Divisions, double(j) / Divisions, double(k) / Divisions } }));
-      }
-    }
-    for (int i = 0; i < Divisions; ++i)
-    {
-      for (int j = 0; i + j < Divisions; ++j)
-      {
-        result.Pieces.push_back({ t, { at[i][j], at[i + 1][j], at[i][j + 1] } });
-        if (i + j + 1 < Divisions)
+        points.push_back(
+          PositionOf(mesh, { t, { double(i) / n, double(j) / n, double(n - i - j) / n } }));
+        if (i + j < n)
         {
-          result.Pieces.push_back({ t, { at[i + 1][j + 1], at[i][j + 1], at[i + 1][j] } });
+          parts.push_back({ at(i, j), at(i + 1, j), at(i, j + 1) });
+        }
+        if (i > 0 && j > 0)
+        {
+          parts.push_back({ at(i, j), at(i - 1, j), at(i, j - 1) });
         }
       }
     }
   }
-  return result;
+  return MakeMesh(points, parts);
 }
 
-Vector2 InPlane(const Point& p)
+/// The sum of the areas of triangles, all of which are wound counterclockwise.
+double AreaOf(vtkPolyData* mesh)
 {
-  return { p[0], p[1] };
-}
-
-double SignedArea(const Vector2& a, const Vector2& b, const Vector2& c)
-{
-  return 0.5 * homeomorphism::Cross(b - a, c - a);
+  double area = 0.0;
+  for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
+  {
+    std::array<Vector2, 3> corners;
+    const std::array<Point, 3> points = CornersOf(mesh, t);
+    std::transform(points.begin(), points.end(), corners.begin(), [](const Point& p) {
+      return Vector2{ p[0], p[1] };
+    });
+    EXPECT_GT(homeomorphism::Orientation(corners[0], corners[1], corners[2]), 0) << t;
+    area += 0.5 * homeomorphism::Cross(corners[1] - corners[0], corners[2] - corners[0]);
+  }
+  return area;
 }
 
 /// The points of a mesh of almost equilateral triangles, all of which are concordant.
@@ -88,57 +79,14 @@ MeshPair MakeConcordantPair(int n, std::uint64_t seed)
 
 void ExpectBijective(const System& system, const MeshPair& pair)
 {
-  const Subdivision pieces = Subdivide(pair.Source);
-  const auto filter = MakeFilter(system, pair, MakeCloud(pieces.Points));
+  const auto filter = MakeFilter(system, pair, Divided(pair.Source));
   filter->SetDiscordantTriangles(vtkDifferentiableHomeomorphism::REFUSE);
-  vtkPointSet* mapped = Output(filter);
-  ASSERT_EQ(mapped->GetNumberOfPoints(), static_cast<vtkIdType>(pieces.Points.size()));
-  ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0);
-
-  double area = 0.0;
-  for (vtkIdType t = 0; t < pair.Target->GetNumberOfCells(); ++t)
-  {
-    const std::array<Point, 3> corners = CornersOf(pair.Target, t);
-    area += SignedArea(InPlane(corners[0]), InPlane(corners[1]), InPlane(corners[2]));
-  }
-  // Points in general position, and how often they are hit, by a piece of the triangle that
-  // contains their preimage.
-  const std::vector<Point> points = SamplePoints(pair.Target, TrianglesOf(pair.Target), 20, 41);
-  const auto inverse = MakeFilter(system, pair, MakeCloud(points));
-  inverse->InverseOn();
-  inverse->ComputeTriangleIdOn();
-  std::vector<int> hits(points.size(), 0);
-  double sum = 0.0;
-  for (const Piece& piece : pieces.Pieces)
-  {
-    std::array<Vector2, 3> image;
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      image[k] = InPlane(PointOf(mapped, static_cast<vtkIdType>(piece.Points[k])));
-    }
-    ASSERT_GT(homeomorphism::Orientation(image[0], image[1], image[2]), 0) << piece.Triangle;
-    sum += SignedArea(image[0], image[1], image[2]);
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-      const Vector2 p = InPlane(points[i]);
-      const auto isLeft = [&](int k) {
-        return homeomorphism::Orientation(image[k], image[(k + 1) % 3], p) > 0;
-      };
-      if (isLeft(0) && isLeft(1) && isLeft(2))
-      {
-        ++hits[i];
-        EXPECT_EQ(
-          PointValue(Output(inverse), "TriangleId", static_cast<vtkIdType>(i)), piece.Triangle);
-      }
-    }
-  }
-  EXPECT_NEAR(sum, area, 1e-12 * area);
-  EXPECT_EQ(hits, std::vector<int>(points.size(), 1));
+  const double area = AreaOf(pair.Target);
+  EXPECT_NEAR(AreaOf(vtkPolyData::SafeDownCast(Output(filter))), area, 1e-12 * area);
+  EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
 }
 
-class Bijectivity : public testing::TestWithParam<System>
-{
-};
+using Bijectivity = TestInEverySystem;
 
 INSTANTIATE_TEST_SUITE_P(AllSystems, Bijectivity, testing::ValuesIn(AllSystems()), NameOfSystem);
 
@@ -158,11 +106,8 @@ TEST(BijectivityOfSmooth, HoldsForNeedles)
 {
   const MeshPair pair = MakePlanarPair(4, 91);
   const auto target = Sheared(pair.Target);
-  Point p = PointOf(target, 12);
-  const Point right = PointOf(target, 13);
-  const Point below = PointOf(target, 7);
-  p = 0.5 * (right + below) + 1e-3 * (p - 0.5 * (right + below));
-  target->GetPoints()->SetPoint(12, p.data());
+  const Point middle = 0.5 * (PointOf(target, 13) + PointOf(target, 7));
+  MovePoint(target, 12, middle + 1e-3 * (PointOf(target, 12) - middle));
   ExpectBijective(Smooth, { pair.Source, target });
 }
 

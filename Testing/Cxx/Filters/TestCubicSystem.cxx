@@ -141,12 +141,11 @@ TEST(CubicSystem, LeavesWhatIsNotCertified)
   std::vector<Point> source = GridPoints(8, 0, 0.0);
   source[41][0] = std::nextafter(source[40][0], 8.0);
   const MeshPair pair{ MakeMesh(source, GridTriangles(8)), RegularGrid(8) };
-  std::mt19937_64 random(11);
-  std::uniform_real_distribution<double> uniform(0.01, 7.99);
+  Random random(11);
   std::vector<Point> points;
   for (int n = 0; n < 4000; ++n)
   {
-    points.push_back({ uniform(random), uniform(random), 0 });
+    points.push_back({ random.Uniform(0.01, 7.99), random.Uniform(0.01, 7.99), 0 });
   }
   MapOptions options;
   options.CoordinateSystem = vtkDifferentiableHomeomorphism::CUBIC;
@@ -163,15 +162,9 @@ TEST(CubicSystem, LeavesWhatIsNotCertified)
       continue;
     }
     ++inside;
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      EXPECT_GE(mapped.Images[i][axis], 0.0);
-      EXPECT_LE(mapped.Images[i][axis], 8.0);
-      if (back.IsInside(i))
-      {
-        EXPECT_NEAR(back.Images[i][axis], points[i][axis], 1e-9);
-      }
-    }
+    const Point image = mapped.Images[i];
+    EXPECT_TRUE(std::min(image[0], image[1]) >= 0.0 && std::max(image[0], image[1]) <= 8.0);
+    EXPECT_TRUE(!back.IsInside(i) || Distance(back.Images[i], points[i]) < 1e-9);
   }
   EXPECT_GT(inside, 3000);
   EXPECT_LT(inside, 4000);

@@ -7,7 +7,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkCellLocator.h"
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include <atomic>
@@ -100,20 +99,7 @@ TEST(HomeomorphismAlgorithm, PointsThatMissASurfaceAreExplained)
     }
   }
   // The least tolerance, relative to the diagonal.
-  vtkNew<vtkCellLocator> locator;
-  locator->SetDataSet(pair.Source);
-  locator->BuildLocator();
-  double distance = 0.0;
-  for (const Point& point : points)
-  {
-    Point nearest;
-    vtkIdType cell;
-    int subId;
-    double squared;
-    locator->FindClosestPoint(point.data(), nearest.data(), cell, subId, squared);
-    distance = std::max(distance, std::sqrt(squared));
-  }
-  const double least = distance / SizeOf(pair.Source);
+  const double least = LargestDistanceFrom(pair.Source, points) / SizeOf(pair.Source);
   const auto filter = MakeFilter(Smooth, pair, MakeCloud(points));
   for (const double factor : { 0.0, 0.8, 1.1 })
   {

@@ -42,16 +42,6 @@ vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
     { { 0, 1, 2 }, { 3, 4, 5 } });
 }
 
-std::vector<double> ValuesOf(vtkDataArray* array)
-{
-  std::vector<double> values;
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    values.push_back(array->GetTuple1(i));
-  }
-  return values;
-}
-
 /// The square [0, 2] x [0, 2] is mapped to itself with doubled coordinates: J is twice the identity
 /// in the plane.
 class MalformedData : public ::testing::Test
@@ -67,9 +57,7 @@ protected:
 
   vtkSmartPointer<vtkPolyData> Source = RegularGrid(2);
   vtkSmartPointer<vtkDifferentiableHomeomorphism> Filter =
-    MakeFilter(Linear, { Source, Moved(Source, [](const Point& p) -> Point {
-                          return { 2 * p[0], 2 * p[1], 0.0 };
-                        }) });
+    MakeFilter(Linear, { Source, Resized(Source, 2.0) });
   Messages Log{ Filter };
 };
 
@@ -124,35 +112,15 @@ TEST_F(MalformedData, ArraysOfWrongLengthPassUnchanged)
       EXPECT_EQ(PointArray(output, array->GetName()), array);
       EXPECT_EQ(CellArray(output, array->GetName()) == array, tuples != 2);
     }
+    // An array beside them is transformed nevertheless, of which one vector is not a number.
+    const auto others = MakeNumbers("Others", 3, 6);
+    others->SetComponent(0, 0, NotANumber);
+    data->GetPointData()->SetVectors(others);
+    this->Filter->TransformAllInputVectorsOn();
+    vtkDataArray* mapped = PointArray(this->Run(data), "Others");
+    EXPECT_TRUE(std::isnan(mapped->GetComponent(0, 0)));
+    EXPECT_LT(Distance(VectorOf(mapped, 1), { 22.0, 24.0, 13.0 }), 1e-13);
   }
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 1);
-  const auto vectors = MakeNumbers("Vectors", 3, 4000);
-  image->GetPointData()->SetVectors(vectors);
-  EXPECT_EQ(PointArray(this->Run(image), "Vectors"), vectors);
-}
-
-TEST_F(MalformedData, ArraysOfWrongLengthDoNotBlockOthers)
-{
-  const auto data = MakeDataPartlyOutside();
-  const auto tooLong = MakeNumbers("TooLong", 3, 7);
-  data->GetPointData()->SetVectors(MakeNumbers("Vectors", 3, 6));
-  data->GetPointData()->AddArray(tooLong);
-  this->Filter->TransformAllInputVectorsOn();
-  vtkPointSet* output = this->Run(data);
-  EXPECT_EQ(PointArray(output, "TooLong"), tooLong);
-  EXPECT_LT(Distance(VectorOf(PointArray(output, "Vectors"), 2), { 42.0, 44.0, 23.0 }), 1e-13);
-}
-
-TEST_F(MalformedData, VectorsThatAreNotNumbersStayAlone)
-{
-  const auto data = MakeDataPartlyOutside();
-  const auto vectors = MakeNumbers("Vectors", 3, 6);
-  vectors->SetComponent(0, 0, NotANumber);
-  data->GetPointData()->SetVectors(vectors);
-  vtkDataArray* mapped = PointArray(this->Run(data), "Vectors");
-  EXPECT_TRUE(std::isnan(mapped->GetComponent(0, 0)));
-  EXPECT_LT(Distance(VectorOf(mapped, 1), { 22.0, 24.0, 13.0 }), 1e-13);
 }
 
 // Just past the end, negative, and so far off that an access would crash.
@@ -194,14 +162,13 @@ TEST_F(MalformedData, CellsWithInvalidPointIds)
 TEST_F(MalformedData, PolygonsAndLinesWithTooFewPoints)
 {
   const auto data = MakeDataPartlyOutside();
-  vtkNew<vtkCellArray> polygons;
-  polygons->InsertNextCell({ 0, 1 });
-  polygons->InsertNextCell({ 2 });
-  polygons->InsertNextCell({ 0, 1, 3 });
-  data->SetPolys(polygons);
-  vtkNew<vtkCellArray> lines;
-  lines->InsertNextCell({ 1 });
-  data->SetLines(lines);
+  data->AllocateEstimate(4, 3);
+  const vtkIdType ids[] = { 0, 1, 3 };
+  data->InsertNextCell(VTK_POLY_LINE, 1, ids);
+  data->InsertNextCell(VTK_POLYGON, 2, ids);
+  data->InsertNextCell(VTK_POLYGON, 1, ids);
+  data->InsertNextCell(VTK_POLYGON, 3, ids);
+  data->DeleteCells();
   data->GetCellData()->SetVectors(MakeNumbers("Flux", 3, 4));
   vtkPointSet* output = this->Run(data);
   ASSERT_EQ(output->GetNumberOfCells(), 4);
@@ -211,44 +178,30 @@ TEST_F(MalformedData, PolygonsAndLinesWithTooFewPoints)
   EXPECT_TRUE(std::isnan(CellArray(output, "Flux")->GetComponent(3, 0)));
 }
 
-// --- Values that are looked for in data ----------------------------------------------------------
-
 TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
 {
   using Change = std::function<void(vtkPolyData*)>;
-  const std::vector<std::pair<const char*, Change>> changes{
-    { "a point that does not exist",
-      [](vtkPolyData* data) {
-        data->GetPolys()->InsertNextCell({ 0, 1, 9 });
-      } },
-    { "a polygon of two points",
-      [](vtkPolyData* data) {
-        data->GetPolys()->InsertNextCell({ 0, 1 });
-      } },
-    { "a point that is not a number",
-      [](vtkPolyData* data) {
-        MovePoint(data, 5, { 0, NotANumber, 0 });
-      } },
-    { "offsets that do not fit",
-      [](vtkPolyData* data) {
-        vtkNew<vtkTypeInt64Array> offsets;
-        vtkNew<vtkTypeInt64Array> connectivity;
-        for (const int offset : { 0, 3, 700 })
-        {
-          offsets->InsertNextValue(offset);
-        }
-        for (const int id : { 0, 1, 2 })
-        {
-          connectivity->InsertNextValue(id);
-        }
-        data->GetPolys()->SetData(offsets, connectivity);
-      } },
-    { "an array of another length",
-      [](vtkPolyData* data) { data->GetPointData()->AddArray(MakeNumbers("Velocity", 3, 2)); } }
+  const std::vector<Change> changes{
+    // A point that does not exist, a polygon of two points, and a point that is not a number.
+    [](vtkPolyData* data) {
+      SetTriangles(data, { { 0, 1, 9 } });
+    },
+    [](vtkPolyData* data) {
+      data->GetPolys()->InsertNextCell({ 0, 1 });
+    },
+    [](vtkPolyData* data) {
+      MovePoint(data, 5, { 0, NotANumber, 0 });
+    },
+    // Offsets that do not fit, and an array of another length.
+    [](vtkPolyData* data) {
+      data->GetPolys()->SetData(RandomArray<vtkTypeInt64Array>("Offsets", 1, 3, 1),
+        RandomArray<vtkTypeInt64Array>("Points", 1, 3, 2));
+    },
+    [](vtkPolyData* data) { data->GetPointData()->AddArray(MakeNumbers("Velocity", 3, 2)); }
   };
-  for (const auto& [name, change] : changes)
+  for (std::size_t i = 0; i < changes.size(); ++i)
   {
-    SCOPED_TRACE(name);
+    SCOPED_TRACE(i);
     const auto resample =
       MakeAlgorithm<vtkResampleThroughHomeomorphism>({ this->Source, this->Source });
     Messages messages(resample);
@@ -259,7 +212,7 @@ TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
     EXPECT_EQ(messages.Error(), "");
     EXPECT_EQ(resample->GetOutput()->GetNumberOfPoints(), 25);
     const auto changed = MakeDataPartlyOutside();
-    change(changed);
+    changes[i](changed);
     resample->SetDataObject(changed);
     resample->Update();
     EXPECT_TRUE(messages.HasError());
@@ -268,8 +221,6 @@ TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
     EXPECT_EQ(resample->GetOutput()->GetNumberOfPoints(), 0);
   }
 }
-
-// --- Arrays without a name, and with several roles -----------------------------------------------
 
 TEST_F(MalformedData, UnnamedAttributesAreReplaced)
 {
@@ -289,17 +240,12 @@ TEST_F(MalformedData, UnnamedAttributesAreReplaced)
     input->SetTensors(MakeNumbers(nullptr, 9, tuples));
     vtkDataSetAttributes* result = attributesOf(this->Run(data));
     int unnamed = 0;
-    int kept = 0;
     for (int i = 0; i < result->GetNumberOfArrays(); ++i)
     {
       unnamed += result->GetAbstractArray(i)->GetName() == nullptr;
-      for (int k = 0; k < input->GetNumberOfArrays(); ++k)
-      {
-        kept += result->GetAbstractArray(i) == input->GetAbstractArray(k);
-      }
     }
     EXPECT_EQ(unnamed, 4);
-    EXPECT_EQ(kept, 1);
+    EXPECT_EQ(result->GetAbstractArray(0), plain);
     ASSERT_TRUE(result->GetVectors() && result->GetNormals() && result->GetTensors());
     EXPECT_NEAR(result->GetVectors()->GetComponent(0, 0), 2.0, 1e-13);
     EXPECT_NEAR(result->GetTensors()->GetComponent(0, 0), 4.0, 1e-13);
@@ -323,8 +269,6 @@ TEST_F(MalformedData, AnArrayKeepsAllItsRoles)
   EXPECT_EQ(result->GetScalars(), result->GetVectors());
 }
 
-// --- Pieces --------------------------------------------------------------------------------------
-
 TEST_F(MalformedData, PiecesOfSeveralOutputs)
 {
   for (const bool ownData : { false, true })
@@ -335,37 +279,29 @@ TEST_F(MalformedData, PiecesOfSeveralOutputs)
     {
       filter->SetDataObject(MakeDataPartlyOutside());
     }
-    std::vector<vtkIdType> whole;
-    for (int port = 0; port < 3; ++port)
-    {
-      whole.push_back(UpdatePiece(filter, 0, 1, port)->GetNumberOfCells());
-      ASSERT_GT(whole.back(), 0);
-    }
-    // Consumers of all outputs request their pieces in turn, as in several processes. Data that is
-    // no pipeline's output is in every piece.
+    // Cells of the pieces of each output, requested by its own consumer in turn, as in several
+    // processes, or of the first output for all.
+    const auto countCells = [&filter](int pieces, bool ofEach) {
+      std::vector<vtkIdType> sums(3, 0);
+      for (int piece = 0; piece < pieces; ++piece)
+      {
+        UpdatePiece(filter, piece, pieces);
+        for (const int port : { 0, 1, 2 })
+        {
+          vtkDataObject* data =
+            ofEach ? UpdatePiece(filter, piece, pieces, port) : filter->GetOutputDataObject(port);
+          EXPECT_EQ(data->GetInformation()->Get(vtkDataObject::DATA_PIECE_NUMBER()), piece);
+          sums[port] += data->GetNumberOfElements(vtkDataObject::CELL);
+        }
+      }
+      return sums;
+    };
+    std::vector<vtkIdType> whole = countCells(1, true);
+    EXPECT_GT(*std::min_element(whole.begin(), whole.end()), 0);
+    // Data that is no pipeline's output is in every piece.
     whole[0] *= ownData ? 2 : 1;
-    std::vector<vtkIdType> sums(3, 0);
-    for (int piece = 0; piece < 2; ++piece)
-    {
-      for (const int port : { 0, 1, 2 })
-      {
-        sums[port] += UpdatePiece(filter, piece, 2, port)->GetNumberOfCells();
-      }
-    }
-    EXPECT_EQ(sums, whole);
-    // A piece requested of the first output applies to all.
-    sums.assign(3, 0);
-    for (int piece = 0; piece < 2; ++piece)
-    {
-      filter->UpdatePiece(piece, 2, 0);
-      for (const int port : { 0, 1, 2 })
-      {
-        vtkDataObject* data = filter->GetOutputDataObject(port);
-        EXPECT_EQ(data->GetInformation()->Get(vtkDataObject::DATA_PIECE_NUMBER()), piece);
-        sums[port] += vtkDataSet::SafeDownCast(data)->GetNumberOfCells();
-      }
-    }
-    EXPECT_EQ(sums, whole);
+    EXPECT_EQ(countCells(2, true), whole);
+    EXPECT_EQ(countCells(2, false), whole);
   }
 }
 

@@ -49,21 +49,20 @@ double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter)
     pair.Source, pair.Target, cloud, filter->GetCoordinateSystem(), filter->GetMaximumDeviation());
   const auto linear = MapPoints(filter->GetOutput(), filter->GetTargetOutput(), cloud,
     vtkDifferentiableHomeomorphism::LINEAR, VTK_DOUBLE_MAX);
-  double largest = 0.0;
-  for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
-  {
-    largest = std::max(largest, Distance(PointOf(exact, i), PointOf(linear, i)));
-  }
-  return largest;
+  return LargestDistance(exact, linear);
 }
 
-/// Every edge has two triangles or lies exactly on the boundary of the square [0, size]^2, so no
-/// edge ends at a vertex inside another edge.
+/// The triangles have positive areas, which fill the square [0, size]^2. Every edge has two of them
+/// or lies exactly on the boundary, so no edge ends at a vertex inside another edge.
 void ExpectConforming(vtkPolyData* mesh, double size)
 {
   std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+  double twice = 0.0;
   for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c)
   {
+    const auto p = CornersOf(mesh, c);
+    EXPECT_GT(Cross(p[1] - p[0], p[2] - p[0])[2], 0.0);
+    twice += Cross(p[1] - p[0], p[2] - p[0])[2];
     vtkNew<vtkIdList> ids;
     mesh->GetCellPoints(c, ids);
     for (int k = 0; k < 3; ++k)
@@ -71,6 +70,7 @@ void ExpectConforming(vtkPolyData* mesh, double size)
       ++edges[std::minmax(vtkIdType(ids->GetId(k)), vtkIdType(ids->GetId((k + 1) % 3)))];
     }
   }
+  EXPECT_NEAR(twice, 2.0 * size * size, 1e-11);
   for (const auto& edge : edges)
   {
     ASSERT_LE(edge.second, 2);
@@ -94,71 +94,56 @@ MeshPair MakeSquare()
   return { make(1.5, 1.5), make(2.1, 1.8) };
 }
 
-TEST(RefinedTriangulationPair, KeepsTheMaximumErrorAtRandomPoints)
+TEST(RefinedTriangulationPair, KeepsTheMaximumErrorPointsAndAreas)
 {
-  const MeshPair pair = MakePlanarPair(4, 23);
-  vtkIdType triangles = pair.Source->GetNumberOfCells();
-  for (const double maximumError : { 0.01, 0.003 })
-  {
-    const auto filter = MakeFilter(pair, maximumError);
-    filter->Update();
-    EXPECT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
-    EXPECT_LE(filter->GetLargestError(), maximumError);
-    EXPECT_GT(filter->GetNumberOfSamples(), 0);
-    EXPECT_LE(LargestError(pair, filter), 1.05 * maximumError);
-    EXPECT_GT(filter->GetOutput()->GetNumberOfCells(), triangles);
-    triangles = filter->GetOutput()->GetNumberOfCells();
-  }
-}
-
-TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfContourAndOnSurfaces)
-{
-  const MeshPair planar = MakePlanarPair(3, 29, 0.1);
-  const auto contour = MakeFilter(planar, 0.005);
-  contour->SetCoordinateSystem(vtkRefinedTriangulationPair::CONTOUR);
-  contour->SetDiscordantTriangles(vtkRefinedTriangulationPair::REFUSE);
-  contour->Update();
-  EXPECT_LE(LargestError(planar, contour), 0.00525);
-
-  const MeshPair closed = MakeClosedPair(1, 31);
-  const auto surface = MakeFilter(closed, 0.01);
-  surface->Update();
-  EXPECT_EQ(surface->GetResult(), vtkRefinedTriangulationPair::REFINED);
-  EXPECT_LE(LargestError(closed, surface), 0.0105);
-}
-
-TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfCubicUpToTheBoundary)
-{
-  for (const MeshPair& pair : { MakeSquare(), MakePlanarPair(3, 71) })
-  {
-    for (const double maximumDeviation : { VTK_DOUBLE_MAX, 0.05 })
-    {
-      const auto filter = MakeFilter(pair, 0.01);
-      filter->SetCoordinateSystem(vtkRefinedTriangulationPair::CUBIC);
-      filter->SetMaximumDeviation(maximumDeviation);
-      filter->SetMaximumNumberOfTriangles(20000);
-      filter->Update();
-      ASSERT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
-      EXPECT_LE(LargestError(pair, filter), 0.0105);
-      ExpectConforming(filter->GetOutput(), 3.0);
-      ExpectConforming(filter->GetTargetOutput(), 3.0);
-    }
-  }
-}
-
-TEST(RefinedTriangulationPair, KeepsTheMaximumErrorOfCubicAtObliqueBoundaries)
-{
+  using Filter = vtkRefinedTriangulationPair;
+  const MeshPair planar = MakePlanarPair(4, 23);
   const MeshPair upright = MakeSquare();
   const auto turn = [](const Point& p) {
     return Point{ 100.0 + 0.8 * p[0] - 0.7 * p[1], 0.6 * p[0] + 0.9 * p[1], 0.0 };
   };
-  const MeshPair pair{ Moved(upright.Source, turn), Moved(upright.Target, turn) };
-  const auto filter = MakeFilter(pair, 0.01);
-  filter->SetCoordinateSystem(vtkRefinedTriangulationPair::CUBIC);
-  filter->SetMaximumNumberOfTriangles(20000);
-  filter->Update();
-  ASSERT_EQ(filter->GetResult(), vtkRefinedTriangulationPair::REFINED);
-  EXPECT_LE(LargestError(pair, filter), 0.0105);
+  const MeshPair oblique{ Moved(upright.Source, turn), Moved(upright.Target, turn) };
+  struct Case
+  {
+    MeshPair Pair;
+    int System;
+    double MaximumError;
+    double MaximumDeviation = VTK_DOUBLE_MAX;
+  };
+  const std::vector<Case> cases{ { planar, Filter::SMOOTH, 0.01 },
+    { planar, Filter::SMOOTH, 0.003 }, { MakePlanarPair(3, 29, 0.1), Filter::CONTOUR, 0.005 },
+    { MakeClosedPair(1, 31), Filter::SMOOTH, 0.01 }, { upright, Filter::CUBIC, 0.01 },
+    { upright, Filter::CUBIC, 0.01, 0.05 }, { MakePlanarPair(3, 71), Filter::CUBIC, 0.01 },
+    { MakePlanarPair(3, 71), Filter::CUBIC, 0.01, 0.05 }, { oblique, Filter::CUBIC, 0.01 } };
+  for (const Case& one : cases)
+  {
+    const MeshPair& pair = one.Pair;
+    const auto filter = MakeFilter(pair, one.MaximumError);
+    filter->SetCoordinateSystem(one.System);
+    filter->SetDiscordantTriangles(Filter::REFUSE);
+    filter->SetMaximumDeviation(one.MaximumDeviation);
+    filter->SetMaximumNumberOfTriangles(20000);
+    filter->Update();
+    ASSERT_EQ(filter->GetResult(), Filter::REFINED);
+    EXPECT_LE(filter->GetLargestError(), one.MaximumError);
+    EXPECT_GT(filter->GetNumberOfSamples(), 0);
+    EXPECT_LE(LargestError(pair, filter), 1.05 * one.MaximumError);
+    for (const bool ofTarget : { false, true })
+    {
+      vtkPolyData* mesh = ofTarget ? filter->GetTargetOutput() : filter->GetOutput();
+      vtkPolyData* original = ofTarget ? pair.Target : pair.Source;
+      EXPECT_GT(mesh->GetNumberOfCells(), original->GetNumberOfCells());
+      for (vtkIdType i = 0; i < original->GetNumberOfPoints(); ++i)
+      {
+        EXPECT_EQ(PointOf(mesh, i), PointOf(original, i));
+      }
+      const double* bounds = original->GetBounds();
+      if (bounds[0] == 0.0 && bounds[5] == 0.0)
+      {
+        ExpectConforming(mesh, bounds[1]);
+      }
+    }
+  }
 }
 
 TEST(RefinedTriangulationPair, DividesNoTriangleOfALinearMap)
@@ -169,33 +154,6 @@ TEST(RefinedTriangulationPair, DividesNoTriangleOfALinearMap)
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), pair.Source->GetNumberOfCells());
   EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), pair.Source->GetNumberOfPoints());
-}
-
-TEST(RefinedTriangulationPair, IsConformingAndKeepsPointsAndAreas)
-{
-  const MeshPair pair = MakePlanarPair(4, 41);
-  const auto filter = MakeFilter(pair, 0.004);
-  filter->Update();
-  vtkPolyData* meshes[2] = { filter->GetOutput(), filter->GetTargetOutput() };
-  vtkPolyData* originals[2] = { pair.Source, pair.Target };
-  for (int side = 0; side < 2; ++side)
-  {
-    for (vtkIdType i = 0; i < pair.Source->GetNumberOfPoints(); ++i)
-    {
-      EXPECT_EQ(PointOf(meshes[side], i), PointOf(originals[side], i));
-    }
-    double area = 0.0;
-    for (vtkIdType c = 0; c < meshes[side]->GetNumberOfCells(); ++c)
-    {
-      const auto p = CornersOf(meshes[side], c);
-      const double twice = Cross(p[1] - p[0], p[2] - p[0])[2];
-      EXPECT_GT(twice, 0.0);
-      area += 0.5 * twice;
-    }
-    EXPECT_NEAR(area, 16.0, 1e-11);
-  }
-  ExpectConforming(meshes[0], 4.0);
-  ExpectConforming(meshes[1], 4.0);
 }
 
 TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
@@ -245,23 +203,17 @@ TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
   const MeshPair pair = MakePlanarPair(3, 59);
   const auto filter = MakeFilter(pair, 0.004);
   filter->Update();
-  vtkNew<vtkPolyData> first;
-  first->DeepCopy(filter->GetTargetOutput());
+  const auto first = CopyOf(filter->GetTargetOutput());
   vtkSMPTools::Initialize(1);
   filter->Modified();
   filter->Update();
   vtkSMPTools::Initialize();
-  ASSERT_EQ(filter->GetTargetOutput()->GetNumberOfPoints(), first->GetNumberOfPoints());
+  EXPECT_EQ(CountDifferentPoints(filter->GetTargetOutput(), first), 0);
   const double unit = 0x1p-40;
-  const MeshPair scaled{ Resized(pair.Source, unit), Resized(pair.Target, unit) };
-  const auto other = MakeFilter(scaled, 0.004 * unit);
+  const auto other =
+    MakeFilter({ Resized(pair.Source, unit), Resized(pair.Target, unit) }, 0.004 * unit);
   other->Update();
-  ASSERT_EQ(other->GetTargetOutput()->GetNumberOfPoints(), first->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < first->GetNumberOfPoints(); ++i)
-  {
-    EXPECT_EQ(PointOf(filter->GetTargetOutput(), i), PointOf(first, i));
-    EXPECT_EQ(PointOf(other->GetTargetOutput(), i), unit * PointOf(first, i));
-  }
+  EXPECT_EQ(CountDifferentPoints(other->GetTargetOutput(), Resized(first, unit)), 0);
 }
 
 TEST(RefinedTriangulationPair, ReportsFailures)

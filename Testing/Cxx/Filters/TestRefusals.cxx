@@ -131,19 +131,22 @@ TEST(Refusals, AreATable)
   ASSERT_EQ(table->GetNumberOfRows(), 2);
   auto* ids = vtkIdTypeArray::SafeDownCast(table->GetFieldData()->GetArray("Ids"));
   ASSERT_TRUE(ids);
-  const char* const kinds[] = { "DegenerateTriangle", "NotFinite" };
-  const char* const domains[] = { "source", "target" };
-  const vtkIdType firstCells[] = { 0, 30 };
+  const std::vector<std::pair<const char*, const char*>> texts[] = {
+    { { "Kind", "DegenerateTriangle" }, { "Domain", "source" } },
+    { { "Kind", "NotFinite" }, { "Domain", "target" } }
+  };
   for (vtkIdType row = 0; row < 2; ++row)
   {
-    EXPECT_EQ(table->GetValueByName(row, "Kind").ToString(), kinds[row]);
-    EXPECT_EQ(table->GetValueByName(row, "Domain").ToString(), domains[row]);
-    EXPECT_EQ(table->GetValueByName(row, "Outcome").ToString(), "masked");
-    EXPECT_EQ(table->GetValueByName(row, "Remedy").ToString(), "RepairOrMask");
-    EXPECT_EQ(table->GetValueByName(row, "Count").ToInt(), 2);
+    auto expected = texts[row];
+    expected.insert(
+      expected.end(), { { "Outcome", "masked" }, { "Remedy", "RepairOrMask" }, { "Count", "2" } });
+    for (const auto& [column, text] : expected)
+    {
+      EXPECT_EQ(table->GetValueByName(row, column).ToString(), text);
+    }
     const vtkIdType first = table->GetValueByName(row, "FirstId").ToInt();
-    EXPECT_EQ(ids->GetValue(first), firstCells[row]);
-    EXPECT_EQ(ids->GetValue(first + 1), firstCells[row] + 1);
+    EXPECT_EQ(ids->GetValue(first), 30 * row);
+    EXPECT_EQ(ids->GetValue(first + 1), 30 * row + 1);
   }
   // The table is that of the last update.
   SetMeshes(filter.Get(), MakePlanarPair(4, 3));
@@ -151,38 +154,13 @@ TEST(Refusals, AreATable)
   EXPECT_EQ(filter->GetDiagnostics()->GetNumberOfRows(), 0);
 }
 
-TEST(Refusals, HaveADifferentMessageForEachKind)
-{
-  std::set<std::string> messages;
-  std::set<std::string> names;
-  for (int kind = 0; kind < MeshDiagnostic::NumberOfKinds; ++kind)
-  {
-    for (const std::size_t cells : { 0u, 1u, 12u })
-    {
-      MeshDiagnostic diagnostic;
-      diagnostic.What = static_cast<Kind>(kind);
-      diagnostic.Ids.assign(cells, 7);
-      const bool ofCells =
-        kind >= static_cast<int>(Kind::NotTriangles) && kind <= static_cast<int>(Kind::Discordant);
-      if (ofCells == (cells > 0))
-      {
-        EXPECT_TRUE(messages.insert(Describe(diagnostic)).second) << kind;
-      }
-    }
-    names.insert(GetName(static_cast<Kind>(kind)));
-  }
-  EXPECT_EQ(names.size(), static_cast<std::size_t>(MeshDiagnostic::NumberOfKinds));
-  // At most ten ids are listed.
-  EXPECT_EQ(
-    homeomorphism::ListIds(Range(0, 9)).size() + 5, homeomorphism::ListIds(Range(0, 10)).size());
-}
-
-TEST(Refusals, AreDocumented)
+TEST(Refusals, AreDocumentedAndHaveADifferentMessageForEachKind)
 {
   std::ifstream file(DIAGNOSTICS_DOCUMENT);
   const std::string document{ std::istreambuf_iterator<char>(file),
     std::istreambuf_iterator<char>() };
   ASSERT_FALSE(document.empty()) << DIAGNOSTICS_DOCUMENT;
+  std::set<std::string> messages;
   for (int kind = 0; kind < MeshDiagnostic::NumberOfKinds; ++kind)
   {
     MeshDiagnostic diagnostic;
@@ -191,10 +169,22 @@ TEST(Refusals, AreDocumented)
     EXPECT_NE(document.find(entry), std::string::npos) << entry;
     const std::string remedy = std::string("`") + GetName(diagnostic.GetRemedy()) + "` |";
     EXPECT_NE(document.find(remedy, document.find(entry)), std::string::npos) << remedy;
+    EXPECT_TRUE(messages.insert(entry).second) << entry;
+    const bool ofCells =
+      kind >= static_cast<int>(Kind::NotTriangles) && kind <= static_cast<int>(Kind::Discordant);
+    for (const std::size_t cells : { 0u, 1u, 12u })
+    {
+      diagnostic.Ids.assign(cells, 7);
+      if (ofCells == (cells > 0))
+      {
+        EXPECT_TRUE(messages.insert(Describe(diagnostic)).second) << entry;
+      }
+    }
   }
+  // At most ten ids are listed.
+  EXPECT_EQ(
+    homeomorphism::ListIds(Range(0, 9)).size() + 5, homeomorphism::ListIds(Range(0, 10)).size());
 }
-
-// --- The transform -------------------------------------------------------------------------------
 
 TEST(Refusals, LeaveEveryPointOutsideATransform)
 {
@@ -233,32 +223,27 @@ TEST(Refusals, LeaveEveryPointOutsideATransform)
   }
 }
 
-// --- Use of the classes --------------------------------------------------------------------------
-
-TEST(Refusals, OfMapsThatCannotBeMeasured)
+TEST(Refusals, OfMapsThatCannotBeMeasuredOrResampled)
 {
   vtkNew<vtkJacobianContinuity> continuity;
   Messages messages(continuity);
   // No map; and a transform on a surface.
   continuity->SetInputData(MakePlanarPair(4, 1).Source);
-  continuity->Update();
-  EXPECT_TRUE(messages.HasError());
-  EXPECT_EQ(CountElements(continuity), 0);
-  messages.Clear();
-  continuity->SetInputData(MakeSheet(4, 2, 0.5));
-  continuity->SetTransform(vtkNew<vtkTransform>());
-  continuity->Update();
-  EXPECT_TRUE(messages.HasError());
-  EXPECT_EQ(CountElements(continuity), 0);
-}
-
-TEST(Refusals, OfAnImageOverASurface)
-{
+  for (int update = 0; update < 2; ++update)
+  {
+    continuity->Update();
+    EXPECT_TRUE(messages.HasError());
+    EXPECT_EQ(CountElements(continuity), 0);
+    messages.Clear();
+    continuity->SetInputData(MakeSheet(4, 2, 0.5));
+    continuity->SetTransform(vtkNew<vtkTransform>());
+  }
+  // An image over a surface.
   vtkNew<vtkResampleThroughHomeomorphism> resample;
-  Messages messages(resample);
+  Messages ofResample(resample);
   SetMeshes(resample.Get(), { MakeSheet(4, 2, 0.5), MakeSheet(4, 3, 0.5) });
   resample->Update();
-  EXPECT_TRUE(messages.HasError());
+  EXPECT_TRUE(ofResample.HasError());
   EXPECT_EQ(resample->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
 }
 
@@ -285,25 +270,25 @@ TEST(Refusals, ValuesOutOfRangeAreClamped)
 {
   using Filter = vtkDifferentiableHomeomorphism;
   vtkNew<Filter> filter;
+  vtkNew<vtkTriangularCoordinates> coordinates;
+  vtkNew<vtkJacobianContinuity> continuity;
   filter->SetCoordinateSystem(77);
-  filter->SetCenterPoint(-5);
-  filter->SetDiscordantTriangles(9);
-  filter->SetTolerance(-1.0);
   EXPECT_EQ(filter->GetCoordinateSystem(), Filter::CUBIC);
-  EXPECT_EQ(filter->GetCenterPoint(), Filter::CENTROID);
-  EXPECT_EQ(filter->GetDiscordantTriangles(), Filter::USE_LINEAR);
-  EXPECT_EQ(filter->GetTolerance(), 0.0);
   filter->SetCoordinateSystem(-3);
   EXPECT_EQ(filter->GetCoordinateSystem(), Filter::LINEAR);
-  vtkNew<vtkTriangularCoordinates> coordinates;
+  filter->SetCenterPoint(-5);
+  EXPECT_EQ(filter->GetCenterPoint(), Filter::CENTROID);
+  filter->SetDiscordantTriangles(9);
+  EXPECT_EQ(filter->GetDiscordantTriangles(), Filter::USE_LINEAR);
+  filter->SetTolerance(-1.0);
+  EXPECT_EQ(filter->GetTolerance(), 0.0);
   coordinates->SetNumberOfContours(0);
-  coordinates->SetLineResolution(1000000);
   EXPECT_EQ(coordinates->GetNumberOfContours(), 1);
+  coordinates->SetLineResolution(1000000);
   EXPECT_EQ(coordinates->GetLineResolution(), 1000);
-  vtkNew<vtkJacobianContinuity> continuity;
   continuity->SetSamplesPerEdge(-3);
-  continuity->SetResolution(7.0);
   EXPECT_EQ(continuity->GetSamplesPerEdge(), 1);
+  continuity->SetResolution(7.0);
   EXPECT_EQ(continuity->GetResolution(), 1.0);
 
   // A tolerance that is NaN is 0.

@@ -24,7 +24,7 @@ MeshPair MakePair()
   return { pair.Source, Sheared(pair.Target) };
 }
 
-double Field(const double p[3])
+double Field(const Point& p)
 {
   return 3.0 * p[0] - 2.0 * p[1] + 0.5;
 }
@@ -34,9 +34,9 @@ void AddField(vtkDataSet* data)
 {
   vtkNew<vtkDoubleArray> field;
   field->SetName("Field");
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  for (const Point& p : PointsOf(data))
   {
-    field->InsertNextValue(Field(data->GetPoint(i)));
+    field->InsertNextValue(Field(p));
   }
   data->GetPointData()->SetScalars(field);
 }
@@ -50,19 +50,16 @@ vtkSmartPointer<vtkImageData> MakeImage()
   image->SetOrigin(-0.5, -0.5, 0.0);
   image->SetSpacing((n + 1.0) / 40.0, (n + 1.0) / 40.0, 1.0);
   AddField(image);
-  vtkNew<vtkDoubleArray> wind;
-  wind->SetName("Wind");
-  wind->SetNumberOfComponents(3);
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  const auto wind = RandomArray("Wind", 3, image->GetNumberOfPoints(), 1);
+  for (const int component : { 0, 1, 2 })
   {
-    wind->InsertNextTuple3(1.0, 2.0, 0.0);
+    wind->FillComponent(component, (component + 1) % 3);
   }
   image->GetPointData()->SetVectors(wind);
-  vtkNew<vtkIntArray> row;
-  row->SetName("Row");
+  const auto row = RandomArray<vtkIntArray>("Row", 1, image->GetNumberOfCells(), 2);
   for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
   {
-    row->InsertNextValue(static_cast<int>(i / 40));
+    row->SetValue(i, static_cast<int>(i / 40));
   }
   image->GetCellData()->AddArray(row);
   return image;
@@ -75,16 +72,6 @@ vtkSmartPointer<vtkResampleThroughHomeomorphism> MakeResample(
   filter->SetDataObject(data);
   filter->SetSamplingDimensions(50, 40);
   return filter;
-}
-
-vtkIdType CountOutside(vtkDataSet* data)
-{
-  vtkIdType count = 0;
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
-  {
-    count += !IsValid(data, i);
-  }
-  return count;
 }
 
 /// Compares every point of the output with the transform.
@@ -107,7 +94,7 @@ void ExpectPulledBack(vtkDataSet* output, const MeshPair& pair)
       EXPECT_TRUE(output->GetPointGhostArray()->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT);
       continue;
     }
-    EXPECT_NEAR(PointValue(output, "Field", i), Field(origin.data()), 1e-11);
+    EXPECT_NEAR(PointValue(output, "Field", i), Field(origin), 1e-11);
     if (PointArray(output, "Row"))
     {
       const double exactRow = (origin[1] + 0.5) * 40.0 / (n + 1.0);
@@ -139,13 +126,9 @@ TEST(Resample, ImagesAreSampledAtPreimages)
   ASSERT_TRUE(image);
   EXPECT_EQ(image->GetDimensions()[0], 50);
   EXPECT_EQ(image->GetDimensions()[1], 40);
-  double bounds[6];
-  double expected[6];
-  image->GetBounds(bounds);
-  pair.Target->GetBounds(expected);
   for (int i = 0; i < 4; ++i)
   {
-    EXPECT_NEAR(bounds[i], expected[i], 1e-12);
+    EXPECT_NEAR(image->GetBounds()[i], pair.Target->GetBounds()[i], 1e-12);
   }
   EXPECT_STREQ(image->GetPointData()->GetScalars()->GetName(), "Field");
   EXPECT_STREQ(image->GetPointData()->GetVectors()->GetName(), "Wind");
@@ -181,17 +164,14 @@ TEST(Resample, AnyGridAndAnyDataAreSupported)
   }
   filter->SetDataObject(blocks);
   ExpectPulledBack(Output(filter.Get()), pair);
-}
 
-TEST(Resample, TheMeshIsItsOwnData)
-{
-  const MeshPair pair = MakePair();
+  // The mesh is its own data.
   vtkNew<vtkPolyData> source;
   source->ShallowCopy(pair.Source);
   AddField(source);
-  const auto filter = MakeResample({ source, pair.Target }, nullptr);
-  filter->Update();
-  ExpectPulledBack(filter->GetOutput(), pair);
+  filter->SetSourceData(source);
+  filter->SetDataObject(nullptr);
+  ExpectPulledBack(Output(filter.Get()), pair);
 }
 
 TEST(Resample, InverseExchangesSourceAndTarget)
@@ -273,30 +253,19 @@ TEST(Resample, DataMayBeReplacedInPlace)
   for (const int kind : { 0, 1, 2 })
   {
     SCOPED_TRACE(kind);
-    vtkSmartPointer<vtkPointSet> data = toGrid(coarse);
-    if (kind == 0)
-    {
-      data = vtkSmartPointer<vtkPolyData>::New();
-      data->ShallowCopy(coarse);
-    }
+    const auto polygons = CopyOf(coarse.Get());
+    const auto grid = toGrid(coarse);
+    vtkPointSet* data = kind == 0 ? static_cast<vtkPointSet*>(polygons) : grid.Get();
     vtkNew<vtkMultiBlockDataSet> tree;
     tree->SetBlock(0, data);
-    const auto resample =
-      MakeResample(pair, kind == 2 ? static_cast<vtkDataObject*>(tree) : data.Get());
+    const auto resample = MakeResample(pair, kind == 2 ? static_cast<vtkDataObject*>(tree) : data);
     resample->Update();
     data->SetPoints(fine->GetPoints());
     data->GetPointData()->ShallowCopy(fine->GetPointData());
-    if (kind > 0)
-    {
-      vtkUnstructuredGrid::SafeDownCast(data)->SetCells(VTK_TRIANGLE, fine->GetPolys());
-    }
-    else
-    {
-      vtkPolyData::SafeDownCast(data)->SetPolys(fine->GetPolys());
-    }
+    polygons->SetPolys(fine->GetPolys());
+    grid->SetCells(VTK_TRIANGLE, fine->GetPolys());
     tree->Modified();
-    resample->Update();
-    ExpectPulledBack(vtkDataSet::SafeDownCast(resample->GetOutputDataObject(0)), pair);
+    ExpectPulledBack(Output(resample.Get()), pair);
   }
 }
 

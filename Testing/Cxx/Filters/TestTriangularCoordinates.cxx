@@ -56,14 +56,10 @@ Point CenterOf(const System& system, vtkPolyData* mesh, vtkIdType triangle)
     (weights[0] * c[0] + weights[1] * c[1] + weights[2] * c[2]);
 }
 
-class CoordinatesInEverySystem : public ::testing::TestWithParam<System>
-{
-};
+using CoordinatesInEverySystem = TestInEverySystem;
 
 INSTANTIATE_TEST_SUITE_P(
   All, CoordinatesInEverySystem, ::testing::ValuesIn(AllSystems()), NameOfSystem);
-
-// --- Output 0: the coordinates -------------------------------------------------------------------
 
 TEST_P(CoordinatesInEverySystem, ArraysHaveTheirTypesAndRanges)
 {
@@ -73,11 +69,13 @@ TEST_P(CoordinatesInEverySystem, ArraysHaveTheirTypesAndRanges)
     const auto filter =
       MakeCoordinates(GetParam(), mesh, MakeCloud(mesh, RandomSamples(mesh, 5000, 60)));
     vtkDataSet* output = Output(filter);
-    ASSERT_TRUE(vtkIdTypeArray::SafeDownCast(PointArray(output, "TriangleId")));
-    ASSERT_TRUE(vtkIntArray::SafeDownCast(PointArray(output, "EdgeLabel")));
-    ASSERT_TRUE(vtkDoubleArray::SafeDownCast(PointArray(output, "EdgeParameter")));
-    ASSERT_TRUE(vtkDoubleArray::SafeDownCast(PointArray(output, "ContourParameter")));
-    ASSERT_TRUE(vtkUnsignedCharArray::SafeDownCast(PointArray(output, "vtkValidPointMask")));
+    const std::vector<std::pair<const char*, int>> types{ { "TriangleId", VTK_ID_TYPE },
+      { "EdgeLabel", VTK_INT }, { "EdgeParameter", VTK_DOUBLE }, { "ContourParameter", VTK_DOUBLE },
+      { "vtkValidPointMask", VTK_UNSIGNED_CHAR } };
+    for (const auto& [array, type] : types)
+    {
+      EXPECT_EQ(PointArray(output, array)->GetDataType(), type) << array;
+    }
     EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), 5);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -85,9 +83,7 @@ TEST_P(CoordinatesInEverySystem, ArraysHaveTheirTypesAndRanges)
       const Coordinates found(output, i);
       ASSERT_TRUE(found.T >= 0 && found.T < mesh->GetNumberOfCells());
       ASSERT_TRUE(found.E >= 1 && found.E <= 3);
-      ASSERT_TRUE(found.P >= 0.0 && found.P <= 1.0);
-      ASSERT_TRUE(found.C >= 0.0 && found.C <= 1.0);
-      ASSERT_TRUE(IsValid(output, i));
+      ASSERT_TRUE(found.P >= 0.0 && found.P <= 1.0 && found.C >= 0.0 && found.C <= 1.0);
     }
   }
 }
@@ -124,13 +120,10 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
   // By definition of the homeomorphism. In the Contour system discordant triangles of P alone or of
   // Q alone would be mapped by Linear.
   const MeshPair planar = MakePlanarPair(10, 730, 0.06);
-  std::vector<Pairing> pairings{ { "planar", planar },
-    { "tilted", { planar.Source, Tilted(planar.Target, Tilt(), { 1.0, 0.0, 2.0 }) } } };
-  if (!GetParam().IsChoosy())
-  {
-    pairings = AllPairings(8, 2, 731);
-  }
-  for (const Pairing& pairing : pairings)
+  for (const Pairing& pairing : GetParam().IsChoosy()
+      ? std::vector<Pairing>{ { "planar", planar },
+          { "tilted", { planar.Source, Tilted(planar.Target, Tilt(), { 1.0, 0.0, 2.0 }) } } }
+      : AllPairings(8, 2, 731))
   {
     SCOPED_TRACE(pairing.Name);
     const MeshPair& pair = pairing.Meshes;
@@ -203,8 +196,6 @@ TEST(TriangularCoordinates, WithoutDataTheTriangulationIsTheData)
   filter->SetDataObject(MakeCloud(mesh, RandomSamples(mesh, 10, 69)));
   EXPECT_FALSE(CellArray(Output(filter), "Concordant"));
 }
-
-// --- Output 1: the lines -------------------------------------------------------------------------
 
 /// Points and arrays of one line.
 struct Line
@@ -316,44 +307,32 @@ TEST_P(CoordinatesInEverySystem, LinesHaveTheirCoordinates)
     for (const Line& line : lines)
     {
       const auto last = static_cast<vtkIdType>(line.Points.size()) - 1;
-      // The closed line of a ring passes all three edges in order, with p from 0 to 1 on each.
-      for (vtkIdType k = 0; k <= last && line.Type == RingLine; ++k)
+      const bool isRing = line.Type == RingLine;
+      const bool isContour = line.Type == ContourLine;
+      // The closed line of a ring passes all three edges in order, with p from 0 to 1 on each. A
+      // contour runs from the center to the edge at p.
+      for (vtkIdType k = 1; k < last && (isRing || isContour); ++k)
       {
         const Coordinates found(output, first + k);
-        ASSERT_EQ(found.T, line.Triangle);
-        ASSERT_NEAR(found.C, line.C, 1e-12);
-        if (k % resolution != 0)
-        {
-          ASSERT_EQ(found.E, k / resolution + 1);
-          const double p = static_cast<double>(k % resolution) / resolution;
-          ASSERT_NEAR(found.P, p, 1e-11 / line.C);
-        }
-      }
-      if (line.Type == RingLine)
-      {
-        ASSERT_LE(Distance(line.Points.front(), line.Points.back()), 1e-14 * size);
-      }
-      // A contour runs from the center to the edge at p.
-      for (vtkIdType k = 1; k < last && line.Type == ContourLine; ++k)
-      {
-        const Coordinates found(output, first + k);
-        const double c = static_cast<double>(k) / static_cast<double>(last);
+        const double c = isRing ? line.C : static_cast<double>(k) / static_cast<double>(last);
+        const double p = isRing ? static_cast<double>(k % resolution) / resolution : line.P;
         ASSERT_EQ(found.T, line.Triangle);
         ASSERT_NEAR(found.C, c, 1e-12);
-        if (line.P > 0.0)
+        // On a spoke contours belong to two edges.
+        if (p > 0.0)
         {
-          ASSERT_EQ(found.E, line.Edge);
-          ASSERT_NEAR(found.P, line.P, 1e-11 / c);
+          ASSERT_EQ(found.E, isRing ? k / resolution + 1 : line.Edge);
+          ASSERT_NEAR(found.P, p, 1e-11 / c);
         }
       }
-      if (line.Type == ContourLine)
-      {
-        const std::array<Point, 3> c = CornersOf(mesh, line.Triangle);
-        const Point end = (1.0 - line.P) * c[line.Edge % 3] + line.P * c[(line.Edge + 1) % 3];
-        ASSERT_LE(
-          Distance(line.Points.front(), CenterOf(GetParam(), mesh, line.Triangle)), 1e-14 * size);
-        ASSERT_LE(Distance(line.Points.back(), end), 2e-14 * size);
-      }
+      const std::array<Point, 3> corners = CornersOf(mesh, line.Triangle);
+      const Point center = CenterOf(GetParam(), mesh, line.Triangle);
+      const Point end =
+        (1.0 - line.P) * corners[line.Edge % 3] + line.P * corners[(line.Edge + 1) % 3];
+      const Point& start = line.Points.front();
+      ASSERT_TRUE(!isRing || Distance(start, line.Points.back()) <= 1e-14 * size);
+      ASSERT_TRUE(!isContour || Distance(start, center) <= 1e-14 * size);
+      ASSERT_TRUE(!isContour || Distance(line.Points.back(), end) <= 2e-14 * size);
       first += last + 1;
     }
     EXPECT_EQ(first, points->GetNumberOfPoints());
@@ -409,8 +388,6 @@ TEST(TriangularCoordinates, SegmentsAreThePublishedConstruction)
     }
   }
 }
-
-// --- Output 2: the triangles ---------------------------------------------------------------------
 
 TEST(TriangularCoordinates, TrianglesAreDescribed)
 {

@@ -54,9 +54,8 @@ TEST(TriangulationPairReport, AnAffinePairHasOneDistortionAndDoesNotBend)
   // A lower bound, which leaves room for rounding.
   EXPECT_NEAR(report->GetStatistic("CubicCertificate"), 1.0, 2e-6);
   EXPECT_LE(report->GetStatistic("CubicCertificate"), 1.0);
-  for (const char* name : { "Linear", "Smooth", "Cubic" })
+  for (const std::string system : { "Linear", "Smooth", "Cubic" })
   {
-    const std::string system = name;
     const auto statistic = [&](const char* what) {
       return report->GetStatistic((system + what).c_str());
     };
@@ -119,22 +118,15 @@ TEST(TriangulationPairReport, CountsAgreeWithTopology)
 
   // A ring of 8 triangles around a hole, one wound otherwise, and a point twice, unused.
   std::vector<Point> points;
-  for (int k = 0; k < 8; ++k)
-  {
-    const double angle = vtkMath::Pi() / 4.0 * k;
-    const double radius = k % 2 == 0 ? 1.0 : 2.0;
-    points.push_back({ radius * std::cos(angle), radius * std::sin(angle), 0.0 });
-  }
-  points.push_back(points[3]);
   std::vector<Triangle> triangles;
   for (vtkIdType k = 0; k < 8; ++k)
   {
-    triangles.push_back({ k, (k + 1) % 8, (k + 2) % 8 });
-    if (k % 2 == 1)
-    {
-      std::swap(triangles.back()[0], triangles.back()[1]);
-    }
+    const double radius = k % 2 == 0 ? 1.0 : 2.0;
+    points.push_back(
+      Rotation({ 0, 0, 1 }, vtkMath::Pi() / 4.0 * static_cast<double>(k)) * Point{ radius, 0, 0 });
+    triangles.push_back({ k, (k + 1 + k % 2) % 8, (k + 2 - k % 2) % 8 });
   }
+  points.push_back(points[3]);
   std::swap(triangles[0][0], triangles[0][1]);
   const auto mesh = MakeMesh(points, triangles);
   const auto ring = Report({ mesh, mesh });
@@ -203,13 +195,14 @@ TEST(TriangulationPairReport, ContinuityIsThatOfJacobianContinuity)
 {
   const MeshPair pair = MakePlanarPair(3, 13);
   const auto report = Report(pair, true);
+  const std::vector<std::string> names{ "Linear", "Contour", "Smooth" };
   for (int system = 0; system < 3; ++system)
   {
     const auto continuity = MakeAlgorithm<vtkJacobianContinuity>(pair);
     continuity->SetCoordinateSystem(system);
     continuity->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
     continuity->Update();
-    const std::string name = system == 0 ? "Linear" : system == 1 ? "Contour" : "Smooth";
+    const std::string& name = names[static_cast<std::size_t>(system)];
     EXPECT_EQ(report->GetStatistic((name + "Creases").c_str()), continuity->GetNumberOfCreases());
     EXPECT_EQ(report->GetStatistic((name + "DifferentiableEdges").c_str()),
       continuity->GetNumberOfDifferentiableEdges());
@@ -223,11 +216,8 @@ TEST(TriangulationPairReport, ContinuityIsThatOfJacobianContinuity)
 TEST(TriangulationPairReport, AMirrorImageIsMeasuredLikeItsOriginal)
 {
   const MeshPair pair = MakePlanarPair(4, 17);
-  const MeshPair mirrored{ pair.Source, Moved(pair.Target, [](const Point& p) -> Point {
-                            return { -p[0], p[1], p[2] };
-                          }) };
   const auto a = Report(pair);
-  const auto b = Report(mirrored);
+  const auto b = Report({ pair.Source, Mirrored(pair.Target) });
   EXPECT_EQ(a->GetStatistic("Mirrored"), 0.0);
   EXPECT_EQ(b->GetStatistic("Mirrored"), 1.0);
   for (const char* name : { "SmoothSmallestDeterminant", "SmoothSecondDifference",

@@ -16,6 +16,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
+#include "vtkCellLocator.h"
 #include "vtkCommand.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
@@ -84,6 +85,25 @@ inline double CellValue(vtkDataSet* data, const char* name, vtkIdType i)
 inline bool IsValid(vtkDataSet* data, vtkIdType i)
 {
   return PointValue(data, "vtkValidPointMask", i) != 0.0;
+}
+inline vtkIdType CountOutside(vtkDataSet* data)
+{
+  vtkIdType count = 0;
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    count += !IsValid(data, i);
+  }
+  return count;
+}
+/// The first components.
+inline std::vector<double> ValuesOf(vtkDataArray* array)
+{
+  std::vector<double> values;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    values.push_back(array->GetComponent(i, 0));
+  }
+  return values;
 }
 inline Matrix JacobianOf(vtkDataSet* data, vtkIdType i)
 {
@@ -163,6 +183,48 @@ inline vtkIdType CountDifferentValues(vtkDataArray* a, vtkDataArray* b)
   return different;
 }
 
+/// The points and these arrays of them are equal to the last bit.
+inline void ExpectSame(vtkDataSet* a, vtkDataSet* b, const std::vector<const char*>& names)
+{
+  EXPECT_EQ(CountDifferentPoints(a, b), 0);
+  for (const char* name : names)
+  {
+    EXPECT_EQ(CountDifferentValues(PointArray(a, name), PointArray(b, name)), 0) << name;
+  }
+}
+
+/// The largest distance between points of the same number, infinite if one is not a number.
+inline double LargestDistance(vtkDataSet* a, vtkDataSet* b)
+{
+  EXPECT_EQ(a->GetNumberOfPoints(), b->GetNumberOfPoints());
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < std::min(a->GetNumberOfPoints(), b->GetNumberOfPoints()); ++i)
+  {
+    const double distance = Distance(PointOf(a, i), PointOf(b, i));
+    largest = std::isnan(distance) ? Infinity : std::max(largest, distance);
+  }
+  return largest;
+}
+
+/// The largest distance of a point from a mesh, by VTK.
+inline double LargestDistanceFrom(vtkPolyData* mesh, const std::vector<Point>& points)
+{
+  vtkNew<vtkCellLocator> locator;
+  locator->SetDataSet(mesh);
+  locator->BuildLocator();
+  double largest = 0.0;
+  for (const Point& point : points)
+  {
+    Point nearest;
+    vtkIdType cell;
+    int subId;
+    double squared;
+    locator->FindClosestPoint(point.data(), nearest.data(), cell, subId, squared);
+    largest = std::max(largest, std::sqrt(squared));
+  }
+  return largest;
+}
+
 inline vtkIdType CountDifferentCells(vtkDataSet* a, vtkDataSet* b)
 {
   EXPECT_EQ(a->GetNumberOfCells(), b->GetNumberOfCells());
@@ -233,6 +295,8 @@ inline std::vector<System> AllSystems()
 {
   return { Linear, Contour, Incenter, Smooth };
 }
+
+using TestInEverySystem = ::testing::TestWithParam<System>;
 
 /// For INSTANTIATE_TEST_SUITE_P.
 inline std::string NameOfSystem(const ::testing::TestParamInfo<System>& info)

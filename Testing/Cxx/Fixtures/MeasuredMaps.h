@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace fixtures
@@ -34,6 +35,8 @@ public:
   double Amount = 0.0;
   int Exponent = 1;
   bool EveryLine = false;
+  /// Changes the values.
+  std::function<double(double)> Alter = [](double x) { return x; };
 
   vtkAbstractTransform* MakeTransform() override { return PiecewiseMap::New(); }
 
@@ -55,8 +58,8 @@ protected:
     const double x = in[0];
     const double y = in[1];
     const double bend = this->Amount * (this->EveryLine ? this->Wave(x) : this->Turn(x));
-    out[0] = static_cast<Real>(x + bend + 0.05 * std::sin(y));
-    out[1] = static_cast<Real>(y + bend + 0.1 * std::cos(x));
+    out[0] = static_cast<Real>(this->Alter(x + bend + 0.05 * std::sin(y)));
+    out[1] = static_cast<Real>(this->Alter(y + bend + 0.1 * std::cos(x)));
     out[2] = in[2];
   }
   void ForwardTransformPoint(const float in[3], float out[3]) override { this->Map(in, out); }

@@ -253,6 +253,24 @@ inline vtkSmartPointer<vtkPolyData> Resized(vtkPolyData* mesh, double factor)
   return Moved(mesh, [factor](const Point& p) { return factor * p; });
 }
 
+inline vtkSmartPointer<vtkPolyData> Mirrored(vtkPolyData* mesh)
+{
+  return Moved(mesh, [](const Point& p) -> Point { return { -p[0], p[1], p[2] }; });
+}
+
+/// A deep copy.
+template <typename Data>
+vtkSmartPointer<Data> CopyOf(Data* data)
+{
+  auto copy = vtkSmartPointer<Data>::Take(data->NewInstance());
+  copy->DeepCopy(data);
+  return copy;
+}
+inline MeshPair CopyOf(const MeshPair& pair)
+{
+  return { CopyOf(pair.Source.Get()), CopyOf(pair.Target.Get()) };
+}
+
 /// The kinds of pairs: planar (a square and another square, a sheared one with many discordant
 /// triangles, and one in a tilted plane), surfaces with boundary, a plane and a surface, and closed
 /// surfaces.

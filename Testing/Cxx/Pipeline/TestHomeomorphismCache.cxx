@@ -10,6 +10,7 @@
 #include "vtkWeakPointer.h"
 
 #include <memory>
+#include <set>
 
 namespace
 {
@@ -31,32 +32,39 @@ MeshPair MakeTwoSquares()
 const std::vector<Point> Samples{ { 0.3, 0.4, 0 }, { 0.75, 0.25, 0 }, { 0.5, 0.5, 0 },
   { 0.4, 0.1, 0 }, { 1.2, 0.7, 0 }, { 1.7, 0.4, 0 } };
 
-using Change = std::function<void(vtkPolyData*)>;
-
-/// Replaces the diagonal of the first square in place.
-void FlipDiagonal(vtkPolyData* mesh)
+void MoveThePoint(vtkPolyData* mesh)
 {
-  const Triangle first{ 0, 1, 3 };
-  const Triangle second{ 1, 4, 3 };
+  MovePoint(mesh, 4, { 1.1, 0.9, 0.0 });
+}
+
+void MoveThePointInItsArray(vtkPolyData* mesh)
+{
+  mesh->GetPoints()->GetData()->SetComponent(4, 0, 1.05);
+  mesh->GetPoints()->GetData()->Modified();
+}
+
+/// Replaces the triangles of the first square.
+void ReplaceTriangles(vtkPolyData* mesh, const Triangle& first, const Triangle& second)
+{
   mesh->GetPolys()->ReplaceCellAtId(0, 3, first.data());
   mesh->GetPolys()->ReplaceCellAtId(1, 3, second.data());
   mesh->GetPolys()->Modified();
 }
 
-/// Replaces the second triangle in place, by one with a repeated corner.
-void Break(vtkPolyData* mesh)
+void FlipDiagonal(vtkPolyData* mesh)
 {
-  const Triangle triangle{ 0, 4, 4 };
-  mesh->GetPolys()->ReplaceCellAtId(1, 3, triangle.data());
-  mesh->GetPolys()->Modified();
+  ReplaceTriangles(mesh, { 0, 1, 3 }, { 1, 4, 3 });
 }
 
-/// Keeps only the second square, in place. No modification time changes: only the number of cells.
-void KeepSecondSquare(vtkPolyData* mesh)
+/// The second triangle has a repeated corner.
+void Break(vtkPolyData* mesh)
 {
-  mesh->GetPolys()->Reset();
-  mesh->GetPolys()->InsertNextCell({ 1, 2, 5 });
-  mesh->GetPolys()->InsertNextCell({ 1, 5, 4 });
+  ReplaceTriangles(mesh, { 0, 1, 4 }, { 0, 4, 4 });
+}
+
+void Repair(vtkPolyData* mesh)
+{
+  ReplaceTriangles(mesh, { 0, 1, 4 }, { 0, 4, 3 });
 }
 
 void HideFirstCell(vtkPolyData* mesh)
@@ -65,18 +73,18 @@ void HideFirstCell(vtkPolyData* mesh)
   mesh->GetCellGhostArray()->Modified();
 }
 
-void MoveThePoint(vtkPolyData* mesh)
+// These do not change any modification time.
+void AddPoint(vtkPolyData* mesh)
 {
-  MovePoint(mesh, 4, { 1.1, 0.9, 0.0 });
+  mesh->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
 }
 
-void MoveThePointInItsArray(vtkPolyData* mesh)
+void KeepSecondSquare(vtkPolyData* mesh)
 {
-  mesh->GetPoints()->GetData()->SetComponent(4, 0, 1.1);
-  mesh->GetPoints()->GetData()->Modified();
+  mesh->GetPolys()->Reset();
+  mesh->GetPolys()->InsertNextCell({ 1, 2, 5 });
+  mesh->GetPolys()->InsertNextCell({ 1, 5, 4 });
 }
-
-// --- What every class answers --------------------------------------------------------------------
 
 void Append(std::vector<double>& numbers, vtkDataArray* array)
 {
@@ -175,15 +183,6 @@ User MakeTransformUser(const MeshPair& pair)
 
 using MakeAUser = User (*)(const MeshPair&);
 
-/// Copies of the meshes in new objects.
-MeshPair Anew(const MeshPair& pair)
-{
-  MeshPair copy{ vtkSmartPointer<vtkPolyData>::New(), vtkSmartPointer<vtkPolyData>::New() };
-  copy.Source->DeepCopy(pair.Source);
-  copy.Target->DeepCopy(pair.Target);
-  return copy;
-}
-
 std::string NameOfUser(const ::testing::TestParamInfo<MakeAUser>& info)
 {
   return info.param(MakeTwoSquares()).Name;
@@ -198,62 +197,36 @@ INSTANTIATE_TEST_SUITE_P(Users, ChangedMeshes,
 
 TEST_P(ChangedMeshes, GiveTheAnswersOfNewMeshes)
 {
-  for (auto* change :
-    { FlipDiagonal, Break, KeepSecondSquare, HideFirstCell, MoveThePoint, MoveThePointInItsArray })
+  // One of two meshes or both of them change. If one does so alone, the pair is often refused.
+  for (const unsigned int which : { 1u, 2u, 3u })
   {
+    SCOPED_TRACE(which);
     const MeshPair pair = MakeTwoSquares();
     const User user = GetParam()(pair);
-    const std::vector<double> before = user.Ask();
-    ASSERT_FALSE(before.empty());
-    change(pair.Source);
-    change(pair.Target);
-    user.Touch();
-    const std::vector<double> after = user.Ask();
-    EXPECT_EQ(after, GetParam()(Anew(pair)).Ask());
-    EXPECT_NE(after, before);
-    // The answer stays the same. (After a failed update a filter does not report again.)
-    if (!after.empty())
+    std::set<std::vector<double>> answers{ user.Ask() };
+    for (auto* change : { MoveThePoint, MoveThePointInItsArray, FlipDiagonal, Break, Repair,
+           AddPoint, HideFirstCell, KeepSecondSquare })
     {
-      EXPECT_EQ(user.Ask(), after);
-    }
-  }
-}
-
-TEST_P(ChangedMeshes, OfWhichOneChangesAreRefused)
-{
-  const auto addPoint = [](vtkPolyData* mesh) {
-    // Does not change any modification time.
-    mesh->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
-  };
-  for (const auto& change : { Change(FlipDiagonal), Change(KeepSecondSquare), Change(addPoint) })
-  {
-    for (const auto mesh : { &MeshPair::Source, &MeshPair::Target })
-    {
-      const MeshPair pair = MakeTwoSquares();
-      const User user = GetParam()(pair);
-      ASSERT_FALSE(user.Ask().empty());
-      change(pair.*mesh);
+      if ((which & 1u) != 0)
+      {
+        change(pair.Source);
+      }
+      if ((which & 2u) != 0)
+      {
+        change(pair.Target);
+      }
       user.Touch();
-      // A triangulation alone stays one.
-      EXPECT_EQ(user.Ask().empty(), GetParam() != &MakeCoordinatesUser);
+      const std::vector<double> answer = user.Ask();
+      EXPECT_EQ(answer, GetParam()(CopyOf(pair)).Ask());
+      // The answer stays the same. (After a failed update a filter does not report again.)
+      EXPECT_TRUE(answer.empty() || user.Ask() == answer);
+      answers.insert(answer);
     }
+    // The target is nothing to the coordinates of the source.
+    const bool isUsed = which != 2 || GetParam() != &MakeCoordinatesUser;
+    EXPECT_EQ(answers.size() > 3, isUsed);
+    EXPECT_EQ(answers.count({}) > 0, isUsed);
   }
-}
-
-TEST_P(ChangedMeshes, ThatWereRefusedAndAreRepairedAreAccepted)
-{
-  const MeshPair pair = MakeTwoSquares();
-  Break(pair.Source);
-  Break(pair.Target);
-  const User user = GetParam()(pair);
-  EXPECT_TRUE(user.Ask().empty());
-  for (vtkPolyData* mesh : { pair.Source.Get(), pair.Target.Get() })
-  {
-    const Triangle whole{ 0, 4, 3 };
-    mesh->GetPolys()->ReplaceCellAtId(1, 3, whole.data());
-    mesh->GetPolys()->Modified();
-  }
-  EXPECT_EQ(user.Ask(), GetParam()(MakeTwoSquares()).Ask());
 }
 
 TEST_P(ChangedMeshes, OrAnotherSystemChangesTheAnswer)
@@ -278,12 +251,10 @@ TEST(HomeomorphismCache, CopiesAndInversesOfATransformFollow)
   inverse->Update();
   FlipDiagonal(pair.Source);
   FlipDiagonal(pair.Target);
-  const auto fresh = MakeTransform(Smooth, Anew(pair));
+  const auto fresh = MakeTransform(Smooth, CopyOf(pair));
   EXPECT_EQ(Transformed(copy), Transformed(fresh));
   EXPECT_EQ(Transformed(inverse), Transformed(fresh->GetInverse()));
 }
-
-// --- How often the meshes are read ---------------------------------------------------------------
 
 class Builds : public ::testing::Test
 {
@@ -311,8 +282,7 @@ TEST_F(Builds, OneForEachChangeOfAMesh)
   {
     MoveThePoint(mesh);
     this->ExpectNewBuilds(1, "a point");
-    mesh->GetPoints()->GetData()->SetComponent(4, 0, 1.05);
-    mesh->GetPoints()->GetData()->Modified();
+    MoveThePointInItsArray(mesh);
     this->ExpectNewBuilds(1, "the array of points");
     vtkNew<vtkPoints> points;
     points->DeepCopy(mesh->GetPoints());

@@ -1,80 +1,36 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "Fixtures/Triangles.h"
+#include "Fixtures/FilterRuns.h"
 
 #include "Pipeline/ImageSampling.h"
 
-#include "vtkCellData.h"
-#include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
-#include "vtkIdList.h"
-#include "vtkImageData.h"
-#include "vtkNew.h"
-#include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "vtkProbeFilter.h"
+#include "vtkShortArray.h"
 
 using namespace homeomorphism;
-using homeomorphism_test::Random;
+using namespace fixtures;
 
-namespace
-{
-
-/// An image of a function of its points, of random floats and bytes, and of cell numbers.
-template <typename Function>
-void FillImage(vtkImageData* image, Function&& function)
-{
-  vtkNew<vtkDoubleArray> values;
-  values->SetName("Value");
-  vtkNew<vtkFloatArray> floats;
-  floats->SetName("Float");
-  vtkNew<vtkUnsignedCharArray> bytes;
-  bytes->SetName("Byte");
-  bytes->SetNumberOfComponents(3);
-  Random random(42);
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
-  {
-    double point[3];
-    image->GetPoint(i, point);
-    values->InsertNextValue(function(point));
-    floats->InsertNextValue(static_cast<float>(random.Uniform(-1.0, 1.0)));
-    bytes->InsertNextTuple3(random.Below(256), random.Below(256), random.Below(256));
-  }
-  image->GetPointData()->AddArray(values);
-  image->GetPointData()->AddArray(floats);
-  image->GetPointData()->AddArray(bytes);
-  vtkNew<vtkDoubleArray> cells;
-  cells->SetName("Cell");
-  for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
-  {
-    cells->InsertNextValue(static_cast<double>(i));
-  }
-  image->GetCellData()->AddArray(cells);
-}
-
-double GetValue(vtkPointData* data, const char* name, vtkIdType i)
-{
-  return data->GetArray(name)->GetTuple1(i);
-}
-
-} // namespace
-
-// A function that is linear in each direction is interpolated exactly, other data as by VTK's
-// cells.
+// A function that is linear in each direction is interpolated exactly, other data as by VTK.
 TEST(ImageSampling, InterpolatesLinearly)
 {
   vtkNew<vtkImageData> image;
   image->SetExtent(2, 9, -3, 4, 0, 5);
   image->SetOrigin(0.5, -1.0, 2.0);
   image->SetSpacing(0.25, 0.5, 2.0);
-  const auto function = [](const double p[3]) {
+  const auto function = [](const Point& p) {
     return 100.0 + 3.0 * p[0] - 2.0 * p[1] + p[2] + 0.5 * p[0] * p[1];
   };
-  FillImage(image, function);
+  const vtkIdType size = image->GetNumberOfPoints();
+  const auto values = RandomArray("Value", 1, size, 42);
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    values->SetValue(i, function(fixtures::PointOf(image, i)));
+  }
+  image->GetPointData()->AddArray(values);
+  image->GetPointData()->AddArray(RandomArray<vtkFloatArray>("Float", 1, size, 43));
+  image->GetPointData()->AddArray(RandomArray<vtkShortArray>("Integer", 3, size, 44));
+  image->GetCellData()->AddArray(RandomArray("Cell", 1, image->GetNumberOfCells(), 45));
   ASSERT_TRUE(ImageSampling::CanSample(image));
 
   constexpr int count = ImageSampling::Capacity;
@@ -85,50 +41,40 @@ TEST(ImageSampling, InterpolatesLinearly)
   image->GetBounds(bounds);
   double points[count][3];
   bool wanted[count];
+  std::vector<Point> positions;
   for (int i = 0; i < count; ++i)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
       points[i][axis] = random.Uniform(bounds[2 * axis], bounds[2 * axis + 1]);
     }
+    points[i][0] += i == 1 ? bounds[1] : 0.0;
+    positions.push_back({ points[i][0], points[i][1], points[i][2] });
     wanted[i] = i % 5 != 0;
   }
-  points[1][0] = bounds[1] + 1.0;
-  vtkNew<vtkUnsignedCharArray> mask;
-  mask->SetNumberOfTuples(count);
-  mask->FillValue(0);
+  const auto mask = MakeGhosts(count, {}, 0);
   sampling.Sample(points, wanted, count, 0, mask);
+  vtkNew<vtkProbeFilter> probe;
+  probe->SetInputData(MakeCloud(positions));
+  probe->SetSourceData(image);
+  probe->Update();
   for (int i = 0; i < count; ++i)
   {
     const bool isSampled = wanted[i] && i != 1;
+    const double value = output->GetArray("Value")->GetComponent(i, 0);
     EXPECT_EQ(mask->GetValue(i), isSampled ? 1 : 0);
-    if (!isSampled)
+    EXPECT_NE(std::isnan(value), isSampled);
+    if (isSampled)
     {
-      EXPECT_TRUE(std::isnan(GetValue(output, "Value", i)));
-      continue;
-    }
-    const double exact = function(points[i]);
-    EXPECT_NEAR(GetValue(output, "Value", i), exact, 1e-13 * std::abs(exact));
-    int subId;
-    double parametric[3];
-    double weights[8];
-    const vtkIdType cell = image->FindCell(points[i], nullptr, -1, 0.0, subId, parametric, weights);
-    EXPECT_EQ(GetValue(output, "Cell", i), static_cast<double>(cell));
-    // As VTK's cells interpolate; integers are rounded to nearest.
-    vtkNew<vtkIdList> ids;
-    image->GetCellPoints(cell, ids);
-    for (const auto& [name, rounding] :
-      { std::pair<const char*, double>{ "Float", 1e-6 }, { "Byte", 0.5 + 1e-9 } })
-    {
-      vtkDataArray* corners = image->GetPointData()->GetArray(name);
-      for (int c = 0; c < corners->GetNumberOfComponents(); ++c)
+      const double exact = function(positions[static_cast<std::size_t>(i)]);
+      EXPECT_NEAR(value, exact, 1e-13 * std::abs(exact));
+      for (const char* name : { "Float", "Integer", "Cell" })
       {
-        double expected = 0.0;
-        for (vtkIdType k = 0; k < 8; ++k)
-        {
-          expected += weights[k] * corners->GetComponent(ids->GetId(k), c);
-        }
-        EXPECT_NEAR(output->GetArray(name)->GetComponent(i, c), expected, rounding) << name;
+        Point expected{};
+        Point found{};
+        PointArray(probe->GetOutput(), name)->GetTuple(i, expected.data());
+        output->GetArray(name)->GetTuple(i, found.data());
+        EXPECT_LT(Distance(found, expected), 1e-5) << name;
       }
     }
   }
@@ -138,7 +84,7 @@ TEST(ImageSampling, RefusesUnnamedArrays)
 {
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 1);
-  FillImage(image, [](const double*) { return 1.0; });
+  image->GetPointData()->AddArray(RandomArray("Value", 1, 9, 46));
   EXPECT_TRUE(ImageSampling::CanSample(image));
   image->GetPointData()->GetArray(0)->SetName(nullptr);
   EXPECT_FALSE(ImageSampling::CanSample(image));
