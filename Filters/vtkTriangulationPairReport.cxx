@@ -266,9 +266,9 @@ int vtkTriangulationPairReport::Execute(
     row.Add(name + "Area", shapes.Area);
     row.Add(name + "MeanEdgeLength", shapes.MeanEdgeLength);
     row.Add(name + "SmallestAngle", shapes.SmallestAngle);
-    row.Add(name + "ShareOfAnglesBelow10", shapes.SharesOfSmallAngles[0]);
-    row.Add(name + "ShareOfAnglesBelow15", shapes.SharesOfSmallAngles[1]);
-    row.Add(name + "ShareOfAnglesBelow20", shapes.SharesOfSmallAngles[2]);
+    row.Add(name + "ShareOfTrianglesBelow10Degrees", shapes.SharesOfSmallAngles[0]);
+    row.Add(name + "ShareOfTrianglesBelow15Degrees", shapes.SharesOfSmallAngles[1]);
+    row.Add(name + "ShareOfTrianglesBelow20Degrees", shapes.SharesOfSmallAngles[2]);
     row.Add(name + "LargestAreaRatio", shapes.LargestAreaRatio);
     row.Add(name + "DiscordantTriangles", shapes.DiscordantTriangles);
     AddCellArray<vtkDoubleArray>(

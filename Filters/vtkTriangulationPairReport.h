@@ -42,8 +42,8 @@
  *   their component); `ReorderedTriangles` (triangles whose points have another order in the
  *   target).
  * - `SourcePlanar`, `SourceArea`, `SourceMeanEdgeLength`; `SourceSmallestAngle` in degrees and
- *   `SourceSmallestAngleCell`; `SourceShareOfAnglesBelow10`, `-15` and `-20`: the share, from 0 to
- *   1, of triangles whose smallest angle is below that number of degrees;
+ *   `SourceSmallestAngleCell`; `SourceShareOfTrianglesBelow10Degrees` (and 15, 20): the share, from
+ *   0 to 1, of triangles whose smallest angle is below that number of degrees;
  *   `SourceLargestAreaRatio` and `SourceLargestAreaRatioCell`; `SourceDiscordantTriangles`; the
  *   same columns for the target.
  * - `LargestStretch`, `SmallestStretch`, `LargestDistortion`, each with `-Cell`: extremes over the

@@ -114,9 +114,9 @@ def write_points(path, pixels, ground, version):
             file.write(f"{x:.4f},{y:.4f},{u:.2f},{-v:.2f},{used}{rest}\n")
 
 
-def names_of_mistyped():
-    """The names by which dhm calls the mistyped control points: rows counted from 0, disabled ones included."""
-    return [str(k + sum(row <= k for row in DISABLED)) for k in MISTYPED]
+def names_of_mistyped(version=3):
+    """The names by which dhm calls the mistyped control points: their lines in the file, which has a header."""
+    return [str(k + version + sum(row <= k for row in DISABLED)) for k in MISTYPED]
 
 
 def write_tiff(path, pixels):

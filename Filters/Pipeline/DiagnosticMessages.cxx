@@ -93,20 +93,19 @@ const char* GetAdvice(MeshDiagnostic::Remedy remedy)
       return "Give the target the source's cells, with its own point coordinates in the same "
              "order.";
     case Remedy::RepairOrMask:
-      return "Repair or remove them in both meshes, or turn MaskInvalidTriangles on to leave them "
-             "out.";
+      return "Repair or remove them in both meshes, or leave them out (MaskInvalidTriangles).";
     case Remedy::CutOpen:
       return "Cut the surface open along a line of edges in both meshes.";
     case Remedy::MovePointsOrMask:
       return "Move their points so that all triangles keep their orientation (or all are "
-             "mirrored), or turn MaskInvalidTriangles on to leave them out.";
+             "mirrored), or leave them out (MaskInvalidTriangles).";
     case Remedy::UseOtherSystem:
       return "Use the Smooth system, which takes any triangle, or map them by the Linear system "
              "(DiscordantTriangles).";
     case Remedy::UseSmoothSystem:
       return "Use the Smooth system, which maps surfaces too.";
     case Remedy::RefineLess:
-      return "Use less FairnessRefinement, or LOCAL CubicBending.";
+      return "Use less FairnessRefinement, or the local CubicBending.";
     case Remedy::FlattenOrUseTolerance:
       break;
   }

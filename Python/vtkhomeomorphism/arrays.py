@@ -8,6 +8,7 @@ import inspect
 import itertools
 import math
 import operator
+import re
 import warnings
 from typing import Optional, Tuple
 
@@ -21,6 +22,9 @@ from .vtkFiltersHomeomorphism import (
 )
 
 MASK = "vtkValidPointMask"
+OPTIONS = {"MaskInvalidTriangles": "mask_invalid", "DiscordantTriangles": "discordant_by_linear", "Tolerance": "tolerance",
+           "FairnessRefinement": "fairness_refinement", "CubicBending": "cubic_bending"}
+"""What options that messages of filters name are called here."""
 
 
 def values_of(kind, *names: str) -> dict:
@@ -110,6 +114,11 @@ def points_of(data) -> numpy.ndarray:
     return numpy.empty((0, 3)) if points is None else numpy.asarray(vtk_to_numpy(points.GetData()), numpy.float64)
 
 
+def triangles_of(mesh) -> numpy.ndarray:
+    """The point ids of a mesh of triangles, of shape (m, 3); a copy."""
+    return vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(numpy.int64)
+
+
 def add_array(data, name: str, values):
     """Adds a point array, which shares the memory of contiguous values."""
     array = numpy_to_vtk(numpy.ascontiguousarray(values))
@@ -123,15 +132,20 @@ def arrays_of(attributes) -> dict:
     return {a.GetName(): vtk_to_numpy(a) for a in arrays if a is not None and a.GetName() != "vtkGhostType"}
 
 
-def update(algorithm):
+def rename(text, options) -> str:
+    """The text with other names of options."""
+    return re.sub("|".join(options), lambda name: options[name[0]], text)
+
+
+def update(algorithm, options=OPTIONS):
     """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them, and passes
-    its warnings to Python's module warnings."""
+    its warnings to Python's module warnings, with these names of options."""
     own, others, warned = [], [], []
 
     def collect(caller, event, text):
         # Without VTK's prefix, the position in the C++ source.
         texts = warned if event == "WarningEvent" else own if caller is algorithm else others
-        texts.append(text.split("): ", 1)[-1].strip())
+        texts.append(rename(text.split("): ", 1)[-1].strip(), options))
 
     collect.CallDataType = "string0"
     tags = [(sender, sender.AddObserver(event, collect)) for sender in (algorithm, algorithm.GetExecutive())
@@ -232,7 +246,7 @@ class Homeomorphism:
 
     @property
     def triangles(self) -> numpy.ndarray:
-        return vtk_to_numpy(self._meshes[0].GetPolys().GetConnectivityArray()).reshape(-1, 3).copy()
+        return triangles_of(self._meshes[0])
 
     def __getstate__(self):
         return (self.source, self.target, self.triangles, self._system), self._options

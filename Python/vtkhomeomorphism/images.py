@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-from . import meshes
-from .arrays import MASK, add_array, arrays_of, points_of
+from . import report
+from .arrays import MASK, add_array, arrays_of, points_of, triangles_of
 from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress
 from .mapping import PointMap, run, set_up
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
@@ -226,16 +226,16 @@ class Warp:
 
     def __init__(self, pair, settings, inverse=False):
         pair.require_flat()
-        self.pair, self.inverse = replace(pair, shift=None), inverse
-        self.map = PointMap(self.pair, settings, inverse)
+        pair = replace(report.require_map(pair, settings.get("mask_invalid")), shift=None)
+        self.pair, self.inverse = pair, inverse
+        self.map = PointMap(pair, settings, inverse)
         self.filter = set_up(vtkResampleThroughHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
         self.filter.BlankOutsideOff()
-        # The boundary of the domain, in small pieces, in the image and in the result. Masked triangles have their own.
-        triangles = meshes.triangles_of(pair.source)
-        edges = numpy.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        # The boundary of the domain, in small pieces, in the image and in the result.
+        edges = numpy.sort(triangles_of(pair.source)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, counts = numpy.unique(edges, axis=0, return_counts=True)
-        ends = points_of(pair.meshes[inverse])[edges if settings.get("mask_invalid") else edges[counts == 1], :2]
+        ends = points_of(pair.meshes[inverse])[edges[counts == 1], :2]
         t = numpy.linspace(0, 1, 2 + 8192 // len(ends))[:, None, None]
         rim = (1 - t) * ends[:, 0] + t * ends[:, 1]
         self.rims = [rim, self._map(rim.reshape(-1, 2), True).reshape(rim.shape)]

@@ -8,11 +8,10 @@ import functools
 from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .arrays import as_cells, as_points, choose, points_of, update, values_of
+from .arrays import arrays_of, as_cells, choose, make_mesh, points_of, triangles_of, update, values_of
 from .vtkFiltersHomeomorphism import vtkIsomorphicTriangulation
 
 QUALITIES = values_of(vtkIsomorphicTriangulation, "minimum_angle", "concordance", "distortion", "non_obtuse")
@@ -106,11 +105,19 @@ def _with_frame(source, target, frame, make):
     return first
 
 
-def _cells(lists: Sequence[Sequence[int]], points: int, what: str) -> vtkCellArray:
-    for number, ids in enumerate(lists):
-        if any(not 0 <= i < points for i in ids):
-            raise ValueError(f"{what}[{number}] names a point that does not exist")
-    return as_cells(lists)
+def _figure(points, outlines, segments, names, what: str) -> vtkPolyData:
+    figure = vtkPolyData()
+    if isinstance(points, vtkPolyData):
+        figure.ShallowCopy(points)
+    else:
+        # A copy, so that the points cannot change.
+        figure.ShallowCopy(make_mesh(numpy.array(points), outlines, what))
+        figure.SetLines(as_cells(segments))
+    called = vtkStringArray()
+    for name in names:
+        called.InsertNextValue(name)
+    figure.GetPointData().SetPedigreeIds(called)
+    return figure
 
 
 def isomorphic_triangulation(
@@ -133,7 +140,8 @@ def isomorphic_triangulation(
     Parameters
     ----------
     source, target : array of shape (n, 2) or (n, 3)
-        Corresponding points; in 3-space those of each in a plane.
+        Corresponding points; in 3-space those of each in a plane. Or two vtkPolyData with the same cells: polygons and
+        closed lines are outlines, other lines segments.
     outlines : sequence of sequences of int
         Closed polygons of point ids: outlines, holes, islands in holes. Without, a frame around the points is the domain.
     segments : sequence of sequences of int
@@ -172,23 +180,11 @@ def isomorphic_triangulation(
             target_minimum_angle=target_minimum_angle, maximum_added_points=maximum_added_points,
             maximum_triangle_size=maximum_triangle_size,
             leave_out_conflicting_segments=leave_out_conflicting_segments, names=names))
-    if domain == "automatic":
+    if domain == "automatic" and not isinstance(source, vtkPolyData):
         domain = "outline" if len(outlines) else "frame"
     algorithm = vtkIsomorphicTriangulation()
-    dimension = 2
-    for port, (points, what) in enumerate(((source, "source"), (target, "target"))):
-        figure = vtkPolyData()
-        # A copy, so that the points cannot change.
-        vtk_points, own = as_points(numpy.array(points), what)
-        dimension = max(dimension, own)
-        figure.SetPoints(vtk_points)
-        figure.SetLines(_cells(segments, len(points), "segments"))
-        figure.SetPolys(_cells(outlines, len(points), "outlines"))
-        called = vtkStringArray()
-        for name in names:
-            called.InsertNextValue(name)
-        figure.GetPointData().SetPedigreeIds(called)
-        algorithm.SetInputData(port, figure)
+    algorithm.SetSourceData(_figure(source, outlines, segments, names, "source"))
+    algorithm.SetTargetData(_figure(target, outlines, segments, names, "target"))
     if frame is not None:
         algorithm.SetSourceFrame(*frame[0])
         algorithm.SetTargetFrame(*frame[1])
@@ -200,13 +196,13 @@ def isomorphic_triangulation(
     algorithm.SetLeaveOutConflictingSegments(leave_out_conflicting_segments)
     update(algorithm)
     outputs = [algorithm.GetOutput(0), algorithm.GetOutput(1)]
-    triangles = vtk_to_numpy(outputs[0].GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    residuals = vtk_to_numpy(outputs[0].GetPointData().GetArray("LandmarkResidual"))
+    dimension = max(2 if numpy.shape(points)[1:] == (2,) else 3 for points in (source, target))
+    arrays = arrays_of(outputs[0].GetPointData())
     left_out = [(algorithm.GetLeftOutCell(i), algorithm.GetLeftOutMessage(i))
                 for i in range(algorithm.GetNumberOfLeftOutSegments())]
     return IsomorphicTriangulation(
-        *(points_of(mesh)[:, :dimension].copy() for mesh in outputs), numpy.array(triangles, numpy.int64),
-        numpy.array(residuals[: len(source)]), algorithm.GetNumberOfAddedPoints(), left_out,
+        *(points_of(mesh)[:, :dimension].copy() for mesh in outputs), triangles_of(outputs[0]),
+        arrays["LandmarkResidual"][arrays["OriginalPointId"] >= 0], algorithm.GetNumberOfAddedPoints(), left_out,
         {
             "smallest_angles": algorithm.GetSmallestAngles(),
             "shares_of_angles_below_10_15_20": algorithm.GetSharesOfSmallAngles(),

@@ -20,6 +20,7 @@ import csv
 import functools
 import json
 import os
+import re
 from dataclasses import dataclass, field, replace
 from typing import List, Optional, Sequence, Tuple
 
@@ -27,6 +28,7 @@ import numpy
 
 from .files import FILE, USAGE, Failure, count, import_extra, inform, join, quote_message
 from .isomorphic import isomorphic_triangulation, rectangle, within
+from .tables import number_of, records
 
 _COLUMNS = ("source_x", "source_y", "target_x", "target_y")
 
@@ -42,7 +44,7 @@ class Landmarks:
     source: numpy.ndarray
     target: numpy.ndarray
     names: List[str]
-    """As the file has them (the row's number where it has none)."""
+    """As the file has them; where it has none, the number of the line (of a feature of JSON, from 1)."""
     left_out: List[Tuple[str, str]] = field(default_factory=list)
     """(name, reason) of each landmark that the file lists but that is not used."""
     image_coordinates: bool = False
@@ -68,8 +70,7 @@ def _collect(rows, path: str, **facts) -> Landmarks:
     used, left_out = [], []
     for name, row, reason in rows:
         missing = [side for side, k in (("source", 0), ("target", 2)) if not numpy.isfinite(row[k : k + 2]).all()]
-        if missing and reason != "disabled":
-            reason = f"no position in the {' and the '.join(missing)}"
+        reason = f"no position in the {' and the '.join(missing)}" if missing else reason
         (left_out if reason else used).append((name, reason or row))
     if len(used) < 3:
         raise LandmarkFileError(f"{path}: {count(len(used), 'usable landmark')}; at least 3 are needed")
@@ -77,46 +78,40 @@ def _collect(rows, path: str, **facts) -> Landmarks:
     return Landmarks(values[:, :2].copy(), values[:, 2:].copy(), [name for name, _ in used], left_out, **facts)
 
 
-def _records(lines: List[str]):
-    """The rows of a table, whose fields are separated by commas, semicolons or tabs."""
-    first = next((line for line in lines if line.strip()), "")
-    return csv.reader(lines, delimiter=next((s for s in ";\t" if first.count(s) >= 3), ","))
-
-
-def _read_table(lines: List[str], path: str, header: Optional[List[str]], columns: Sequence[str], first: int = 1):
-    """Yields the columns' numbers and a dict of all fields for each row of a table."""
-    reader = _records(lines)
-    for record in reader:
-        line = first + reader.line_num - 1
-        if not any(f.strip() for f in record):
-            continue
-        if header is None:
-            header = [name.strip() for name in record]
-            missing = [name for name in columns if name not in header]
-            if missing:
-                raise LandmarkFileError(f"{path}, line {line}: the column {missing[0]} is missing")
-            continue
-        if len(record) != len(header):
-            raise LandmarkFileError(f"{path}, line {line}: {len(record)} fields, where {len(header)} are expected")
-        fields, values = dict(zip(header, record)), []
-        for name in columns:
-            try:
-                values.append(float(fields[name].strip() or "nan"))
-            except ValueError:
-                found, hint = fields[name].strip()[:40], " (write 0.5, not 0,5)" if "," in fields[name] else ""
-                raise LandmarkFileError(f"{path}, line {line}: {name} is {found!r}, not a number{hint}") from None
-        yield values, fields
+def _read_table(lines: List[str], path: str, columns: Sequence[str], header: Sequence[str] = ()):
+    """The rows of a table, as _collect takes them. Without a header, that is the first row."""
+    first, result = next(line for line in lines if line.strip()), []
+    try:
+        for line, record in records(lines, next((s for s in ";\t" if first.count(s) >= 3), ",")):
+            where, record = f"{path}, line {line}", list(map(str.strip, record))
+            if not header:
+                header = record
+                missing = [name for name in columns if name not in header]
+                if missing:
+                    raise LandmarkFileError(f"{where}: the column {missing[0]} is missing")
+                continue
+            if len(record) != len(header):
+                raise LandmarkFileError(f"{where}: {len(record)} fields, where {len(header)} are expected")
+            fields = dict(zip(header, record))
+            values = [number_of(fields[name] or "nan") for name in columns]
+            if None in values:
+                name = columns[values.index(None)]
+                hint = " (write 0.5, not 0,5)" if "," in fields[name] else ""
+                raise LandmarkFileError(f"{where}: {name} is {fields[name][:40]!r}, not a number{hint}")
+            is_used = fields.get("enable", "1").lower() in ("1", "true")
+            result.append((fields.get("id", str(line)), values, None if is_used else "disabled"))
+    except csv.Error as error:
+        raise LandmarkFileError(f"{path}: {error}") from None
+    return result
 
 
 def _read_qgis(lines: List[str], path: str) -> Landmarks:
-    comments = next(i for i, line in enumerate(lines) if not line.startswith("#"))
-    crs = [line[5:].strip() for line in lines[:comments] if line.upper().startswith("#CRS:")]
+    crs = [line[5:].strip() for line in lines if line.upper().startswith("#CRS:")]
+    lines = ["" if line.startswith("#") else line for line in lines]
     # QGIS 2 writes pixelX and pixelY.
-    x, y = ("sourceX", "sourceY") if "sourceX" in lines[comments] else ("pixelX", "pixelY")
-    rows = []
-    for (u, v, *target), fields in _read_table(lines[comments:], path, None, (x, y, "mapX", "mapY"), comments + 1):
-        disabled = fields.get("enable", "1").strip() in ("0", "false")
-        rows.append((str(len(rows)), [u, -v, *target], "disabled" if disabled else None))
+    names = ("sourceX", "sourceY") if any("sourceX" in line for line in lines) else ("pixelX", "pixelY")
+    rows = [(name, [u, -v, x, y], reason)
+            for name, (u, v, x, y), reason in _read_table(lines, path, (*names, "mapX", "mapY"))]
     return _collect(rows, path, image_coordinates=True, crs=crs[0] if crs and crs[0] else None)
 
 
@@ -137,7 +132,7 @@ def _read_iiif(text: str, path: str) -> Landmarks:
     if len(maps) != 1:
         raise LandmarkFileError(f"{path}: {len(maps)} georeference annotations; a file with exactly one is needed")
     rows = []
-    for number, feature in enumerate(maps[0].get("features", [])):
+    for number, feature in enumerate(maps[0].get("features", []), 1):
         try:
             pixel = feature["properties"].get("resourceCoords") or feature["properties"]["pixelCoords"]
             u, v, x, y = (float(c) for c in (*pixel[:2], *feature["geometry"]["coordinates"][:2]))
@@ -148,25 +143,20 @@ def _read_iiif(text: str, path: str) -> Landmarks:
     return _collect(rows, path, image_coordinates=True, crs="EPSG:4326")
 
 
-def _read_bigwarp(lines: List[str], path: str) -> Landmarks:
-    table = _read_table(lines, path, ["name", "active", *_COLUMNS], _COLUMNS)
-    rows = [(f["name"], v, None if f["active"].strip().lower() == "true" else "inactive") for v, f in table]
-    # Its pixels have their centers at whole numbers.
-    return _collect(rows, path, origin=0.5)
-
-
 def _read_csv(lines: List[str], path: str) -> Landmarks:
-    header = first = [f.strip().lower() for f in next(_records(lines))]
+    start = next(i for i, line in enumerate(lines) if line.strip())
+    first = [name.strip().lower() for name in re.split("[,;\t]", lines[start].replace('"', ""))]
+    if len(first) == 6 and first[1] in ("true", "false"):
+        # BigWarp's; its pixels have their centers at whole numbers.
+        return _collect(_read_table(lines, path, _COLUMNS, ("id", "enable", *_COLUMNS)), path, origin=0.5)
     if all(column in first for column in _COLUMNS):
-        # As the first line, in small letters.
-        lines = [""] + lines[1:]
-    elif len(first) not in (4, 5) or any(f and f[0].isalpha() for f in first[-4:]):
-        found = f"{len(first)} columns ({', '.join(first)[:80]})"
-        raise LandmarkFileError(f"{path}, line 1: {found}; landmarks need the columns {', '.join(_COLUMNS)}")
+        header, lines = first, lines[:start] + [""] + lines[start + 1 :]
+    elif len(first) in (4, 5) and all(number_of(name) is not None for name in first[-4:]):
+        header = ("id", *_COLUMNS)[-len(first) :]
     else:
-        header = ["id", *_COLUMNS][-len(first) :]
-    table = enumerate(_read_table(lines, path, header, _COLUMNS))
-    return _collect([(fields.get("id", str(row)).strip(), values, None) for row, (values, fields) in table], path)
+        found = f"{count(len(first), 'column')} ({', '.join(first)[:80]})"
+        raise LandmarkFileError(f"{path}, line {start + 1}: {found}; landmarks need the columns {', '.join(_COLUMNS)}")
+    return _collect(_read_table(lines, path, _COLUMNS, header), path)
 
 
 def read_landmarks(path) -> Landmarks:
@@ -178,17 +168,13 @@ def read_landmarks(path) -> Landmarks:
             text = file.read()
     except UnicodeDecodeError as error:
         raise LandmarkFileError(f"{path}: not a text file (byte {error.start})") from None
-    lines = text.splitlines()
-    content = next((line for line in lines if line.strip() and not line.startswith("#")), "")
+    content = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     if not content:
         raise LandmarkFileError(f"{path}: no landmarks")
     if content.lstrip().startswith(("{", "[")):
         return _read_iiif(text, path)
-    if "mapX" in content and "mapY" in content:
-        return _read_qgis(lines, path)
-    first = next(_records([content]))
-    bigwarp = len(first) == 6 and first[1].strip().lower() in ("true", "false")
-    return (_read_bigwarp if bigwarp else _read_csv)(lines, path)
+    lines = text.splitlines(keepends=True)
+    return (_read_qgis if "mapX" in content and "mapY" in content else _read_csv)(lines, path)
 
 
 def read_lines(path, names: Sequence[str]) -> List[List[int]]:

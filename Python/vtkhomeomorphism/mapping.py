@@ -41,7 +41,7 @@ def run(algorithm, name):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            result = update(algorithm)
+            result = update(algorithm, report.OPTIONS)
         except ValueError as error:
             raise Failure(f"{name}: {error}") from None
     for text in filter(None, (*(str(warning.message) for warning in caught), take_messages())):

@@ -28,14 +28,6 @@ def lists_of(cells):
     return numpy.split(vtk_to_numpy(cells.GetConnectivityArray()), offsets[1:-1]) if cells.GetNumberOfCells() else []
 
 
-def triangles_of(mesh):
-    """The triangles' point ids, of shape (m, 3). Raises Failure if the mesh has other cells."""
-    wrong = numpy.diff(vtk_to_numpy(mesh.GetPolys().GetOffsetsArray())) != 3
-    if wrong.any():
-        raise Failure(f"Cell {wrong.argmax()} is not a triangle.")
-    return vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-
-
 def _read_obj(input):
     """Points, polygons, texture coordinates, and the polygons' texture ids (-1: none)."""
     points, texture, polygons, texture_ids = [], [], [], []

@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import images, landmarks, meshes, tinshift, xmorph
-from .arrays import add_array, as_points, make_mesh, points_of
+from .arrays import add_array, as_points, make_mesh, points_of, triangles_of
 from .files import FILE, USAGE, Failure, Input, format_of
 from .landmarks import Landmarks
 
@@ -164,5 +164,5 @@ def write(pair, output):
     for name, array in zip(pair.names, points):
         if array[:, 2].any():
             raise Failure(f"A triangulation file (.json) holds x and y only, but z is not 0 everywhere in {name}.")
-    shift = pair.shift or tinshift.Shift(*(array[:, :2] for array in points), meshes.triangles_of(pair.source))
+    shift = pair.shift or tinshift.Shift(*(array[:, :2] for array in points), triangles_of(pair.source))
     output.write_bytes(tinshift.text_of(replace(shift, metadata=pair.metadata)).encode("utf-8", "surrogateescape"))

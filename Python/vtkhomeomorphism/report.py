@@ -8,23 +8,21 @@ from dataclasses import replace
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from . import meshes
-from .arrays import SYSTEMS, make_mesh, points_of
-from .files import Failure, count, join
+from .arrays import SYSTEMS, make_mesh, points_of, rename, triangles_of
+from .files import Failure
 from .vtkFiltersHomeomorphism import vtkTriangulationPairReport
 from .vtkfiles import take_messages
 
+OPTIONS = {"MaskInvalidTriangles": "--mask-invalid", "DiscordantTriangles": "--linear-where-discordant",
+           "FairnessRefinement": "--fairness", "CubicBending": "--bending", "Tolerance": "--tolerance"}
+"""What options that messages of filters name are called here."""
 ADVICE = {
-    "Triangulate": "ParaView's Triangulate makes triangles of them",
-    "ReadAgain": "the file is corrupt",
-    "RepairOrMask": "repair them, or leave them out with --mask-invalid",
-    "CutOpen": "cut the surface open along edges, in both meshes alike",
-    "MovePointsOrMask": "move points, or leave them out with --mask-invalid",
-    "UseOtherSystem": "use another --system, or --linear-where-discordant",
-    "RefineLess": "use less --fairness, or --bending local",
-    "FlattenOrUseTolerance": "project the mesh onto its plane, or use --tolerance",
+    "Triangulate": "Write both meshes to one file (dhm convert -o both.vtp), and triangulate that (ParaView's Triangulate), so "
+                   "that both are cut along the same diagonals.",
+    "RepairOrMask": "Repair them in both meshes, or leave them out (--mask-invalid).",
+    "MovePointsOrMask": "Move points, or leave them out (--mask-invalid).",
 }
-"""What to do, by the remedies of the table of defects whose names do not say it."""
+"""What to do, by remedies for which messages of filters say something else."""
 
 
 def in_words(name, separator=" "):
@@ -59,15 +57,15 @@ class Report:
         ids = table.GetFieldData().GetAbstractArray("Ids")
         for i in range(table.GetNumberOfRows()):
             row = {name: table.GetValueByName(i, name).ToString()
-                   for name in ("Kind", "Domain", "Remedy", "Outcome", "Count", "FirstId")}
+                   for name in ("Kind", "Domain", "Remedy", "Outcome", "Count", "FirstId", "Message")}
             if row["Outcome"] == "accepted":
                 continue
-            kind, domain, first = row["Kind"], row["Domain"], int(row["FirstId"])
+            first, message = int(row["FirstId"]), rename(row["Message"], OPTIONS)
             cells = [int(ids.GetValue(k)) for k in range(first, first + int(row["Count"]))] if ids else []
-            which = f" ({count(len(cells), 'cell')}: {join(cells)})" if cells else ""
-            where = f"in the {domain}: " if domain in ("source", "target") else ""
-            message = f"{where}{in_words(kind)}{which}: {ADVICE.get(row['Remedy'], in_words(row['Remedy']))}"
-            result.append({"kind": kind, "mesh": domain, "count": len(cells), "cells": cells, "message": message})
+            if row["Remedy"] in ADVICE:
+                message = f"{re.split('[.;] ', message)[0]}. {ADVICE[row['Remedy']]}"
+            result.append({"kind": row["Kind"], "mesh": row["Domain"], "count": len(cells), "cells": cells,
+                           "message": message})
         return result
 
     def statistics(self):
@@ -96,8 +94,8 @@ def require_map(pair, mask_invalid=False):
     if report.valid:
         return pair
     if not mask_invalid or not report.measured:
-        raise Failure(f"{pair.name}: not a valid pair: {'; '.join(p['message'] for p in report.problems())}.")
+        raise Failure(f"{pair.name}: not a valid pair: {' '.join(p['message'] for p in report.problems())}")
     kept = numpy.setdiff1d(numpy.arange(pair.source.GetNumberOfPolys()), report.cells_where(0, "Invalid"))
-    triangles = meshes.triangles_of(pair.source)[kept]
+    triangles = triangles_of(pair.source)[kept]
     shift = pair.shift and replace(pair.shift, triangles=triangles)
     return replace(pair, meshes=[make_mesh(points_of(mesh), triangles) for mesh in pair.meshes], shift=shift)

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of points as text, by pandas. All fields keep their text, to the last digit, except changed coordinates."""
+"""Tables of points as text. All fields keep their text, to the last digit, except changed coordinates."""
 
 import csv
 import re
 
 import numpy
 
-from .files import USAGE, Failure, import_extra, inform, quote
+from .files import USAGE, Failure, inform, quote
 
 USUAL_NAMES = [
     names.split()
@@ -19,10 +19,25 @@ USUAL_NAMES = [
 ]
 """What coordinates are called; the first that a table has are taken."""
 HEIGHT_NAMES = ("z", "h", "height", "altitude", "alt", "elevation", "elev", "hoehe", "höhe")
-ENCODING = {"encoding": "utf-8-sig", "errors": "surrogateescape"}
+ENCODING = {"errors": "surrogateescape", "newline": ""}
 
 
-def _number(text):
+def records(lines, separator):
+    """Yields the number of the first line, from 1, and the fields of each row that is not empty. Fields may be in quotes.
+    Raises csv.Error."""
+    if separator == " ":
+        fields = ([field[1:-1].replace('""', '"') if field[0] == '"' else field
+                   for field in re.findall(r'"(?:[^"]|"")*"|\S+', line)] for line in lines)
+        yield from ((number, row) for number, row in enumerate(fields, 1) if row)
+        return
+    reader, begin = csv.reader(lines, delimiter=separator, strict=True), 0
+    for row in reader:
+        if any(map(str.strip, row)):
+            yield begin + 1, row
+        begin = reader.line_num
+
+
+def number_of(text):
     """A number, or None. Excludes notations that only Python accepts."""
     try:
         value = float(text)
@@ -41,37 +56,34 @@ class Table:
     """
 
     def __init__(self, input, columns="", with_height=False):
-        self.input, self.comments, self.names = input, [], None
-        pandas = import_extra("pandas", f"Reading {input.name}")
-        with open(input.path, **ENCODING) as file:
-            for self.skipped, first in enumerate(file):
-                if first.startswith("#"):
-                    self.comments.append(first)
-                elif first.strip():
-                    break
-            else:
-                input.fail("it has no points.")
+        self.input, self.names = input, None
+        with open(input.path, encoding="utf-8-sig", **ENCODING) as file:
+            lines = file.readlines()
+        begin = next((i for i, line in enumerate(lines) if line.strip() and not line.startswith("#")), len(lines))
+        self.comments = [line for line in lines[:begin] if line.startswith("#")]
+        first, rows = "".join(lines[begin : begin + 1]), []
         self.separator = max(",;\t", key=first.count) if re.search("[,;\t]", first) else " "
         try:
-            self.frame = pandas.read_csv(
-                input.path, sep=self.separator if self.separator != " " else r"\s+", header=None, dtype=str,
-                na_filter=False, skiprows=self.skipped, encoding="utf-8-sig", encoding_errors="surrogateescape",
-            )
-        except pandas.errors.ParserError as error:
-            unfinished = re.search(r"starting at row (\d+)", str(error))
-            input.fail((f"line {self._line(int(unfinished[1]))}: " if unfinished else "") + quote(error) + ".")
-        self.first = self.frame.iloc[0].tolist()
+            rows.extend((begin + line, fields) for line, fields in records(lines[begin:], self.separator))
+        except csv.Error as error:
+            input.fail(f"line {rows[-1][0] + 1 if rows else begin + 1}: {error}.")
+        if not rows:
+            input.fail("it has no points.")
+        self.first = rows[0][1]
+        for line, fields in rows:
+            if len(fields) > len(self.first):
+                input.fail(f"line {line}: {len(fields)} fields, where {len(self.first)} are expected.")
+            fields += [""] * (len(self.first) - len(fields))
         self.columns = self._choose_named(columns) if columns else self._choose(with_height)
-        texts = [self.first[column] for column in self.columns]
-        if self.names is None and all(_number(text) is None for text in texts):
+        if self.names is None and all(number_of(self.first[column]) is None for column in self.columns):
             if not columns:
                 input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x "
                            "and y: name them (--columns).")
             self.names = self.first
-        if self.names is not None:
-            self.frame = self.frame.iloc[1:].reset_index(drop=True)
-        if not len(self.frame):
+        if len(rows) == (self.names is not None):
             input.fail("it has no points.")
+        self.lines, rows = zip(*rows[self.names is not None :])
+        self.fields = list(map(list, zip(*rows)))
         self.coordinates = numpy.column_stack([self._numbers(column) for column in self.columns])
 
     def _find(self, name):
@@ -91,7 +103,7 @@ class Table:
                 return found + [column for column in heights if column is not None][:1]
         if len(self.first) < 2:
             self.input.fail("it has only one column: points need two coordinates.")
-        return [0, 1] + [2] * (with_height and len(self.first) > 2 and _number(self.first[2]) is not None)
+        return [0, 1] + [2] * (with_height and len(self.first) > 2 and number_of(self.first[2]) is not None)
 
     def _choose_named(self, columns):
         chosen = []
@@ -112,61 +124,42 @@ class Table:
         return quote(", ".join(f'"{name}"' for name in self.first), 300)
 
     def _numbers(self, column):
-        texts = self.frame[column]
-        try:
-            values = texts.to_numpy().astype(float)
-            suspicious = numpy.isinf(values).any() or texts.str.contains("_", regex=False).any()
-        except ValueError:
-            suspicious = True
-        if suspicious:
-            values = list(map(_number, texts))
-            if None in values:
-                self._fail_at(values.index(None), column)
+        values = list(map(number_of, self.fields[column]))
+        if None in values:
+            row = values.index(None)
+            text = self.fields[column][row]
+            hint = "" if self.names else " (--columns names the columns of the coordinates)"
+            hint = " (write decimal points, not commas)" if "," in text else hint
+            self.input.fail(f'line {self.lines[row]}: expected a coordinate in column {column + 1}, found '
+                            f'"{quote(text)}"{hint}.')
         return values
-
-    def _line(self, row):
-        """The line of the file where a row of the frame begins, header included."""
-        with open(self.input.path, newline="", **ENCODING) as file:
-            lines = file.read().splitlines(keepends=True)[self.skipped :]
-        reader = csv.reader(lines, delimiter=self.separator)
-        begins = [0] + [reader.line_num for fields in reader if any(field.strip() for field in fields)]
-        return self.skipped + begins[min(row, len(begins) - 1)] + 1
-
-    def _fail_at(self, row, column):
-        line, text = self._line(row + (self.names is not None)), self.frame.iloc[row][column]
-        hint = "" if self.names else " (--columns names the columns of the coordinates)"
-        hint = " (write decimal points, not commas)" if "," in text else hint
-        self.input.fail(f'line {line}: expected a coordinate in column {column + 1}, found "{quote(text)}"{hint}.')
 
     def move(self, points):
         """Replaces the coordinates. Unchanged ones keep their text."""
         for k, column in enumerate(self.columns):
-            texts = self.frame[column].to_numpy(copy=True)
             changed = points[:, k] != self.coordinates[:, k]
-            texts[changed] = list(map(repr, points[changed, k].tolist()))
-            self.frame[column] = texts
+            for row in numpy.flatnonzero(changed).tolist():
+                self.fields[column][row] = repr(float(points[row, k]))
 
     def add(self, name, values):
         """Adds columns from an array of shape (n,) or (n, k), replacing those with the same names."""
         for k, column in enumerate(numpy.atleast_2d(values.T)):
-            own = name if values.ndim == 1 else f"{name}_{k}"
-            place = self.frame.shape[1]
+            own, place = name if values.ndim == 1 else f"{name}_{k}", len(self.fields)
             if self.names is not None:
                 if own in self.names:
                     inform(f"{self.input.name}: the column {own} is replaced.")
-                place = self.names.index(own) if own in self.names else place
+                    place = self.names.index(own)
                 self.names = self.names[:place] + [own] + self.names[place + 1 :]
-            self.frame[place] = list(map(repr, column.tolist()))
+            self.fields[place:] = [list(map(repr, column.tolist())), *self.fields[place + 1 :]]
 
     def write(self, output):
         """Writes the table with its original separator."""
-        with open(output.path, "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
+        # What would be taken for a comment or a byte order mark is quoted, and fields between blanks.
+        quoted = (self.names or self.fields[0])[0][:1] in ("#", "\ufeff") or self.separator == " " and any(
+            not text or "\t" in text for column in self.fields for text in column)
+        with open(output.path, "w", encoding="utf-8", **ENCODING) as file:
             file.writelines(self.comments)
-            # What would be taken for a comment or a byte order mark is quoted, and fields between blanks.
-            quoted = (self.names or self.frame.iloc[0])[0][:1] in ("#", "\ufeff")
-            if self.separator == " ":
-                quoted |= self.frame.apply(lambda texts: texts.str.contains("^$|\t")).any(axis=None)
-            style = {"quoting": csv.QUOTE_ALL if quoted else csv.QUOTE_MINIMAL}
-            if self.names:
-                csv.writer(file, delimiter=self.separator, lineterminator="\n", **style).writerow(self.names)
-            self.frame.to_csv(file, sep=self.separator, header=False, index=False, **style)
+            writer = csv.writer(file, delimiter=self.separator, lineterminator="\n",
+                                quoting=csv.QUOTE_ALL if quoted else csv.QUOTE_MINIMAL)
+            writer.writerows([self.names] if self.names else [])
+            writer.writerows(zip(*self.fields))

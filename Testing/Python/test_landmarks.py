@@ -37,7 +37,7 @@ def test_csv_with_and_without_header(tmp_path):
     rows = "\n".join(",".join(repr(v) for v in p) for p in POINTS)
     bare = read_landmarks(write(tmp_path, "bare.csv", rows))
     expect_points(bare)
-    assert bare.names == ["0", "1", "2"]
+    assert bare.names == ["1", "2", "3"]
     named = "id,Target_Y,target_x,source_x,source_y\n" + "\n".join(
         f"p{i},{p[3]},{p[2]},{p[0]},{p[1]}" for i, p in enumerate(POINTS)
     )
@@ -58,7 +58,7 @@ def test_qgis_points_have_y_up_and_disabled_rows(tmp_path, names):
         text = "#CRS: EPSG:3857\n" + text
     landmarks = read_landmarks(write(tmp_path, "control.points", text))
     expect_points(landmarks)
-    assert landmarks.left_out == [("3", "disabled")]
+    assert landmarks.left_out == [("6" if extra else "5", "disabled")]
     assert landmarks.image_coordinates
     assert landmarks.crs == ("EPSG:3857" if extra else None)
 
@@ -100,7 +100,7 @@ def test_bigwarp_leaves_out_and_names_points_set_on_one_side(tmp_path):
     landmarks = read_landmarks(write(tmp_path, "landmarks.csv", text))
     expect_points(landmarks)
     assert landmarks.names == ["Pt-0", "Pt-1", "Pt-2"]
-    assert landmarks.left_out == [("Pt-3", "no position in the target"), ("Pt-4", "inactive")]
+    assert landmarks.left_out == [("Pt-3", "no position in the target"), ("Pt-4", "disabled")]
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import click
 
-from .. import meshes, options, pair, report, tinshift
-from ..arrays import add_array, arrays_of, points_of
+from .. import options, pair, report, tinshift
+from ..arrays import add_array, arrays_of, points_of, triangles_of
 from ..files import Failure, inform
 from ..mapping import run, set_up
 from ..vtkFiltersHomeomorphism import vtkRefinedTriangulationPair
@@ -59,7 +59,7 @@ def command(inputs, output, max_error, max_triangles, settings):
         arrays = arrays_of(finer.source.GetPointData())
         points = [points_of(mesh)[:, :2] for mesh in finer.meshes]
         heights = {name: arrays[name] for name in heights}
-        finer.shift = tinshift.Shift(*points, meshes.triangles_of(finer.source), heights)
+        finer.shift = tinshift.Shift(*points, triangles_of(finer.source), heights)
     with output.writing():
         pair.write(finer, output)
         if output.format == "json" and os.path.getsize(output.path) > PROJ_LIMIT:

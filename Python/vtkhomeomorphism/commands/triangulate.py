@@ -4,38 +4,22 @@
 
 import click
 import numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .. import landmarks, meshes, options, pair, vtkfiles
-from ..arrays import points_of
+from .. import landmarks, options, pair, vtkfiles
 from ..files import FILE, USAGE, Failure, Input, inform
 from ..isomorphic import DOMAINS, QUALITIES
 from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lines
 
 
-def read_figures(names):
-    """Landmarks, polygons and lines of two VTK files with the same cells."""
-    figures = []
-    for name in names:
-        with Input(name) as file:
-            if file.format not in ("vtp", "vtk"):
-                raise Failure(f"{name} is not a figure: landmarks are one file, figures two of .vtp or .vtk.", USAGE)
-            data = vtkfiles.read(file)
-            if data.GetClassName() != "vtkPolyData":
-                file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
-            figures.append(data)
-    cells, others = ([[ids.tolist() for ids in meshes.lists_of(cells)] for cells in (figure.GetPolys(), figure.GetLines())]
-                     for figure in figures)
-    points = [points_of(figure) for figure in figures]
-    if cells != others or len(points[0]) != len(points[1]):
-        raise Failure(f"{names[0]} and {names[1]} have different cells or numbers of points: a figure is drawn twice.")
-    flat = [p[:, :2] if numpy.ptp(p[:, 2]) == 0 else p for p in points]
-    return Landmarks(*flat, [str(i) for i in range(len(points[0]))]), *cells
-
-
-def are_loops(lines):
-    """Whether each point of the lines has two segments."""
-    ends = [i for line in lines for pair in zip(line, line[1:]) for i in pair]
-    return bool(ends) and set(numpy.unique(ends, return_counts=True)[1]) == {2}
+def read_figure(name):
+    with Input(name) as file:
+        if file.format not in ("vtp", "vtk"):
+            raise Failure(f"{name} is not a figure: landmarks are one file, figures two of .vtp or .vtk.", USAGE)
+        data = vtkfiles.read(file)
+        if not isinstance(data, vtkPolyData):
+            file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
+    return data
 
 
 def print_report(made, marks):
@@ -83,27 +67,28 @@ def command(inputs, output, lines, outlines, domain, quality, target_angle, maxi
     file, or an IIIF georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops (polygons or
     lines) and constraint lines, with the same cells. Triangles do not fold in either domain; points are added where
     necessary."""
-    segments, loops = [], []
+    figure = {}
     if len(inputs.pair) == 2:
-        marks, loops, segments = read_figures(inputs.pair)
-        domain = "outline" if domain == "automatic" and are_loops(segments) else domain
+        figures = [read_figure(name) for name in inputs.pair]
+        marks = Landmarks(*figures, list(map(str, range(figures[0].GetNumberOfPoints()))))
+        inputs.grids = [None, None]
     else:
-        name = inputs.pair[0]
-        with Input(name, inputs.format or "csv") as file:
+        with Input(inputs.pair[0], inputs.format or "csv") as file:
             if not is_landmark_file(file.path):
                 raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv (source_x, source_y, target_x, "
                               "target_y), .points and IIIF's .json.", USAGE)
             marks = landmarks.read(file, inputs)
         try:
-            segments, loops = (read_lines(file, marks.names) if file else [] for file in (lines, outlines))
+            figure = {name: read_lines(file, marks.names)
+                      for name, file in (("segments", lines), ("outlines", outlines)) if file}
         except (LandmarkFileError, OSError) as error:
             raise Failure(f"{error}.", FILE) from None
-    if domain == "outline" and not loops and not are_loops(segments):
-        raise Failure("There are no outlines for --domain outline (--outlines).", USAGE)
+        if domain == "outline" and not outlines:
+            raise Failure("There are no outlines for --domain outline (--outlines).", USAGE)
     both, made = pair.from_landmarks(
-        marks, " and ".join(inputs.pair), inputs, outlines=loops, segments=segments, domain=domain, quality=quality,
-        target_minimum_angle=target_angle, maximum_added_points=maximum_added_points,
-        maximum_triangle_size=maximum_size, leave_out_conflicting_segments=leave_out_conflicts)
+        marks, " and ".join(inputs.pair), inputs, **figure, domain=domain, quality=quality, target_minimum_angle=target_angle,
+        maximum_added_points=maximum_added_points, maximum_triangle_size=maximum_size,
+        leave_out_conflicting_segments=leave_out_conflicts)
     smallest = min(made.report["smallest_angles"])
     if smallest < target_angle:
         inform(f"the smallest angle is {smallest:.3g} degrees and misses --target-angle {target_angle:g}: allow more points "

@@ -84,9 +84,10 @@ TEST(TriangulationPairReport, FindsAnglesAndAreaRatiosOfKnownTriangles)
   const auto report = Report({ mesh, mesh });
   ExpectStatistics(report,
     { { "SourceSmallestAngle", 5.0 }, { "SourceSmallestAngleCell", 1.0 },
-      { "SourceShareOfAnglesBelow10", 1.0 / 3.0 }, { "SourceShareOfAnglesBelow15", 2.0 / 3.0 },
-      { "TargetShareOfAnglesBelow20", 2.0 / 3.0 }, { "SourceLargestAreaRatio", 1.0 / tan5 },
-      { "SourceDiscordantTriangles", 0.0 } },
+      { "SourceShareOfTrianglesBelow10Degrees", 1.0 / 3.0 },
+      { "SourceShareOfTrianglesBelow15Degrees", 2.0 / 3.0 },
+      { "TargetShareOfTrianglesBelow20Degrees", 2.0 / 3.0 },
+      { "SourceLargestAreaRatio", 1.0 / tan5 }, { "SourceDiscordantTriangles", 0.0 } },
     1e-11);
   EXPECT_NEAR(CellValue(report->GetOutput(), "SmallestAngle", 0), 45.0, 1e-12);
   EXPECT_NEAR(CellValue(report->GetOutput(), "SmallestAngle", 2), 12.0, 1e-12);
