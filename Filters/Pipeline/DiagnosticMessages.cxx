@@ -150,6 +150,22 @@ std::string DescribeWhole(const MeshDiagnostic& diagnostic)
   return text.str();
 }
 
+/// The message without what became of the defect and what to do.
+std::string DescribeDefect(const MeshDiagnostic& diagnostic)
+{
+  using Kind = MeshDiagnostic::Kind;
+  if (diagnostic.Ids.empty())
+  {
+    return DescribeWhole(diagnostic);
+  }
+  const bool one = diagnostic.Ids.size() == 1;
+  const bool cells =
+    diagnostic.What == Kind::NotTriangles || diagnostic.What == Kind::TriangleStrips;
+  return std::to_string(diagnostic.Ids.size()) + (cells ? " cell" : " triangle") +
+    (one ? "" : "s") + " of the " + GetName(diagnostic.Where) + (one ? " (cell " : " (cells ") +
+    ListIds(diagnostic.Ids) + ") " + GetFault(diagnostic, one);
+}
+
 } // namespace
 
 std::string ListIds(const std::vector<vtkIdType>& ids)
@@ -197,22 +213,9 @@ const char* GetName(MeshDiagnostic::Remedy remedy)
 
 std::string Describe(const MeshDiagnostic& diagnostic)
 {
-  using Kind = MeshDiagnostic::Kind;
   using Outcome = MeshDiagnostic::Outcome;
   std::ostringstream text;
-  if (diagnostic.Ids.empty())
-  {
-    text << DescribeWhole(diagnostic);
-  }
-  else
-  {
-    const bool one = diagnostic.Ids.size() == 1;
-    const bool cells =
-      diagnostic.What == Kind::NotTriangles || diagnostic.What == Kind::TriangleStrips;
-    text << diagnostic.Ids.size() << (cells ? " cell" : " triangle") << (one ? "" : "s")
-         << " of the " << GetName(diagnostic.Where) << (one ? " (cell " : " (cells ")
-         << ListIds(diagnostic.Ids) << ") " << GetFault(diagnostic, one);
-  }
+  text << DescribeDefect(diagnostic);
   switch (diagnostic.Result)
   {
     case Outcome::Refused:
@@ -310,6 +313,7 @@ void MakeTable(const MeshDiagnostics& diagnostics, vtkTable* table)
     return own;
   });
   addStrings("Message", [](const Diagnostic& d) { return Describe(d); });
+  addStrings("Defect", [](const Diagnostic& d) { return DescribeDefect(d); });
 
   const vtkNew<vtkIdTypeArray> ids;
   ids->SetName("Ids");

@@ -101,10 +101,20 @@ class Raster:
         return self.pixels[slice(*rows), slice(*columns)]
 
     def means(self, columns, rows, factor):
-        """Means of squares of `factor` by `factor` pixels, where columns and rows count squares."""
-        pixels = self.window(*(numpy.multiply(ends, factor) for ends in (columns, rows)))
-        squares = pixels.reshape(len(pixels) // factor, factor, -1, factor, self.bands).mean(axis=(1, 3))
+        """Means of squares of `factor` by `factor` pixels, of shape (rows, columns, bands)."""
+        pixels = self.window((0, columns * factor), (0, rows * factor))
+        squares = pixels.reshape(rows, factor, columns, factor, self.bands).mean(axis=(1, 3))
         return (numpy.rint(squares) if self.dtype.kind in "iu" else squares).astype(self.dtype)
+
+    def reduce(self, factor):
+        """The raster of these means. Less than a square at the end repeats the last one."""
+        whole, rest = numpy.divmod(self.grid.size, factor)
+        more = [(0, int(n > 0)) for n in (*rest[::-1], 0)]
+        result = Raster(numpy.pad(self.means(*whole.tolist(), factor), more, "edge"))
+        result.nodata, result.has_alpha = self.nodata, self.has_alpha
+        result.grid = replace(self.grid, width=result.grid.width, height=result.grid.height, steps=factor * self.grid.steps,
+                              first=self.grid.at(numpy.full(2, (factor - 1) / 2)))
+        return result
 
     def all(self):
         return self.window((0, self.grid.width), (0, self.grid.height))
@@ -137,26 +147,10 @@ class GdalRaster(Raster):
     def means(self, columns, rows, factor):
         if self.palette is not None:
             return super().means(columns, rows, factor)
-        window = tuple(tuple(int(end) * factor for end in ends) for ends in (rows, columns))
-        shape = self.bands, rows[1] - rows[0], columns[1] - columns[0]
         average = import_extra("rasterio", "Reading a raster").enums.Resampling.average
-        return numpy.moveaxis(self.file.read(window=window, out_shape=shape, resampling=average), 0, 2)
-
-
-class ReducedRaster(Raster):
-    """A raster whose pixels are the means of squares of another's. Less than a square at the end repeats the last."""
-
-    def __init__(self, raster, factor):
-        vars(self).update(vars(raster), full=raster, factor=factor)
-        width, height = (-(-n // factor) for n in raster.grid.size)
-        self.grid = replace(raster.grid, width=width, height=height, steps=factor * raster.grid.steps,
-                            first=raster.grid.at(numpy.full(2, (factor - 1) / 2)))
-
-    def window(self, columns, rows):
-        whole = [n // self.factor for n in self.full.grid.size]
-        parts = [(min(begin, n - 1), min(end, n)) for (begin, end), n in zip((columns, rows), whole)]
-        missing = [(0, numpy.diff(asked)[0] - numpy.diff(part)[0]) for asked, part in zip((columns, rows), parts)]
-        return numpy.pad(self.full.means(*parts, self.factor), (*missing[::-1], (0, 0)), "edge")
+        pixels = self.file.read(window=((0, rows * factor), (0, columns * factor)), out_shape=(self.bands, rows, columns),
+                                resampling=average)
+        return numpy.moveaxis(pixels, 0, 2)
 
 
 def read(input):
@@ -284,7 +278,7 @@ class Warp:
     def tiles(self, raster, grid, text="Warping"):
         """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
         factor = self._find_reduction(raster.grid, grid)
-        raster = ReducedRaster(raster, factor) if factor > 1 else raster
+        raster = raster.reduce(factor) if factor > 1 else raster
         tiles = [(c, r) for r in range(0, grid.height, TILE) for c in range(0, grid.width, TILE)]
         for column, row in progress(tiles, text) if text else tiles:
             tile = grid.part(column, row, min(TILE, grid.width - column), min(TILE, grid.height - row))

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes in files: by VTK's readers, by meshio, and Wavefront's OBJ (whose numbers are read here in double precision,
-with its texture coordinates)."""
+"""Meshes in files: by VTK's readers, by meshio, and Wavefront's OBJ, whose numbers are read here in double
+precision."""
 
 import contextlib
 import io
@@ -29,8 +29,8 @@ def lists_of(cells):
 
 
 def _read_obj(input):
-    """Points, polygons, texture coordinates, and the polygons' texture ids (-1: none)."""
-    points, texture, polygons, texture_ids = [], [], [], []
+    """Points and polygons."""
+    points, polygons = [], []
     with open(input.path, encoding="utf-8-sig", errors="replace") as file:
         for number, line in enumerate(file, 1):
             kind, *words = line.split("#", 1)[0].split() or [""]
@@ -38,22 +38,14 @@ def _read_obj(input):
                 if kind == "v":
                     x, y, z = map(float, words[:3])
                     points.append((x, y, z))
-                elif kind == "vt":
-                    u, v = map(float, words[:2])
-                    texture.append((u, v))
                 elif kind == "f":
-                    corners = [[int(i or 0) for i in (word + "/").split("/")[:2]] for word in words]
-                    ids = [[i - 1 if i >= 0 else i + len(known) for i in column]
-                           for column, known in zip(zip(*corners), (points, texture))]
-                    if len(corners) < 3 or min(ids[0]) < 0:
-                        raise ValueError
-                    polygons.append(ids[0])
-                    texture_ids.append(ids[1])
-                elif not kind.isprintable() or "\ufffd" in kind:
+                    ids = [int(word.partition("/")[0]) for word in words]
+                    polygons.append([i - 1 if i >= 0 else i + len(points) for i in ids])
+                if kind == "f" and (len(ids) < 3 or min(polygons[-1]) < 0) or not kind.isprintable() or "\ufffd" in kind:
                     raise ValueError
             except ValueError:
                 input.fail(f"line {number}: expected coordinates or a face of 3 points, found {quote(line)}.")
-    return numpy.array(points).reshape(-1, 3), polygons, numpy.array(texture).reshape(-1, 2), texture_ids
+    return numpy.array(points).reshape(-1, 3), polygons
 
 
 @contextlib.contextmanager
@@ -94,7 +86,7 @@ def read_data(input):
     """The data object in a file of one of VTK's formats, or the mesh in another."""
     if input.format in vtkfiles.FORMATS:
         return vtkfiles.read(input)
-    points, polygons = _read_obj(input)[:2] if input.format == "obj" else _read_meshio(input)
+    points, polygons = _read_obj(input) if input.format == "obj" else _read_meshio(input)
     for cell, polygon in enumerate(polygons):
         if not 0 <= min(polygon) <= max(polygon) < len(points):
             input.fail(f"cell {cell} has the points {quote(polygon)}, but there are {len(points)}, counted from 0.")
@@ -104,13 +96,16 @@ def read_data(input):
 def read(input):
     """The mesh in a file, vtkPolyData. Raises Failure."""
     if input.format not in READ:
-        raise Failure(f"Cannot read {input.name} as a mesh: the formats are {dotted(('json', 'mesh') + READ)}.", USAGE)
+        raise Failure(f"Cannot read {input.name} as a mesh or landmarks: meshes are {dotted(('json', 'mesh') + READ)}; "
+                      "landmarks are .points, .json or .csv with columns source_x, source_y, target_x, target_y.", USAGE)
     mesh = read_data(input)
     if isinstance(mesh, vtkUnstructuredGrid):
-        grid, polygons = mesh, numpy.isin(vtk_to_numpy(mesh.GetCellTypesArray()), (5, 7, 9))
-        if not polygons.all():
-            input.fail(f"cell {polygons.argmin()} is not a polygon: a mesh consists of triangles only.")
-        mesh = make_mesh(points_of(grid), grid.GetCells())
+        grid, mesh = mesh, vtkPolyData()
+        are_polygons = numpy.isin(vtk_to_numpy(grid.GetCellTypesArray()), (5, 7, 9))
+        if not are_polygons.all():
+            input.fail(f"cell {are_polygons.argmin()} is not a polygon: a mesh consists of triangles only.")
+        mesh.SetPoints(grid.GetPoints())
+        mesh.SetPolys(grid.GetCells())
         mesh.GetPointData().ShallowCopy(grid.GetPointData())
         mesh.GetCellData().ShallowCopy(grid.GetCellData())
     if not isinstance(mesh, vtkPolyData):
@@ -118,21 +113,6 @@ def read(input):
     if mesh.GetNumberOfPolys() == 0 and mesh.GetNumberOfStrips() == 0:
         input.fail("it has no triangles.")
     return mesh
-
-
-def read_uv(input):
-    """The texture coordinates of an OBJ file as a mesh with the same triangles and points."""
-    points, polygons, texture, ids = _read_obj(input)
-    corners, uv = (numpy.concatenate(lists).astype(int) for lists in (polygons, ids))
-    if uv.min() < 0 or uv.max() >= len(texture):
-        input.fail("faces have no texture coordinates (vt).")
-    positions = numpy.zeros((len(points), 2))
-    positions[corners] = texture[uv]
-    seams = corners[(positions[corners] != texture[uv]).any(axis=1)]
-    if len(seams):
-        input.fail(f"point {seams[0]} has several texture coordinates: the texture has a seam there. Cut the mesh "
-                   "along its seams first.")
-    return make_mesh(positions, polygons)
 
 
 def write(mesh, output):

@@ -71,6 +71,10 @@ inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the targe
 mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles, do not refuse the pair.")
 format_option = click.option("--input-format", default="", metavar="EXTENSION",
                              help="Format of standard input (-); default: json (pairs), csv (data), png (images).")
+crs = click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: that "
+                   "of the file of the pair, or of the data).")
+background = click.option("--background", default="", metavar="COLOR", help="Color outside the domain: transparent, a name "
+                          "or #rrggbb (default: transparent or no data; white in .jpg and .ppm).")
 
 
 def output(help, default, formats, what):
@@ -78,9 +82,7 @@ def output(help, default, formats, what):
     return replacing(
         "output", lambda output, force, output_format: Output(output, output_format, force, formats, what),
         click.option("-o", "--output", required=True, metavar="FILE", help=help), force,
-        click.option("--output-format", default=default, metavar="EXTENSION",
-                     help="Format of standard output (-)."),
-    )
+        click.option("--output-format", default=default, metavar="EXTENSION", help="Format of standard output (-)."))
 
 
 def pair_files(names):
@@ -108,15 +110,12 @@ def pair_files(names):
         click.argument("files", nargs=-1, metavar=names),
         click.option("--target-array", default="Target", metavar="NAME",
                      help="Point array with the target's positions if one file has both meshes."),
-        click.option("--target-uv", is_flag=True,
-                     help="Use the texture coordinates of an OBJ file (vt, without seams) as the target."),
         click.option("--working-size", type=Size(), metavar="WIDTHxHEIGHT",
-                     help="For xmorph meshes that do not fill their images: the size of xmorph's working image "
-                          "(resulting_size in its session file)."),
+                     help="The size of xmorph's working image, for meshes that do not fill their images."),
         click.option("--scan", default=(), multiple=True, metavar="FILE",
-                     help="For landmarks in an image's pixels: the image; its rectangle is the source's domain. A "
-                          "second --scan is the target's image."),
-        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas."),
+                     help="The image of landmarks in pixels: its rectangle is the domain (twice: of source and target)."),
+        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas: their ids, "
+                     "or their lines in a file without ids."),
         format_option,
     )
 
@@ -137,19 +136,17 @@ def map_settings(default):
     return replacing(
         "settings", dict,
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
-                     help="Coordinate system: linear (piecewise), contour (the published construction), smooth (twice "
-                          "continuously differentiable except at vertices) or cubic (continuously differentiable at "
-                          f"vertices too; planar meshes). Default: {default}."),
+                     help="Coordinate system: linear (piecewise), contour (as published), smooth (differentiable except at "
+                          f"vertices) or cubic (at vertices too; planar meshes). Default: {default}."),
         click.option("--bending", "cubic_bending", type=click.Choice(list(BENDINGS)), default="least",
-                     help="Cubic: least bending, or a local map that depends on nearby vertices only."),
+                     help="Cubic: least bending, or a local map, which is faster and depends on nearby vertices only."),
         click.option("--max-deviation", "maximum_deviation", type=POSITIVE, metavar="DISTANCE",
                      help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
         click.option("--fairness", "fairness_refinement", type=click.IntRange(0, 4), default=0, metavar="LEVELS",
-                     help="Cubic: number of times that triangles are divided into four, for less bending."),
+                     help="Cubic: how often triangles are divided into four, for less bending."),
         click.option("--linear-where-discordant", "discordant_by_linear", is_flag=True,
                      help="Contour: map discordant triangles by Linear instead of refusing the pair."),
         click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
-                     help="Map points outside the domain, up to this distance, like the nearest point of the domain; "
-                          "relative to the diagonal of the domain. 0: rounding only."),
+                     help="Map points outside, up to this share of the domain's diagonal, like the nearest point inside."),
         mask_option,
     )

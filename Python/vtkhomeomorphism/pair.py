@@ -28,13 +28,8 @@ class Pair:
     metadata: dict = field(default_factory=dict)  # metadata for writing a triangulation file
     landmarks: Optional[Landmarks] = None  # the landmarks that the pair was made from
 
-    @property
-    def source(self):
-        return self.meshes[0]
-
-    @property
-    def target(self):
-        return self.meshes[1]
+    source = property(lambda self: self.meshes[0])
+    target = property(lambda self: self.meshes[1])
 
     @property
     def name(self):
@@ -91,16 +86,11 @@ def _read_one(name, options):
             shift = _read_by(tinshift.read, file)
             both = [make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
             return Pair(both, names, shift=shift, metadata=shift.metadata)
-        if options.target_uv:
-            if file.format != "obj":
-                raise Failure(f"--target-uv: only .obj files have texture coordinates, {file.name} does not.", USAGE)
-            return Pair([meshes.read(file), meshes.read_uv(file)], names)
         source = meshes.read(file)
     positions = source.GetPointData().GetArray(options.target_array)
     if positions is None or positions.GetNumberOfComponents() not in (2, 3):
         raise Failure(f'{names[0]} has no point array "{options.target_array}" of 2 or 3 components with the target\'s '
-                      "positions: give the target's file, too, name the array (--target-array), or take the texture "
-                      "coordinates of a .obj file (--target-uv).", USAGE)
+                      "positions: give the target's file, too, or name the array (--target-array).", USAGE)
     target = vtkPolyData()
     target.CopyStructure(source)
     target.SetPoints(as_points(vtk_to_numpy(positions).astype(float))[0])

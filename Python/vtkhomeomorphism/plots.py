@@ -20,7 +20,6 @@ def new_figure(width, titles, points, rows=1):
     squares. Returns the figure and axes of shape (rows, panels)."""
     import_extra("matplotlib", "Drawing")
     import matplotlib
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     matplotlib.rcParams.update({"svg.fonttype": "none", "pdf.fonttype": 42})
@@ -30,7 +29,6 @@ def new_figure(width, titles, points, rows=1):
     ratio = ((high - low)[:, 1] / (high - low)[:, 0]).max().clip(0.2, 3.0)
     size = numpy.array([len(titles) * width, ratio * width + (rows - 1) * width + 40])
     figure = Figure(figsize=size / DPI, dpi=DPI, layout="constrained")
-    FigureCanvasAgg(figure)
     axes = figure.subplots(rows, len(titles), squeeze=False, height_ratios=[ratio] + [1] * (rows - 1))
     for panel, title, (x0, y0), (x1, y1) in zip(axes[0], titles, low, high):
         panel.set_title(title, fontsize=12)
@@ -44,7 +42,7 @@ def new_figure(width, titles, points, rows=1):
 def flatten(points):
     """The two coordinates with the largest extent."""
     extent = numpy.nanmax(points, axis=0) - numpy.nanmin(points, axis=0)
-    return points[:, sorted(numpy.argsort(-extent, kind="stable")[:2]) if extent[2] > 0 else [0, 1]]
+    return points[:, sorted(numpy.argsort(-extent, kind="stable")[:2])]
 
 
 def draw_polygons(axes, mesh, points, cells=None, marker=0.0, **style):

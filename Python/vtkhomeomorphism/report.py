@@ -22,12 +22,12 @@ ADVICE = {
     "RepairOrMask": "Repair them in both meshes, or leave them out (--mask-invalid).",
     "MovePointsOrMask": "Move points, or leave them out (--mask-invalid).",
 }
-"""What to do, by remedies for which messages of filters say something else."""
+"""What to do, by remedies that the filters word for programs."""
 
 
-def in_words(name, separator=" "):
-    """NonManifoldEdge becomes non manifold edge."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z0-9])|(?<=[0-9])(?=[A-Z])", separator, name).lower()
+def in_words(name):
+    """LargestAreaRatio becomes largest_area_ratio."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z0-9])|(?<=[0-9])(?=[A-Z])", "_", name).lower()
 
 
 class Report:
@@ -56,14 +56,12 @@ class Report:
         table, result = self.filter.GetDefects(), []
         ids = table.GetFieldData().GetAbstractArray("Ids")
         for i in range(table.GetNumberOfRows()):
-            row = {name: table.GetValueByName(i, name).ToString()
-                   for name in ("Kind", "Domain", "Remedy", "Outcome", "Count", "FirstId", "Message")}
+            row = {table.GetColumnName(k): table.GetValue(i, k).ToString() for k in range(table.GetNumberOfColumns())}
             if row["Outcome"] == "accepted":
                 continue
-            first, message = int(row["FirstId"]), rename(row["Message"], OPTIONS)
+            first, advice = int(row["FirstId"]), ADVICE.get(row["Remedy"])
             cells = [int(ids.GetValue(k)) for k in range(first, first + int(row["Count"]))] if ids else []
-            if row["Remedy"] in ADVICE:
-                message = f"{re.split('[.;] ', message)[0]}. {ADVICE[row['Remedy']]}"
+            message = f"{row['Defect']}. {advice}" if advice else rename(row["Message"], OPTIONS)
             result.append({"kind": row["Kind"], "mesh": row["Domain"], "count": len(cells), "cells": cells,
                            "message": message})
         return result
@@ -83,7 +81,7 @@ class Report:
                 continue
             group = next((g for g in groups if name.lower().startswith(g) and name.lower() != g), "")
             value = {"value": kind(value), "cell": int(cell.GetTuple1(0))} if cell else kind(value)
-            (result[group] if group else result)[in_words(name[len(group) :], "_")] = value
+            (result[group] if group else result)[in_words(name[len(group) :])] = value
         return result
 
 

@@ -214,14 +214,6 @@ def test_target_in_the_same_file(dhm):
     dhm.refuse(USAGE, "convert", "both.vtk", "-o", "new.json", says=('"Target"', "--target-array"))
     dhm("convert", "both.vtk", "--target-array", "Moved", "-o", "again.json")
     numpy.testing.assert_array_equal(read_json(dhm.path("again.json"))[0].target, pair.target)
-    # Texture coordinates, and a file with a seam.
-    write_obj(dhm.path("uv.obj"), pair.source, pair.triangles, texture=pair.target)
-    dhm.refuse(USAGE, "convert", "uv.obj", "-o", "new.json", says="--target-uv")
-    dhm("convert", "uv.obj", "--target-uv", "-o", "uv.json")
-    numpy.testing.assert_array_equal(read_json(dhm.path("uv.json"))[0].target, pair.target)
-    text = dhm.path("uv.obj").read_text().replace("f 1/1 ", "f 1/3 ", 1)
-    dhm.path("seam.obj").write_text(text)
-    dhm.refuse(FILE, "convert", "seam.obj", "--target-uv", "-o", "new.json", says=("seam.obj", "seam"))
 
 
 def test_byte_order_marks(dhm):

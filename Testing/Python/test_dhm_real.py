@@ -94,9 +94,9 @@ def test_tables_that_lost_rows(dhm, name, rows):
     (["map", "square.json", "short_string_array.vtp", "-o", "new.vtp"], FILE, ["short_string_array.vtp"]),
     (["map", "square.json", "damaged_crash.vts", "-o", "new.vts"], FILE, ["damaged_crash.vts"]),
     (["map", "square.json", "hang.vtk", "-o", "new.vtk"], FILE, ["hang.vtk", "seconds"]),
-    (["convert", "uv/tube_seam.obj", "--target-uv", "-o", "new.vtp"], FILE, ["tube_seam.obj", "seam"]),
+    (["convert", "uv/tube_seam.obj", "-o", "new.vtp"], USAGE, ["tube_seam.obj", "--target-array"]),
     (["convert", "bom.obj", "bom.obj", "-o", "new.vtp"], DONE, []),
-    (["check", "--quick", "uv/sheet_vt.obj", "--target-uv"], DONE, []),
+    (["convert", "uv/sheet_vt.obj", "uv/sheet_vt.obj", "-o", "new.vtp"], DONE, []),
 ])
 def test_inputs_that_crashed_or_were_misread(dhm, arguments, status, says):
     arguments = [CASES / word if (CASES / word).is_file() else word for word in arguments]

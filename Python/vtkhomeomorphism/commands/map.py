@@ -13,12 +13,9 @@ from ..mapping import PointMap, choose_system
 @data_options
 @options.map_settings("smooth; for a PROJ triangulation file linear, which is its official meaning")
 @options.inverse
-@click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (vector data; "
-              "default: that of the file of the pair, or of the data).")
-@click.option("--densify", type=options.POSITIVE, metavar="LENGTH",
-              help="Divide longer segments of vector data first; segments are straight between their mapped ends.")
-@click.option("-j", "--jacobian", is_flag=True,
-              help="Add the array Jacobian: the derivative at each point, 9 numbers in row-major order.")
+@options.crs
+@click.option("--densify", type=options.POSITIVE, metavar="LENGTH", help="Divide longer segments of vector data first.")
+@click.option("-j", "--jacobian", is_flag=True, help="Add the array Jacobian: the derivative, 9 numbers in row-major order.")
 @click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas.")
 @click.option("--triangle-id", is_flag=True, help="Add the array TriangleId: the cell id of each point's triangle.")
 @click.option("--keep-vectors", is_flag=True, help="Do not transform active vectors, normals and tensors.")

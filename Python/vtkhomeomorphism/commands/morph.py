@@ -12,7 +12,6 @@ from .. import images, meshes, options, vtkfiles
 from ..files import PICTURES, USAGE, Failure, Input, Output, count, format_of, inform, progress
 from ..mapping import choose_system, run
 from ..vtkFiltersHomeomorphism import vtkInBetweenTriangulation
-from .warp import background_option
 
 PATHS = {"straight": vtkInBetweenTriangulation.STRAIGHT, "rotating": vtkInBetweenTriangulation.ROTATING,
          "best": vtkInBetweenTriangulation.FEWEST_FOLDS}
@@ -72,13 +71,11 @@ def blend(first, second, masks, t):
 @options.force
 @click.option("--source-image", default="", metavar="FILE", help="Image over the source.")
 @click.option("--target-image", default="", metavar="FILE", help="Image over the target, into which a first one fades.")
-@click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER",
-              help="Number of frames, including the first and the last.")
+@click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER", help="Number of frames.")
 @click.option("--path", type=click.Choice(list(PATHS)), default="best",
               help="Paths of the points: straight, rotating with the mesh as a whole, or the one with fewer folds.")
-@click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT",
-              help="Size of the frames (default: the source image's).")
-@background_option
+@click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source's).")
+@options.background
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.pair_files("SOURCE [TARGET]")
 def command(inputs, output, force, source_image, target_image, frames, path, size, background, settings):

@@ -41,15 +41,13 @@ def print_report(made, marks):
 
 
 @click.command("triangulate")
-@options.output("The pair in one file: .json (PROJ triangulation file), .vtp or .vtk (with the target as the point array "
-                "Target).", "json", pair.FORMATS, "a pair")
+@options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk (the target is the point array Target).", "json",
+                pair.FORMATS, "a pair")
 @click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line per row.")
 @click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop per row.")
-@click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic", show_default=True,
-              help="The inside of the outlines, a frame around the landmarks, or their convex hulls; automatic: "
-                   "outline if there are outlines, else frame.")
-@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", show_default=True,
-              help="Quality measure for which triangles are optimized.")
+@click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic",
+              help="The inside of outlines, a frame around landmarks, or convex hulls; automatic: outline if given, else frame.")
+@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", help="What triangles are optimized for.")
 @click.option("--target-angle", type=options.Number(0, 60), default=0.0, metavar="DEGREES",
               help="Add points until no angle is smaller than this (default: necessary points only).")
 @click.option("--maximum-added-points", type=click.IntRange(0), metavar="NUMBER",

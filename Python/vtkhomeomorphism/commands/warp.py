@@ -10,22 +10,15 @@ from .. import images, options
 from ..files import PICTURES, USAGE, Failure, Input
 from ..mapping import choose_system
 
-background_option = click.option(
-    "--background", default="", metavar="COLOR", help="Color outside the domain: transparent, a name or #rrggbb "
-    "(default: transparent, or the raster's no-data value; white in .jpg and .ppm).")
-
-
 @click.command("warp")
 @options.output("The warped image: .png .jpg .tif .ppm, or - for standard output.", "png", PICTURES, "an image")
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.inverse
 @click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
-@click.option("--resolution", type=options.POSITIVE, metavar="LENGTH",
-              help="Pixel size of the result on the ground (georeferenced rasters).")
+@click.option("--resolution", type=options.POSITIVE, metavar="LENGTH", help="Pixel size of the result on the ground.")
 @click.option("--like", default="", metavar="FILE", help="Use the pixel grid of this GeoTIFF for the result.")
-@click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: "
-              "that of the file of the pair, or of the raster).")
-@background_option
+@options.crs
+@options.background
 @options.pair_files("SOURCE [TARGET] IMAGE")
 def command(inputs, output, settings, inverse, size, resolution, like, crs, background):
     """Warp an image from the source's domain to the target's.
