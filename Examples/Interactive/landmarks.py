@@ -130,7 +130,7 @@ class Session:
         for side in (0, 1) if valid else ():
             self.pair[side].ShallowCopy(self.maker.GetOutput(side))
             residuals = vtk_to_numpy(self.pair[0].GetPointData().GetArray("LandmarkResidual"))[: len(points[0])]
-            self.suspicious = residuals > 4 * numpy.quantile(residuals, 0.8)
+            self.suspicious = residuals > 6 * numpy.quantile(residuals, 0.8)
             colors = numpy.where(self.suspicious[:, None], [230, 0, 0], [0, 90, 30]).astype(numpy.uint8)
             dots = make_mesh(points[side])
             dots.SetVerts(as_cells(numpy.arange(len(points[0]))[:, None]))

@@ -27,7 +27,8 @@ class IsomorphicTriangulation(NamedTuple):
     triangles: numpy.ndarray
     """Shape (m, 3), int64."""
     residuals: numpy.ndarray
-    """For each landmark, the distance in the target from where a smooth map through its neighbors puts it."""
+    """For each landmark, the distance in the target from where a smooth map through its neighbors puts it (at the border,
+    where that is less certain, reduced accordingly)."""
     added_points: int
     """Number of points added, those of a frame not counted."""
     left_out: list
@@ -39,12 +40,13 @@ class IsomorphicTriangulation(NamedTuple):
     def suspicious(self) -> numpy.ndarray:
         """At most ten landmarks with outstanding residuals, the worst first."""
         worst = numpy.argsort(-self.residuals, kind="stable")[:10]
-        return worst[self.residuals[worst] > _usual(self.residuals)]
+        return worst[self.residuals[worst] > self.usual_residual()]
 
-
-def _usual(residuals):
-    """The limit of usual residuals: four times the largest of all but a fifth of them."""
-    return 4 * numpy.quantile(residuals, 0.8)
+    def usual_residual(self) -> float:
+        """The limit of usual residuals: six times the largest of all but a fifth, or 1e-5 of the spacing."""
+        landmarks = self.target[: len(self.residuals)]
+        spacing = numpy.linalg.norm(numpy.ptp(landmarks, axis=0)) / len(landmarks) ** 0.5
+        return max(6 * numpy.quantile(self.residuals, 0.8), 1e-5 * spacing)
 
 
 def rectangle(low, high, count):
@@ -95,7 +97,7 @@ def _with_frame(source, target, frame, make):
     """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks are outside of it."""
     source, target = (numpy.asarray(points, float) for points in (source, target))
     first = make(source, target)
-    trusted = numpy.flatnonzero(first.residuals <= _usual(first.residuals))
+    trusted = numpy.flatnonzero(first.residuals <= first.usual_residual())
     for smooth in (True, False):
         frames = _smooth_frame(source, target, numpy.asarray(frame, float), trusted, smooth)
         try:

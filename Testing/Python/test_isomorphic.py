@@ -136,3 +136,17 @@ def test_mistyped_landmarks_at_the_border_come_before_their_neighbors():
         angle = 2 * numpy.pi * random.random()
         target[wrong] += 0.08 * numpy.array([numpy.cos(angle), numpy.sin(angle)])
         assert isomorphic_triangulation(source, target).suspicious()[0] == wrong
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_landmarks_without_error_are_not_suspicious(seed):
+    """Not at the border either, where a map through their neighbors is extrapolated, also beside a wrong one."""
+    random = numpy.random.default_rng(seed)
+    source = random.random((60, 2))
+    exact = source + 0.1 * source[:, ::-1] ** 2
+    noisy = source + 0.1 * source[:, ::-1] ** 3 + random.normal(0, 0.001, source.shape)
+    wrong = numpy.minimum(source, 1 - source).min(axis=1).argsort()[seed % 6]
+    for target in (exact, noisy):
+        assert len(isomorphic_triangulation(source, target).suspicious()) == 0
+        target[wrong] += 0.06 * random.choice([-1, 1], 2)
+        assert isomorphic_triangulation(source, target).suspicious().tolist() == [wrong]

@@ -467,7 +467,7 @@ TEST(LandmarkResiduals, QuadraticMapsLeaveNone)
   for (const double residual : LandmarkResiduals(figure.Points))
   {
     // The preference for small coefficients is felt where neighbors lie to one side only.
-    EXPECT_NEAR(0.0, residual, 3e-3);
+    EXPECT_NEAR(0.0, residual, 3e-6);
   }
 }
 
