@@ -23,7 +23,7 @@ set -- "${remaining_arguments[@]}"
 # What the library is built with, and what the command dhm needs besides; rasterio and geopandas are for
 # georeferenced files only.
 build_packages=(g++ cmake ninja-build libvtk9-dev libeigen3-dev)
-dhm_packages=(python3-dev python3-numpy python3-click python3-pandas python3-meshio python3-pil
+dhm_packages=(python3-dev python3-numpy python3-click python3-meshio python3-pil
   python3-matplotlib python3-tqdm python3-rasterio python3-geopandas)
 # What the tests need besides.
 test_packages=(libgtest-dev openmpi-bin python3-dev python3-mpi4py python3-mpmath python3-numpy python3-scipy

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import report
 from .arrays import MASK, add_array, arrays_of, points_of, triangles_of
-from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress
+from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress, quote
 from .mapping import PointMap, run, set_up
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 
@@ -397,7 +397,8 @@ def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
                 window = rasterio.windows.Window(column, row, *pixels.shape[1::-1])
                 file.write(numpy.moveaxis(pixels, 2, 0), window=window)
     except rasterio.errors.CRSError:
-        raise Failure(f"The coordinate reference system {grid.crs} is not known (--crs).", USAGE) from None
+        raise Failure(f"The coordinate reference system {quote(grid.crs)} is not known: give another (--crs).",
+                      USAGE) from None
     except rasterio.errors.RasterioError as error:
         raise Failure(f"Cannot write {output.name}: {error}", FILE) from None
 

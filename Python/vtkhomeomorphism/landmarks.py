@@ -26,7 +26,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy
 
-from .files import FILE, USAGE, Failure, count, import_extra, inform, join, quote_message
+from .files import FILE, USAGE, Failure, count, import_extra, inform, join, quote, quote_message
 from .isomorphic import isomorphic_triangulation, rectangle, within
 from .tables import number_of, records
 
@@ -227,7 +227,8 @@ def read(file, options) -> Landmarks:
         try:
             known = rasterio.CRS.from_user_input(marks.crs)
         except ValueError:
-            inform(f"{file.name} states no coordinate reference system that GDAL knows: it is taken for {options.crs} (--crs).")
+            inform(f"{file.name}: the line #CRS: {quote(marks.crs)} names no known coordinate reference system; "
+                   f"{options.crs} (--crs) is used instead.")
             return replace(marks, crs=options.crs)
         try:
             target = numpy.column_stack(rasterio.transform(known, options.crs, *marks.target.T))
@@ -291,10 +292,13 @@ def triangulate(marks, name, grids, **more):
     inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
            f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "
            f"{angles[1]:.3g} degrees.")
+    if min(angles) < 1e-3:
+        inform(f"{name}: Cubic maps of such thin triangles take minutes; --system smooth (check: --quick) is fast.")
     if len(worst):
         listed = ", ".join(f"{marks.names[i]} ({made.residuals[i]:.4g})" for i in worst)
         inform(f"{name}: suspicious landmarks, and how far they are in the target from where their neighbors put them: "
-               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without.")
+               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without and their "
+               "ids (the numbers of their lines in a file without ids).")
     for cell, reason in made.left_out:
         inform(f"{name}: line {cell} is left out: {reason}")
     return made

@@ -7,12 +7,13 @@ import warnings
 from dataclasses import replace
 
 import numpy
+from vtkmodules.util.vtkConstants import VTK_DOUBLE, VTK_FLOAT
 from vtkmodules.vtkCommonDataModel import vtkPointSet
 
 from . import report
 from .arrays import MASK, add_array, arrays_of, as_points, configure, make_mesh, points_of, update
 from .files import Failure, inform
-from .vtkfiles import take_messages
+from .vtkfiles import leaves_of, take_messages
 from .vtkFiltersHomeomorphism import vtkDifferentiableHomeomorphism
 
 
@@ -49,6 +50,15 @@ def run(algorithm, name):
     return result
 
 
+def find_inactive_vectors(data):
+    """Names of arrays of real numbers of 3 components that are no attributes of points or cells."""
+    return list(dict.fromkeys(
+        array.GetName() for leaf in leaves_of(data) for attributes in (leaf.GetPointData(), leaf.GetCellData())
+        for i, array in enumerate(map(attributes.GetArray, range(attributes.GetNumberOfArrays())))
+        if array and array.GetNumberOfComponents() == 3 and array.GetDataType() in (VTK_FLOAT, VTK_DOUBLE)
+        and attributes.IsArrayAnAttribute(i) < 0))
+
+
 class PointMap:
     """The map of a pair, for points and data."""
 
@@ -64,6 +74,9 @@ class PointMap:
         """A data object with moved points, whose point arrays include the mask and others requested of the filter. For
         a triangulation file, the third coordinate is a height, and points mapped by its fallback strategy have 1 in the
         array Fallback."""
+        kept = find_inactive_vectors(data)
+        if kept and self.filter.GetTransformActiveAttributes() and not self.filter.GetTransformAllInputVectors():
+            inform(f"Arrays that are not active remain as they are: {', '.join(kept)} (--vectors all transforms them).")
         shift = self.pair.shift if isinstance(data, vtkPointSet) else None
         requested = self.filter.GetComputeTriangleId()
         if shift:

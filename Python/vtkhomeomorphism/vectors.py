@@ -9,7 +9,7 @@ import io
 
 import numpy
 
-from .files import FILE, USAGE, Failure, import_extra, inform, quote_message
+from .files import FILE, USAGE, Failure, import_extra, inform, quote, quote_message
 
 DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "shp": "ESRI Shapefile", "fgb": "FlatGeobuf"}
 MARK = "outside"  # the column of features that are not within the domain; their geometries are empty
@@ -93,8 +93,9 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
             result[name].crs = None
             try:
                 result[name].crs = target_crs or None
-            except Exception as error:
-                raise Failure(f"The coordinate reference system {target_crs} is not known: {error}", USAGE) from None
+            except Exception:
+                raise Failure(f"The coordinate reference system {quote(target_crs)} is not known: give another (--crs).",
+                              USAGE) from None
         if any(marks):
             result[name][MARK] = numpy.array(marks, int)
             outside += sum(marks)

@@ -108,11 +108,9 @@ def write_mesh(path, points, triangles):
     meshio.write_points_cells(path, in_space(points), [("triangle", numpy.asarray(triangles))])
 
 
-def write_obj(path, points, triangles, texture=None):
+def write_obj(path, points, triangles):
     lines = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in in_space(points).tolist()]
-    lines += [f"vt {x!r} {y!r}\n" for x, y in (texture.tolist() if texture is not None else [])]
-    corner = "{0}/{0}" if texture is not None else "{0}"
-    lines += ["f " + " ".join(corner.format(i + 1) for i in t) + "\n" for t in numpy.asarray(triangles).tolist()]
+    lines += ["f " + " ".join(str(i + 1) for i in t) + "\n" for t in numpy.asarray(triangles).tolist()]
     path.write_text("# a comment\n" + "".join(lines))
 
 

@@ -73,6 +73,34 @@ def test_tables_are_read_or_the_columns_named(dhm, rows, says):
     assert says in dhm("check", "--quick", "marks.csv", *without, status={0, FILE}).err
 
 
+def test_landmarks_are_called_by_their_lines_as_in_errors(dhm):
+    source, target = landmarks()
+    target[17] += [5, 4]
+    rows = [",".join(map(repr, row)) for row in numpy.hstack((source, target)).tolist()]
+    dhm.path("marks.csv").write_text("\n".join(["source_x,source_y,target_x,target_y", "", *rows]) + "\n")
+    said = dhm("check", "marks.csv", "--quick").err
+    assert re.search(r"put them: 20 \(.*ids \(the numbers of their lines", said)
+    assert "left out: 20 (on request)" in dhm("check", "marks.csv", "--quick", "--without", "20").err
+    dhm.path("marks.csv").write_text(dhm.path("marks.csv").read_text().replace(rows[17], rows[17] + ",7"))
+    dhm.refuse(FILE, "check", "marks.csv", says="line 20")
+
+
+def test_tables_of_two_columns_are_told_what_landmarks_need(dhm):
+    dhm.path("two.csv").write_text("x,y\n1,2\n")
+    write_csv(dhm.path("p.csv"), [[1, 2]])
+    for command in (["check", "two.csv"], ["triangulate", "two.csv", "-o", "new.vtp"],
+                    ["map", "two.csv", "p.csv", "-o", "new.csv"]):
+        dhm.refuse(USAGE, *command, says=("two.csv", "source_x", "target_y"))
+
+
+def test_landmarks_of_thin_triangles_name_the_system_that_is_fast(dhm):
+    random = numpy.random.default_rng(30)
+    write_landmarks(dhm.path("marks.csv"), random.random((30, 2)), random.random((30, 2)))
+    assert "--system smooth" in dhm("triangulate", "marks.csv", "-o", "pair.vtp").err
+    write_landmarks(dhm.path("marks.csv"), *landmarks())
+    assert "--system smooth" not in dhm("triangulate", "marks.csv", "-o", "pair.vtp", "-f").err
+
+
 def test_landmarks_are_a_pair_for_every_command(dhm):
     source, target = landmarks()
     write_landmarks(dhm.path("marks.csv"), source, target)
@@ -112,7 +140,8 @@ def test_landmarks_of_images_have_y_down(dhm, form):
         dhm.path("marks.points").write_text('#CRS: PROJCRS["x\n' + text)
         refusal = dhm.refuse(USAGE, "warp", "marks.points", "image.png", "-o", "out.tif", says="PROJCRS")
         assert "was taken for" not in refusal.err
-        assert "EPSG:3857" in dhm("warp", "marks.points", "image.png", "-o", "out.tif", "--crs", "EPSG:3857").err
+        said = dhm("warp", "marks.points", "image.png", "-o", "out.tif", "--crs", "EPSG:3857").err
+        assert "#CRS: PROJCRS" in said and "EPSG:3857 (--crs) is used" in said
         return
     else:
         write_landmarks(dhm.path("marks.csv"), centers, moved)

@@ -7,6 +7,8 @@ import io
 
 import numpy
 import pytest
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from conftest import FILE, REFUSED, USAGE
 from pairs import MASK, Pair, barycentric, inside_points, interpolate, make_pair, map_points, read_csv, write_csv, \
     write_json, write_mesh, write_vtk, xy
@@ -268,13 +270,30 @@ def test_a_million_rows_are_read_and_written_by_columns(dhm, pair):
 def test_vtk_data_keeps_its_arrays(dhm, pair):
     points = inside_points(pair, 60)
     write_vtk(dhm.path("d.vtk"), points, [[0, 1, 2]], target=points)
-    dhm("map", *MESHES, "d.vtk", "-o", "d.vtp", "--keep-vectors")
+    dhm("map", *MESHES, "d.vtk", "-o", "d.vtp", "--vectors", "none")
     assert 'Name="Moved"' in dhm.path("d.vtp").read_text()
     dhm("map", "--inverse", *MESHES, "d.vtp", "-o", "back.off", "-q")
     meshio = pytest.importorskip("meshio")
     back = meshio.read(dhm.path("back.off"))
     numpy.testing.assert_allclose(back.points[:, :2], points, rtol=0, atol=1e-13)
     numpy.testing.assert_array_equal(back.cells[0].data, [[0, 1, 2]])
+
+
+def test_vectors_that_are_not_active_are_named_or_mapped(dhm, pair):
+    points = inside_points(pair, 60)
+    write_vtk(dhm.path("d.vtk"), points, [[0, 1, 2]], target=points)
+    text = dhm.path("d.vtk").read_text()
+    dhm.path("d.vtk").write_text(text + text[text.index("VECTORS Moved") :].replace("Moved", "Other"))
+    for option in ("active", "all", "none"):
+        said = dhm("map", *MESHES, "d.vtk", "--vectors", option, "-o", "v.vtp", "-f").err
+        assert ("Other (--vectors all" in said) == (option == "active") and "Moved" not in said
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(dhm.path("v.vtp")))
+        reader.Update()
+        arrays = reader.GetOutput().GetPointData()
+        moved, other = (vtk_to_numpy(arrays.GetArray(name))[:, :2] for name in ("Moved", "Other"))
+        assert (moved == other).all() == (option != "active")
+        numpy.testing.assert_array_equal((other == points).all(), option != "all")
 
 
 def test_meshes_with_points_outside_are_not_written_where_they_cannot_be_marked(dhm, pair):

@@ -89,6 +89,24 @@ def test_meshes_that_do_not_match(dhm):
             dhm.refuse(REFUSED, *command, says=name)
 
 
+def test_remedies_are_those_of_dhm(dhm):
+    """Quadrilaterals are cut in both meshes alike; options have the names that can be typed."""
+    points, _ = make_grid(1, 1)
+    for name in ("a.obj", "b.obj"):
+        dhm.path(name).write_text("".join(f"v {x} {y} 0\n" for x, y in points) + "f 1 2 4 3\n")
+    write_csv(dhm.path("p.csv"), [[0.5, 0.1]])
+    for command in (["check", "--quick", "a.obj", "b.obj"], ["map", "a.obj", "b.obj", "p.csv", "-o", "new.csv"]):
+        result = dhm(*command, status=REFUSED)
+        said = result.out.decode() + result.err
+        assert "cell 0" in said and "dhm convert -o both.vtp" in said and "same diagonals" in said
+        assert "vtkTriangleFilter" not in said
+    dhm("convert", "a.obj", "b.obj", "-o", "both.vtp")
+    obtuse = numpy.array([[0, 0], [1, 0], [0, 1], [0.6, 0.45]])
+    write_json(dhm.path("pair.json"), Pair(obtuse, obtuse, numpy.array([[0, 1, 2], [1, 3, 2]])))
+    said = dhm("map", "-s", "contour", "pair.json", "p.csv", "-o", "new.csv", status=REFUSED).err
+    assert "--linear-where-discordant" in said and "DiscordantTriangles" not in said
+
+
 def test_maps_that_are_not_certified_are_named(dhm):
     pair = make_pair(8, 8, move=0.0, width=8.0, height=8.0)
     # Two neighbors are a rounding unit apart in the source.

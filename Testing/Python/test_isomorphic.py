@@ -63,6 +63,17 @@ def test_what_is_not_certified_is_said_and_nan():
     assert numpy.array_equal(f.source, source) and numpy.array_equal(f.triangles, triangles)
 
 
+def test_messages_name_options_of_python():
+    source = numpy.array([[0, 0], [1, 0], [0, 1], [1, 1]], float)
+    target = source.copy()
+    target[3] = -1, -1
+    with pytest.raises(ValueError, match="mask_invalid"):
+        Homeomorphism(source, target, [[0, 1, 2], [1, 3, 2]])
+    source[3] = 0.6, 0.45
+    with pytest.raises(ValueError, match="discordant_by_linear"):
+        Homeomorphism(source, source, [[0, 1, 2], [1, 3, 2]], "contour")
+
+
 def test_outlines_and_added_points():
     outline = numpy.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [0, 1]], float)
     other = numpy.roll(outline, -3, axis=0)

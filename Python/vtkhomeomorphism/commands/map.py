@@ -18,10 +18,11 @@ from ..mapping import PointMap, choose_system
 @click.option("-j", "--jacobian", is_flag=True, help="Add the array Jacobian: the derivative, 9 numbers in row-major order.")
 @click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas.")
 @click.option("--triangle-id", is_flag=True, help="Add the array TriangleId: the cell id of each point's triangle.")
-@click.option("--keep-vectors", is_flag=True, help="Do not transform active vectors, normals and tensors.")
+@click.option("--vectors", type=click.Choice(["active", "all", "none"]), default="active",
+              help="Vectors, normals and tensors to transform with the points.")
 @options.pair_files("SOURCE [TARGET] DATA")
 def command(inputs, output, columns, require_inside, settings, inverse, crs, densify, jacobian, determinant,
-            triangle_id, keep_vectors):
+            triangle_id, vectors):
     """Map data from the source's domain to the target's.
 
     DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl),
@@ -35,7 +36,8 @@ def command(inputs, output, columns, require_inside, settings, inverse, crs, den
     work.filter.SetComputeJacobian(jacobian)
     work.filter.SetComputeJacobianDeterminant(determinant)
     work.filter.SetComputeTriangleId(triangle_id)
-    work.filter.SetTransformActiveAttributes(not keep_vectors)
+    work.filter.SetTransformActiveAttributes(vectors != "none")
+    work.filter.SetTransformAllInputVectors(vectors == "all")
     source, target = pair.crs(inverse)
     Data(work, output, columns, require_inside, densify, (source, target if crs is None else crs), pair.shift).process(
         inputs.other, inputs.format)
