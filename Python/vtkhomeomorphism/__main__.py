@@ -31,6 +31,7 @@ from .vtkfiles import capture_messages
       dhm map shift.json parcels.gpkg -o shifted.gpkg --crs EPSG:3067
       dhm warp scan.tif control.points --crs EPSG:3857 -o rectified.tif
       dhm warp here.obj there.obj photo.png -o warped.png
+      dhm morph landmarks.csv --source-image a.png --target-image b.png -o frame-%03d.png
       dhm map --inverse before.vtp after.vtp measured.vtp -o back.vtp
 
     dhm COMMAND --help shows the options of a command.

@@ -66,6 +66,7 @@ class PointMap:
 
     def __init__(self, pair, settings, inverse=False):
         self.pair, self.settings, self.inverse, self.outside = pair, settings, inverse, 0
+        self.domain, self.name = pair.meshes[inverse], pair.names[inverse]
         self.filter = set_up(vtkDifferentiableHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
         self.filter.SetOutputPointsPrecision(self.filter.DOUBLE_PRECISION)
@@ -120,12 +121,17 @@ class PointMap:
                    f"{self.pair.names[0]}, at point {worst}: {distances[worst]:.4g} {unit}.")
 
     def map_points(self, points):
-        """Images of points of shape (n, 2) or (n, 3), NaN outside, and the arrays of map_data by name."""
+        """Images of points of shape (n, 2) or (n, 3), NaN outside, and the arrays of map_data by name (and z, if points
+        of two coordinates have images of three)."""
+        dimension = points.shape[1]
+        if dimension == 2 and numpy.ptp(points_of(self.domain)[:, 2]) > 0:
+            inform(f"{self.name} is not parallel to x and y, and the points have no z: it is taken for 0.")
         result = self.map_data(make_mesh(points))
-        arrays = arrays_of(result.GetPointData())
-        images = points_of(result)[:, : points.shape[1]].copy()
+        arrays, images = arrays_of(result.GetPointData()), points_of(result).copy()
         images[(arrays[MASK] == 0) & (arrays.get("Fallback", 0) == 0)] = numpy.nan
-        return images, arrays
+        if dimension == 2 and numpy.nan_to_num(images[:, 2]).any():
+            arrays = {"z": images[:, 2], **arrays}
+        return images[:, :dimension], arrays
 
 
 def ground_distances(a, b, crs):

@@ -91,8 +91,9 @@ def pair_files(names):
     others = int(names.startswith("SOURCE [TARGET] "))
 
     def read_inputs(files, scan, **given):
-        if others and len(files) == 2 and format_of(files[0]) in PICTURES + VECTORS:
-            files = files[::-1] if format_of(files[1]) == "csv" or is_landmark_file(files[1]) else files
+        are_others = [format_of(name) in PICTURES + VECTORS and not is_landmark_file(name) for name in files]
+        if others and are_others == [True, False]:
+            files = files[::-1]
         if not 1 + others <= len(files) <= 2 + others:
             raise click.UsageError(f"The files are {names}; found {len(files)}")
         if files.count("-") > 1:

@@ -41,10 +41,7 @@ class Report:
         self.filter.SetMeasureContinuity(measure)
         self.filter.Update()
         take_messages()
-        self.valid, self.measured = bool(self["Valid"]), bool(self["Measured"])
-
-    def __getitem__(self, column):
-        return self.filter.GetStatistic(column)
+        self.valid, self.measured = (bool(self.filter.GetStatistic(name)) for name in ("Valid", "Measured"))
 
     def cells_where(self, side, name, value=1):
         """Ids of the polygons of the source (0) or the target (1) whose cell array has a value."""
@@ -82,7 +79,8 @@ class Report:
             group = next((g for g in groups if name.lower().startswith(g) and name.lower() != g), "")
             value = {"value": kind(value), "cell": int(cell.GetTuple1(0))} if cell else kind(value)
             (result[group] if group else result)[in_words(name[len(group) :])] = value
-        return result
+        return {name: value for name, value in result.items()
+                if name not in SYSTEMS or "smallest_determinant" in value}
 
 
 def require_map(pair, mask_invalid=False):

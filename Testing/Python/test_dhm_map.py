@@ -85,6 +85,17 @@ def test_jacobian_determinant_and_triangle(dhm, pair):
     numpy.testing.assert_allclose(table["JacobianDeterminant"], numpy.linalg.det(jacobian), atol=1e-12)
 
 
+def test_images_on_surfaces_have_a_third_coordinate(dhm, pair):
+    surface = numpy.column_stack((pair.target, 0.2 * numpy.sin(3 * pair.target[:, 0])))
+    write_mesh(dhm.path("surface.off"), surface, pair.triangles)
+    points = inside_points(pair, 50)
+    table = map_points(dhm, ["a.off", "surface.off"], points, "-s", "linear")
+    expected = interpolate(points, pair._replace(target=surface))
+    numpy.testing.assert_allclose(numpy.column_stack((xy(table), table["z"])), expected, rtol=0, atol=1e-14)
+    write_csv(dhm.path("p.csv"), points)
+    assert "no z" in dhm("map", "-i", "a.off", "surface.off", "p.csv", "-o", "-").err
+
+
 def test_points_outside_are_marked_and_never_invented(dhm, pair):
     write_csv(dhm.path("p.csv"), [[0.5, 0.5], [1.5, 0.5], [numpy.nan, 0.2]])
     result = dhm("map", *MESHES, "p.csv", "-o", "-")

@@ -23,9 +23,6 @@ def describe(report, pair):
         if report.measured:
             wrong = set(report.cells_where(side, "Concordant", 0)) - set(found["invalid_triangles"])
             found[name]["discordant_triangles"] = sorted(wrong)
-    for name in SYSTEMS:
-        if "smallest_determinant" not in found[name]:
-            del found[name]
     return found
 
 

@@ -16,7 +16,7 @@ class Coordinates(PointMap):
     moves = False
 
     def __init__(self, mesh, settings, name):
-        self.name = name
+        self.domain, self.name = mesh, name
         self.filter = set_up(vtkTriangularCoordinates(), settings)
         self.filter.SetInputDataObject(0, mesh)
         self.filter.GenerateLinesOff()
