@@ -20,9 +20,10 @@
  * The point arrays are `OriginalPointId` (vtkIdType), the id of the point in the inputs, -1 for a
  * frame's corners and added points, and `LandmarkResidual` (double), the distance of a landmark, in
  * the target's units, from its prediction by a smooth map through its neighbors, NaN for added
- * points; at the border, where predictions are less certain, it is reduced accordingly. The cell arrays (double) are `MinimumAngle`, the smallest angle of a triangle in both
- * domains in degrees, and `Distortion`, the ratio of the singular values of the linear map between
- * its two triangles, from 1.
+ * points; at the border, where predictions are less certain, it is reduced accordingly. The cell
+ * arrays (double) are `MinimumAngle`, the smallest angle of a triangle in both domains in degrees,
+ * and `Distortion`, the ratio of the singular values of the linear map between its two triangles,
+ * from 1.
  *
  * With several landmarks or holes, edges may pass a landmark or hole on either side. Short edges
  * are preferred; constraint segments override this choice. The result depends neither on the order
