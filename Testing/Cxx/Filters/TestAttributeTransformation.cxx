@@ -62,22 +62,23 @@ vtkSmartPointer<vtkPolyData> MakeCloudWithArrays(vtkPolyData* mesh, std::uint64_
   constexpr vtkIdType count = 3000;
   const auto cloud = MakeCloud(mesh, InnerSamples(mesh, count, seed, 1e-3));
   vtkPointData* pointData = cloud->GetPointData();
-  pointData->SetScalars(RandomArray("Scalars", 3, count, seed + 1));
-  pointData->SetVectors(RandomArray("Vectors", 3, count, seed + 2));
-  const auto normals = RandomArray("Normals", 3, count, seed + 3);
+  for (const auto& [name, components] : std::vector<std::pair<const char*, int>>{ { "Scalars", 3 },
+         { "Vectors", 3 }, { "Normals", 3 }, { "Tensors", 9 }, { "TextureCoordinates", 3 },
+         { "Displacement", 3 }, { "Stress", 6 }, { "Pair", 2 }, { "Single", 1 } })
+  {
+    pointData->AddArray(RandomArray(name, components, count, ++seed));
+  }
+  pointData->AddArray(RandomArray<vtkFloatArray>("FloatVelocity", 3, count, seed + 1));
+  pointData->AddArray(RandomArray<vtkIntArray>("Counts", 3, count, seed + 2));
+  pointData->SetActiveScalars("Scalars");
+  pointData->SetActiveVectors("Vectors");
+  pointData->SetActiveNormals("Normals");
+  pointData->SetActiveTensors("Tensors");
+  pointData->SetActiveTCoords("TextureCoordinates");
   for (vtkIdType i = 0; i < count; ++i)
   {
-    normals->SetTuple(i, Unit(VectorOf(normals, i)).data());
+    pointData->GetNormals()->SetTuple(i, Unit(VectorOf(pointData->GetNormals(), i)).data());
   }
-  pointData->SetNormals(normals);
-  pointData->SetTensors(RandomArray("Tensors", 9, count, seed + 4));
-  pointData->SetTCoords(RandomArray("TextureCoordinates", 3, count, seed + 5));
-  pointData->AddArray(RandomArray("Displacement", 3, count, seed + 6));
-  pointData->AddArray(RandomArray("Stress", 6, count, seed + 7));
-  pointData->AddArray(RandomArray<vtkFloatArray>("FloatVelocity", 3, count, seed + 8));
-  pointData->AddArray(RandomArray<vtkIntArray>("Counts", 3, count, seed + 9));
-  pointData->AddArray(RandomArray("Pair", 2, count, seed + 10));
-  pointData->AddArray(RandomArray("Single", 1, count, seed + 11));
   return cloud;
 }
 

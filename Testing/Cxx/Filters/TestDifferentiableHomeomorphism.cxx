@@ -383,40 +383,4 @@ TEST(DifferentiableHomeomorphism, ArraysOfTheSameNameAreReplaced)
   }
 }
 
-TEST(DifferentiableHomeomorphism, ChangingAPropertyExecutesAgain)
-{
-  using Filter = vtkDifferentiableHomeomorphism;
-  using Change = std::function<void(Filter*)>;
-  const std::vector<Change> changes{ { [](Filter* f) { f->SetCoordinateSystemToLinear(); } },
-    [](Filter* f) { f->SetCoordinateSystemToContour(); },
-    [](Filter* f) { f->SetCenterPoint(Filter::INCENTER); },
-    [](Filter* f) { f->SetDiscordantTriangles(Filter::REFUSE); },
-    [](Filter* f) { f->SetCoordinateSystemToSmooth(); },
-    [](Filter* f) { f->MaskInvalidTrianglesOn(); }, [](Filter* f) { f->SetTolerance(0.125); },
-    [](Filter* f) { f->ComputeTriangleIdOn(); }, [](Filter* f) { f->ComputeJacobianOn(); },
-    [](Filter* f) { f->ComputeJacobianDeterminantOn(); },
-    [](Filter* f) { f->TransformActiveAttributesOff(); },
-    [](Filter* f) { f->TransformAllInputVectorsOn(); },
-    [](Filter* f) { f->SetAttributeTransformation("Any", Filter::GRADIENT_TRANSFORMATION); },
-    [](Filter* f) { f->ClearAttributeTransformations(); }, [](Filter* f) { f->BlankOutsideOff(); },
-    [](Filter* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); },
-    [](Filter* f) { f->InverseOn(); } };
-  const MeshPair pair = MakePlanarPair(6, 356, 0.05);
-  const auto filter =
-    MakeFilter(Smooth, pair, MakeCloud(pair.Source, RandomSamples(pair.Source, 50, 44)));
-  Output(filter);
-  for (const auto& change : changes)
-  {
-    const vtkMTimeType before = Output(filter)->GetMTime();
-    change(filter);
-    const vtkMTimeType after = Output(filter)->GetMTime();
-    EXPECT_GT(after, before);
-    // Another update does nothing, and executing again gives the same.
-    EXPECT_EQ(Output(filter)->GetMTime(), after);
-    const auto first = CopyOf(Output(filter));
-    filter->Modified();
-    EXPECT_EQ(CountDifferentPoints(Output(filter), first), 0);
-  }
-}
-
 } // namespace

@@ -18,23 +18,6 @@ namespace
 
 using namespace fixtures;
 
-/// Runs work in threads of its own, several times.
-void RunInThreads(const std::function<void()>& work)
-{
-  for (int repetition = 0; repetition < 4; ++repetition)
-  {
-    std::vector<std::thread> threads;
-    for (int i = 0; i < 4; ++i)
-    {
-      threads.emplace_back(work);
-    }
-    for (std::thread& thread : threads)
-    {
-      thread.join();
-    }
-  }
-}
-
 TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
 {
   const MeshPair pair = MakePlanarPair(12, 71);
@@ -42,28 +25,31 @@ TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
   const auto reference = MakeTransform(Smooth, pair);
   const Point expected = Transformed(reference, point);
   std::atomic<int> different{ 0 };
-  // A transform of its own for each thread, and a copy of one that has been updated.
-  RunInThreads([&] { different += Transformed(MakeTransform(Smooth, pair), point) != expected; });
-  RunInThreads([&] {
+  // Each thread has a transform of its own, a copy of one that has been updated, and filters on
+  // shallow copies of the meshes.
+  const auto work = [&] {
+    different += Transformed(MakeTransform(Smooth, pair), point) != expected;
     vtkNew<vtkHomeomorphismTransform> transform;
     transform->DeepCopy(reference);
     different += Transformed(transform, point) != expected;
-  });
-  // Filters of its own on shallow copies.
-  RunInThreads([&] {
     vtkNew<vtkPolyData> source;
     vtkNew<vtkPolyData> target;
     source->ShallowCopy(pair.Source);
     target->ShallowCopy(pair.Target);
     const auto filter = MakeFilter(Smooth, { source.Get(), target.Get() }, MakeCloud({ point }));
     different += PointOf(Output(filter), 0) != expected;
-    vtkNew<vtkResampleThroughHomeomorphism> resample;
-    resample->SetSourceData(source);
-    resample->SetTargetData(target);
+    const auto resample =
+      MakeAlgorithm<vtkResampleThroughHomeomorphism>({ source.Get(), target.Get() });
     resample->SetSamplingDimensions(8, 8);
     resample->Update();
     MakeCoordinates(Smooth, source)->Update();
-  });
+  };
+  for (int repetition = 0; repetition < 8; ++repetition)
+  {
+    std::array<std::thread, 4> threads;
+    std::generate(threads.begin(), threads.end(), [&work] { return std::thread(work); });
+    std::for_each(threads.begin(), threads.end(), [](std::thread& thread) { thread.join(); });
+  }
   EXPECT_EQ(different.load(), 0);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Pairs of planes anywhere in space keep heights, with normals that agree; surfaces, however thin,
-// are no planes; points near a surface go to the other surface.
+// Pairs of planes anywhere in space keep heights, with normals that agree; points near a surface go
+// to the other surface.
 
 #include "Fixtures/FilterRuns.h"
 
@@ -15,21 +15,20 @@ using namespace fixtures;
 struct Plane
 {
   Point Origin;
-  Point U;
-  Point V;
-  Point Normal;
+  Matrix Axes;
 
-  Point At(double x, double y, double height) const
+  Point At(double x, double y) const
   {
-    return this->Origin + (x * this->U + y * this->V + height * this->Normal);
+    return this->Origin + Transposed(this->Axes) * Point{ x, y };
   }
+  const Point& Normal() const { return this->Axes[2]; }
 };
 
 Plane PlaneWithNormal(const Point& origin, const Point& normal, const Point& helper)
 {
   const Point n = Unit(normal);
   const Point v = Unit(Cross(n, helper));
-  return { origin, Cross(v, n), v, n };
+  return { origin, { Cross(v, n), v, n } };
 }
 
 /// The plane in which the coordinate of an axis is constant.
@@ -37,9 +36,9 @@ Plane AxisPlane(int normalAxis, double distance, double sign)
 {
   Plane plane{};
   plane.Origin[normalAxis] = distance;
-  plane.U[(normalAxis + 1) % 3] = 1.0;
-  plane.V[(normalAxis + 2) % 3] = sign;
-  plane.Normal[normalAxis] = sign;
+  plane.Axes[0][(normalAxis + 1) % 3] = 1.0;
+  plane.Axes[1][(normalAxis + 2) % 3] = sign;
+  plane.Axes[2][normalAxis] = sign;
   return plane;
 }
 
@@ -47,7 +46,7 @@ Plane AxisPlane(int normalAxis, double distance, double sign)
 Plane Turned(const Plane& plane, Random& random, double degrees)
 {
   const Matrix turn = Rotation(random.Vector(), vtkMath::RadiansFromDegrees(degrees));
-  return { random.Vector(), turn * plane.U, turn * plane.V, turn * plane.Normal };
+  return { random.Vector(), plane.Axes * Transposed(turn) };
 }
 
 /// A pair of planes, each mesh rotated, scaled and moved at random in its plane, so that the points
@@ -62,7 +61,7 @@ MeshPair MakePair(int n, Random& random, const Plane& source, const Plane& targe
     const double s = scale * std::sin(angle);
     const Point shift = random.Vector();
     return Moved(mesh, [&](const Point& p) {
-      return plane.At(c * p[0] - s * p[1] + shift[0], s * p[0] + c * p[1] + shift[1], 0.0);
+      return plane.At(c * p[0] - s * p[1] + shift[0], s * p[0] + c * p[1] + shift[1]);
     });
   };
   return { place(pair.Source, source), place(pair.Target, target) };
@@ -91,7 +90,7 @@ void ExpectHeightsKept(
     {
       for (const double height : heights)
       {
-        samples.push_back(foot + height * from.Normal);
+        samples.push_back(foot + height * from.Normal());
       }
     }
     const auto filter = MakeFilter(system, pair, MakeCloud(samples));
@@ -105,12 +104,12 @@ void ExpectHeightsKept(
       const auto id = static_cast<vtkIdType>(i);
       const double height = heights[i % heights.size()];
       const Point image = PointOf(output, id);
-      ASSERT_NEAR(Dot(image - to.Origin, to.Normal), height, rounding);
+      ASSERT_NEAR(Dot(image - to.Origin, to.Normal()), height, rounding);
       // The image lies above the image of its foot, which is the first of these heights.
       const Point foot = PointOf(output, id - static_cast<vtkIdType>(i % heights.size()));
-      ASSERT_LT(Distance(image, foot + height * to.Normal), 1e3 * rounding);
+      ASSERT_LT(Distance(image, foot + height * to.Normal()), 1e3 * rounding);
       ASSERT_GT(PointValue(output, "JacobianDeterminant", id), 0.0);
-      ASSERT_LT(Distance(JacobianOf(output, id) * from.Normal, to.Normal), 1e-11);
+      ASSERT_LT(Distance(JacobianOf(output, id) * from.Normal(), to.Normal()), 1e-11);
       ASSERT_EQ(Transformed(same, samples[i]), image);
     }
   }
@@ -181,13 +180,6 @@ TEST_P(Planes, TurnedByAxesTheMapHasTheSameBits)
   }
 }
 
-vtkSmartPointer<vtkPolyData> AsFloats(vtkPolyData* mesh)
-{
-  const auto result = CopyOf(mesh);
-  result->SetPoints(MakeCloud(PointsOf(mesh), VTK_FLOAT)->GetPoints());
-  return result;
-}
-
 TEST_P(Planes, CornersMapToTheStoredCorners)
 {
   // Corners in float lie off the plane by rounding errors of their own.
@@ -204,7 +196,10 @@ TEST_P(Planes, CornersMapToTheStoredCorners)
     MeshPair pair = MakePair(4, random, source, target);
     if (round % 4 == 2)
     {
-      pair = { AsFloats(pair.Source), AsFloats(pair.Target) };
+      for (const auto& mesh : { pair.Source, pair.Target })
+      {
+        mesh->SetPoints(MakeCloud(PointsOf(mesh), VTK_FLOAT)->GetPoints());
+      }
     }
     else if (round % 4 == 3)
     {
@@ -214,36 +209,6 @@ TEST_P(Planes, CornersMapToTheStoredCorners)
     EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Target), 0);
     filter->InverseOn();
     EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0);
-  }
-}
-
-TEST(Planes, AThinHalfTubeIsNone)
-{
-  // If it were flattened, the ratio of areas would be about 2 only where it is steep. The tolerance
-  // is a float ulp relative to the shortest edge.
-  const auto tube = [](double radius) {
-    return AsFloats(Moved(RegularGrid(8), [radius](const Point& p) -> Point {
-      const double angle = vtkMath::Pi() * p[1] / 8.0;
-      return { p[0] / 8.0, -radius * std::cos(angle), radius * std::sin(angle) };
-    }));
-  };
-  for (const double radius : { 2e-4, 3e-4, 4.5e-4, 6e-4 })
-  {
-    for (const System& system : { Linear, Smooth })
-    {
-      const MeshPair pair{ tube(radius), tube(2.0 * radius) };
-      const auto cloud = AsFloats(MakeCloud(pair.Source, RandomSamples(pair.Source, 500, 1)));
-      const auto filter = MakeFilter(system, pair, cloud);
-      filter->ComputeJacobianDeterminantOn();
-      vtkPointSet* output = Output(filter);
-      ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0) << radius;
-      for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
-      {
-        const Point p = PointOf(cloud, i);
-        EXPECT_NEAR(PointValue(output, "JacobianDeterminant", i), 2.0, 2e-2);
-        EXPECT_LT(Distance(PointOf(output, i), { p[0], 2.0 * p[1], 2.0 * p[2] }), 1e-6);
-      }
-    }
   }
 }
 
