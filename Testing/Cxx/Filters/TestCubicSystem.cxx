@@ -54,7 +54,8 @@ TEST(CubicSystem, MapsThereAndBack)
         points.push_back(point + h * (corners[k] - corners[0]));
       }
     }
-    const auto forward = MakeFilter(Cubic, pair, MakeCloud(points));
+    const auto cloud = MakeCloud(points);
+    const auto forward = MakeFilter(Cubic, pair, cloud);
     forward->SetCubicBending(kind < 4 ? Map::LOCAL : Map::LEAST);
     forward->SetTolerance(1e-12);
     forward->ComputeJacobianOn();
@@ -64,17 +65,14 @@ TEST(CubicSystem, MapsThereAndBack)
     backward->SetTolerance(1e-12);
     backward->InverseOn();
     EXPECT_EQ(forward->GetNumberOfOutsidePoints(), 0);
+    EXPECT_LE(LargestDistance(Output(backward), cloud), 1e-12);
     for (vtkIdType i = 0; i < images->GetNumberOfPoints(); ++i)
     {
-      ASSERT_LE(Distance(PointOf(Output(backward), i), points[static_cast<std::size_t>(i)]), 1e-12);
-      if (i % 5 == 1 || i % 5 == 3)
-      {
-        // Two images on either side of that of the point.
-        const std::size_t next = static_cast<std::size_t>(i) + 1;
-        const Point step = points[next] - points[next - 1];
-        const Matrix j = JacobianOf(images, i - i % 5);
-        ASSERT_LE(Distance(PointOf(images, i + 1) - PointOf(images, i), j * step), 1e-4 * h);
-      }
+      // Two images on either side of that of the point.
+      const vtkIdType k = i % 5;
+      const auto differenceOf = [&](vtkDataSet* of) { return PointOf(of, i + 1) - PointOf(of, i); };
+      ASSERT_TRUE((k != 1 && k != 3) ||
+        Distance(differenceOf(images), JacobianOf(images, i - k) * differenceOf(cloud)) < 1e-4 * h);
     }
   }
 }

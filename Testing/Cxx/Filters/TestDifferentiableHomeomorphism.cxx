@@ -309,6 +309,11 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     };
     const auto pointGhosts = ghosts(points, 5, Attributes::DUPLICATEPOINT);
     const auto cellGhosts = ghosts(cells, 7, Attributes::DUPLICATECELL);
+    const auto hidden = ghosts(points, 11, Attributes::HIDDENPOINT);
+    for (vtkIdType i = 0; i < points; ++i)
+    {
+      pointGhosts->SetValue(i, pointGhosts->GetValue(i) | hidden->GetValue(i));
+    }
     if (hasGhosts)
     {
       image->GetPointData()->AddArray(pointGhosts);
@@ -324,10 +329,11 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
     for (vtkIdType i = 0; i < points; ++i)
     {
       const Point p = PointOf(image, i);
-      const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0;
       const int ghost = pointGhosts->GetValue(i);
-      // Ghost points are marked, but not counted.
-      outside += isOutside && ghost == 0;
+      // Hidden points are outside. Ghost points are marked, but not counted.
+      const bool isOutside = p[0] < 0.0 || p[0] > 8.0 || p[1] < 0.0 || p[1] > 8.0 ||
+        (ghost & Attributes::HIDDENPOINT) != 0;
+      outside += isOutside && (ghost & Attributes::DUPLICATEPOINT) == 0;
       ASSERT_NE(IsValid(output, i), isOutside);
       ASSERT_EQ(PointValue(output, "TriangleId", i) < 0, isOutside);
       ASSERT_EQ(std::isnan(Norm(JacobianOf(output, i))), isOutside);

@@ -134,6 +134,9 @@ TEST(Resample, ImagesAreSampledAtPreimages)
   EXPECT_STREQ(image->GetPointData()->GetVectors()->GetName(), "Wind");
   ExpectPulledBack(image, pair);
   EXPECT_EQ(filter->GetNumberOfOutsidePoints(), CountOutside(image));
+  const auto inverse = MakeResample({ pair.Target, pair.Source }, MakeImage());
+  inverse->InverseOn();
+  ExpectSame(Output(inverse.Get()), image, { "Field", "Wind" });
 }
 
 TEST(Resample, AnyGridAndAnyDataAreSupported)
@@ -172,20 +175,6 @@ TEST(Resample, AnyGridAndAnyDataAreSupported)
   filter->SetSourceData(source);
   filter->SetDataObject(nullptr);
   ExpectPulledBack(Output(filter.Get()), pair);
-}
-
-TEST(Resample, InverseExchangesSourceAndTarget)
-{
-  const MeshPair pair = MakePair();
-  const auto image = MakeImage();
-  const auto forward = MakeResample(pair, image);
-  const auto inverse = MakeResample({ pair.Target, pair.Source }, image);
-  inverse->InverseOn();
-  forward->Update();
-  inverse->Update();
-  EXPECT_EQ(CountDifferentValues(
-              PointArray(forward->GetOutput(), "Field"), PointArray(inverse->GetOutput(), "Field")),
-    0);
 }
 
 TEST(Resample, PiecesFormTheWhole)
