@@ -85,9 +85,9 @@ vtkSmartPointer<vtkPolyData> MakeCloudWithArrays(vtkPolyData* mesh, std::uint64_
 TEST_P(AttributesInEverySystem, FollowTheJacobian)
 {
   using Filter = vtkDifferentiableHomeomorphism;
-  for (const Pairing& pairing : AllPairings(6, 1, 410))
+  for (const auto& [kind, pair] : AllPairings(6, 1, 410))
   {
-    const MeshPair& pair = pairing.Meshes;
+    SCOPED_TRACE(kind);
     const auto cloud = MakeCloudWithArrays(pair.Source, 80);
     const vtkIdType count = cloud->GetNumberOfPoints();
     for (const char* name : { "Gradient", "Normal" })
@@ -131,9 +131,9 @@ TEST_P(AttributesInEverySystem, FollowTheJacobian)
 
 TEST_P(AttributesInEverySystem, OfCellsAreTransformedAtTheirCenters)
 {
-  for (const Pairing& pairing : AllPairings(6, 2, 450))
+  for (const auto& [kind, pair] : AllPairings(6, 2, 450))
   {
-    const MeshPair& pair = pairing.Meshes;
+    SCOPED_TRACE(kind);
     // Lines and polygons inside triangles, and one cell without points between them.
     Random random(102);
     vtkNew<vtkUnstructuredGrid> data;

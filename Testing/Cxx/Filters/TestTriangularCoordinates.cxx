@@ -112,13 +112,12 @@ TEST_P(CoordinatesInEverySystem, CorrespondingPointsHaveEqualCoordinates)
   // By definition of the homeomorphism. In the Contour system discordant triangles of P alone or of
   // Q alone would be mapped by Linear.
   const MeshPair planar = MakePlanarPair(10, 730, 0.06);
-  for (const Pairing& pairing : GetParam().IsChoosy()
+  for (const auto& [kind, pair] : GetParam().IsChoosy()
       ? std::vector<Pairing>{ { "planar", planar },
           { "tilted", { planar.Source, Tilted(planar.Target, Tilt(), { 1.0, 0.0, 2.0 }) } } }
       : AllPairings(8, 2, 731))
   {
-    SCOPED_TRACE(pairing.Name);
-    const MeshPair& pair = pairing.Meshes;
+    SCOPED_TRACE(kind);
     const std::vector<MeshPoint> samples = InnerSamples(pair.Source, 5000, 63, 1e-3);
     const auto cloud = MakeCloud(pair.Source, samples);
     const auto onSource = MakeCoordinates(GetParam(), pair.Source, cloud);
