@@ -86,15 +86,7 @@ void KeepSecondSquare(vtkPolyData* mesh)
   mesh->GetPolys()->InsertNextCell({ 1, 5, 4 });
 }
 
-void Append(std::vector<double>& numbers, vtkDataArray* array)
-{
-  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
-  {
-    const double x = array->GetVariantValue(i).ToDouble();
-    // NaN is unequal to everything, itself included.
-    numbers.push_back(std::isnan(x) ? -1e99 : x);
-  }
-}
+using Arrays = std::vector<vtkDataArray*>;
 
 /// A user of a pair of meshes that asks the same question repeatedly. An empty answer is a refusal.
 struct User
@@ -107,22 +99,25 @@ struct User
 };
 
 template <typename Object>
-User MakeUser(
-  const char* name, Object object, const std::function<void(std::vector<double>&)>& collect)
+User MakeUser(const char* name, Object object, const std::function<Arrays()>& collect)
 {
   auto messages = std::make_shared<Messages>(object.Get());
-  return { name,
-    [object, messages, collect]() {
-      messages->Clear();
-      object->Update();
-      std::vector<double> answer;
-      if (!messages->HasError())
+  const auto ask = [object, messages, collect]() {
+    messages->Clear();
+    object->Update();
+    std::vector<double> answer;
+    for (vtkDataArray* array : messages->HasError() ? Arrays{} : collect())
+    {
+      for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
       {
-        collect(answer);
+        const double x = array->GetVariantValue(i).ToDouble();
+        // NaN is unequal to everything, itself included.
+        answer.push_back(std::isnan(x) ? -1e99 : x);
       }
-      return answer;
-    },
-    [object]() { object->Modified(); },
+    }
+    return answer;
+  };
+  return { name, ask, [object]() { object->Modified(); },
     [object](int system) { object->SetCoordinateSystem(system); } };
 }
 
@@ -130,10 +125,9 @@ User MakeFilterUser(const MeshPair& pair)
 {
   const auto filter = MakeFilter(Smooth, pair, MakeCloud(Samples));
   filter->ComputeTriangleIdOn();
-  return MakeUser("filter", filter, [filter](std::vector<double>& answer) {
+  return MakeUser("filter", filter, [filter]() -> Arrays {
     auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-    Append(answer, output->GetPoints()->GetData());
-    Append(answer, PointArray(output, "TriangleId"));
+    return { output->GetPoints()->GetData(), PointArray(output, "TriangleId") };
   });
 }
 
@@ -141,26 +135,23 @@ User MakeCoordinatesUser(const MeshPair& pair)
 {
   const auto filter = MakeCoordinates(Smooth, pair.Source, MakeCloud(Samples));
   filter->GenerateLinesOn();
-  return MakeUser("coordinates", filter, [filter](std::vector<double>& answer) {
+  return MakeUser("coordinates", filter, [filter]() -> Arrays {
     auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-    for (const char* name : { "TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter" })
-    {
-      Append(answer, PointArray(output, name));
-    }
-    Append(answer, CellArray(filter->GetTriangulation(), "SmallestAngle"));
-    Append(answer, filter->GetLines()->GetPoints()->GetData());
+    return { PointArray(output, "TriangleId"), PointArray(output, "EdgeLabel"),
+      PointArray(output, "EdgeParameter"), PointArray(output, "ContourParameter"),
+      CellArray(filter->GetTriangulation(), "SmallestAngle"),
+      filter->GetLines()->GetPoints()->GetData() };
   });
 }
 
-std::vector<double> Transformed(vtkAbstractTransform* transform)
+std::vector<Point> Transformed(vtkAbstractTransform* transform)
 {
-  std::vector<double> answer;
+  std::vector<Point> images;
   for (const Point& p : Samples)
   {
-    const Point image = fixtures::Transformed(transform, p);
-    answer.insert(answer.end(), image.begin(), image.end());
+    images.push_back(fixtures::Transformed(transform, p));
   }
-  return answer;
+  return images;
 }
 
 /// Through a filter of VTK, which must notice what changes.
@@ -171,10 +162,9 @@ User MakeTransformUser(const MeshPair& pair)
   filter->SetInputData(MakeCloud(Samples));
   filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   filter->SetTransform(transform);
-  return MakeUser("transform", transform, [transform, filter](std::vector<double>& answer) {
-    filter->Update();
-    Append(answer, filter->GetOutput()->GetPoints()->GetData());
-    EXPECT_EQ(answer, Transformed(transform));
+  return MakeUser("transform", transform, [transform, filter]() -> Arrays {
+    EXPECT_EQ(PointsOf(Output(filter.Get())), Transformed(transform));
+    return { filter->GetOutput()->GetPoints()->GetData() };
   });
 }
 
