@@ -217,13 +217,15 @@ def test_figures(dhm, faces):
     for name, options in (("a.png", ["--all-systems"]), ("b.png", ["--close-up", "10", "8", "2", "--image", "0.ppm"]),
                           ("c.svg", []), ("d.pdf", [])):
         dhm("figure", "pair.json", "--grid", "4", *options, "-o", name)
-    assert Image.open(dhm.path("a.png")).size[0] == 5 * 420
+    width, height = Image.open(dhm.path("a.png")).size
+    assert 1500 < width <= 5 * 430 and height < width / 3
     pixels = numpy.asarray(Image.open(dhm.path("b.png")).convert("RGB"))
     assert len(numpy.unique(pixels.reshape(-1, 3), axis=0)) > 200
     assert xml.etree.ElementTree.parse(dhm.path("c.svg")).getroot().tag.endswith("svg")
     assert dhm.path("d.pdf").read_bytes().startswith(b"%PDF-")
     for values in ("a b c", "0 0 -1", "nan 0 1"):
         dhm.refuse(USAGE, "figure", "pair.json", "--close-up", *values.split(), "-o", "new.png", says="--close-up")
+    dhm.refuse(REFUSED, "figure", "pair.json", "--close-up", "99", "8", "2", "-o", "new.png", says="outside the target")
     for option in ("--grid=0", "--grid=1.5"):
         dhm.refuse(USAGE, "figure", "pair.json", option, "-o", "new.png", says="--grid")
     dhm.refuse(USAGE, "figure", "pair.json", "-o", "new.jpg", says=".png")

@@ -9,7 +9,7 @@ import numpy
 
 from .. import images, options, plots, report
 from ..arrays import SYSTEMS, points_of
-from ..files import Input
+from ..files import Failure, Input
 from ..mapping import PointMap, choose_system
 
 PIECES = 2000  # points along a grid line
@@ -63,26 +63,27 @@ def command(inputs, output, settings, all_systems, grid, image, close_up):
         panels.append((system.capitalize(), 1, own, mapped))
     # Lines of the source end at the boundary of the domain.
     panels.insert(0, ("Source", 0, panels[-1][2], numpy.where(numpy.isnan(panels[0][3]), numpy.nan, lines)))
-    figure, axes = plots.new_figure(420, [panel[0] for panel in panels], [points[panel[1]] for panel in panels],
-                                    2 if close_up else 1)
+    if close_up:
+        center = numpy.array(close_up[:2])
+        centers = [PointMap(both, panels[1][2], inverse=True).map_points(center[None])[0][0], center]
+        if numpy.isnan(centers[0]).any():
+            raise Failure(f"The point {close_up[:2]} is outside the target (--close-up).")
+    figure, axes = plots.new_figure(420, [panel[0] for panel in panels], 2 if close_up else 1)
     colors = raster and raster.all()[:, :, : raster.bands - raster.has_alpha]
     dark = raster and colors.mean() < 0.5 * images.brightest(raster.dtype)
     line_color, mesh_color = ("#ffd91a", "#1a339980") if dark else ("#bf1a26", "#334d7373")
     for column, (_, side, own, drawn) in enumerate(panels):
         picture = raster and _picture(raster, both, own, side)
         for row, panel in enumerate(axes[:, column]):
-            if row:
-                x, y, r = close_up
-                if side == 0:
-                    x, y = PointMap(both, panels[1][2], inverse=True).map_points(numpy.array([[x, y]]))[0][0]
-                panel.set(xlim=(x - r, x + r), ylim=(y - r, y + r))
-            if picture:
-                panel.imshow(picture[0], extent=picture[1], interpolation="antialiased", cmap="gray", vmin=0,
-                             vmax=images.brightest(picture[0].dtype))
             plots.draw_polygons(panel, both.meshes[side], points[side], facecolors="none", edgecolors=mesh_color,
                                 linewidths=0.7 * (1 + row))
-            for line in drawn:
-                panel.plot(*line.T, color=line_color, linewidth=0.8 * (1 + row))
+            panel.autoscale(False)
+            panel.plot(*drawn.T, color=line_color, linewidth=0.8 * (1 + row))
+            if picture:
+                panel.imshow(picture[0], extent=picture[1], cmap="gray", vmin=0, vmax=images.brightest(picture[0].dtype))
+            if row:
+                (x, y), r = centers[side], close_up[2]
+                panel.set(xlim=(x - r, x + r), ylim=(y - r, y + r))
     plots.save(figure, output)
 
 
