@@ -22,8 +22,8 @@ from .vtkFiltersHomeomorphism import (
 )
 
 MASK = "vtkValidPointMask"
-OPTIONS = {"MaskInvalidTriangles": "mask_invalid", "DiscordantTriangles": "discordant_by_linear", "Tolerance": "tolerance",
-           "FairnessRefinement": "fairness_refinement", "CubicBending": "cubic_bending"}
+OPTIONS = {"MaskInvalidTriangles": "mask_invalid", "DiscordantTriangles": "discordant_by_linear",
+           "FairnessRefinement": "fairness_refinement", "CubicBending": "cubic_bending", "Tolerance": "tolerance"}
 """What options that messages of filters name are called here."""
 
 

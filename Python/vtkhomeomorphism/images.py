@@ -112,7 +112,8 @@ class Raster:
         more = [(0, int(n > 0)) for n in (*rest[::-1], 0)]
         result = Raster(numpy.pad(self.means(*whole.tolist(), factor), more, "edge"))
         result.nodata, result.has_alpha = self.nodata, self.has_alpha
-        result.grid = replace(self.grid, width=result.grid.width, height=result.grid.height, steps=factor * self.grid.steps,
+        width, height = result.grid.size
+        result.grid = replace(self.grid, width=width, height=height, steps=factor * self.grid.steps,
                               first=self.grid.at(numpy.full(2, (factor - 1) / 2)))
         return result
 
@@ -148,9 +149,8 @@ class GdalRaster(Raster):
         if self.palette is not None:
             return super().means(columns, rows, factor)
         average = import_extra("rasterio", "Reading a raster").enums.Resampling.average
-        pixels = self.file.read(window=((0, rows * factor), (0, columns * factor)), out_shape=(self.bands, rows, columns),
-                                resampling=average)
-        return numpy.moveaxis(pixels, 0, 2)
+        window, shape = ((0, rows * factor), (0, columns * factor)), (self.bands, rows, columns)
+        return numpy.moveaxis(self.file.read(window=window, out_shape=shape, resampling=average), 0, 2)
 
 
 def read(input):

@@ -27,15 +27,15 @@ class IsomorphicTriangulation(NamedTuple):
     triangles: numpy.ndarray
     """Shape (m, 3), int64."""
     residuals: numpy.ndarray
-    """For each landmark, the distance in the target from where a smooth map through its neighbors puts it (at the border,
-    where that is less certain, reduced accordingly)."""
+    """For each landmark, the distance in the target from where a smooth map through its neighbors puts it; at the
+    border, where that is less certain, it is reduced accordingly."""
     added_points: int
     """Number of points added, those of a frame not counted."""
     left_out: list
     """(number, reason) of segments that conflict with others, if they were to be left out."""
     report: dict
-    """Of both domains: smallest_angles (degrees), shares_of_angles_below_10_15_20, obtuse_share and discordant_share (of
-    triangles that are so in at least one), largest_distortion and largest_distortion_triangle."""
+    """Of both domains: smallest_angles (degrees), shares_of_angles_below_10_15_20, obtuse_share and discordant_share
+    (of triangles that are so in at least one), largest_distortion and largest_distortion_triangle."""
 
     def suspicious(self) -> numpy.ndarray:
         """At most ten landmarks with outstanding residuals, the worst first."""
@@ -63,8 +63,8 @@ def within(source, target, rims, make):
 
 
 def _smooth_frame(source, target, frame, trusted, smooth):
-    """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images under the quadratic
-    polynomial that fits the trusted landmarks best, corrected by a thin-plate spline (or under the best affine map)."""
+    """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images under the
+    quadratic polynomial that fits trusted landmarks best, corrected by a thin-plate spline (or the best affine map)."""
     low = numpy.minimum(frame[::2], source.min(axis=0))
     high = numpy.maximum(frame[1::2], source.max(axis=0))
     low, high = low - 0.01 * (high - low), high + 0.01 * (high - low)
@@ -94,7 +94,7 @@ def _smooth_frame(source, target, frame, trusted, smooth):
 
 
 def _with_frame(source, target, frame, make):
-    """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks are outside of it."""
+    """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks are outside."""
     source, target = (numpy.asarray(points, float) for points in (source, target))
     first = make(source, target)
     trusted = numpy.flatnonzero(first.residuals <= first.usual_residual())
@@ -145,12 +145,12 @@ def isomorphic_triangulation(
         Corresponding points; in 3-space those of each in a plane. Or two vtkPolyData with the same cells: polygons and
         closed lines are outlines, other lines segments.
     outlines : sequence of sequences of int
-        Closed polygons of point ids: outlines, holes, islands in holes. Without, a frame around the points is the domain.
+        Closed polygons of point ids: outlines, holes, islands in holes. Without, the domain is a frame around points.
     segments : sequence of sequences of int
         Polygonal lines of point ids that must become edges.
     frame : pair of (least x, largest x, least y, largest y)
-        Rectangles around source and target, for example those of images. If the target's is None, the source's, enlarged by
-        1 %, goes where a smooth map through the landmarks that are not suspicious takes it (in the plane, without outlines).
+        Rectangles around source and target, for example of images. If the target's is None, the source's, enlarged
+        by 1 %, goes where a smooth map through landmarks that are not suspicious takes it (in the plane, no outlines).
     domain : {"automatic", "outline", "frame", "convex_hull"}
         "automatic": the inside of the outlines if there are any, otherwise a frame.
     quality : {"minimum_angle", "concordance", "distortion", "non_obtuse"}
@@ -169,8 +169,9 @@ def isomorphic_triangulation(
     suspicious(), the landmarks that are probably wrong. Raises ValueError with a message that names the points if the
     figures have no such triangulations.
     """
-    for name, value, largest in (("target_minimum_angle", target_minimum_angle, 60), ("maximum_triangle_size",
-                                 maximum_triangle_size, 1), ("maximum_added_points", maximum_added_points or 0, numpy.inf)):
+    for name, value, largest in (("target_minimum_angle", target_minimum_angle, 60),
+                                 ("maximum_triangle_size", maximum_triangle_size, 1),
+                                 ("maximum_added_points", maximum_added_points or 0, numpy.inf)):
         if not 0 <= value <= largest:
             raise ValueError(f"{name} must be a number from 0 to {largest}, not {value}")
     for box in frame or ():

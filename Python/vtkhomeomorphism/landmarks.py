@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Landmark pairs, corresponding points of a source and a target domain: their files, and the pairs of meshes made of them.
+"""Landmark pairs, corresponding points of a source and a target domain: their files, and pairs of meshes made of them.
 
 Formats, recognized by their content:
 
@@ -160,8 +160,8 @@ def _read_csv(lines: List[str], path: str) -> Landmarks:
 
 
 def read_landmarks(path) -> Landmarks:
-    """Reads a file of landmark pairs. Raises LandmarkFileError where the file is not one of the formats above or has fewer
-    than three usable landmarks, and OSError where it cannot be read."""
+    """Reads a file of landmark pairs. Raises LandmarkFileError if the file is not one of the formats above or has fewer
+    than three usable landmarks, and OSError if it cannot be read."""
     path = os.fspath(path)
     try:
         with open(path, encoding="utf-8-sig") as file:
@@ -188,7 +188,7 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
                 continue
             unknown = [i for i in ids if i not in index]
             if unknown or len(ids) < 2:
-                what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs at least two landmarks"
+                what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs two landmarks"
                 raise LandmarkFileError(f"{os.fspath(path)}, line {number}: {what}")
             lines.append([index[i] for i in ids])
     return lines
@@ -297,8 +297,8 @@ def triangulate(marks, name, grids, **more):
     if len(worst):
         listed = ", ".join(f"{marks.names[i]} ({made.residuals[i]:.4g})" for i in worst)
         inform(f"{name}: suspicious landmarks, and how far they are in the target from where their neighbors put them: "
-               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without and their "
-               "ids (the numbers of their lines in a file without ids).")
+               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without and "
+               "their ids (the numbers of their lines in a file without ids).")
     for cell, reason in made.left_out:
         inform(f"{name}: line {cell} is left out: {reason}")
     return made

@@ -41,7 +41,9 @@ def _read_obj(input):
                 elif kind == "f":
                     ids = [int(word.partition("/")[0]) for word in words]
                     polygons.append([i - 1 if i >= 0 else i + len(points) for i in ids])
-                if kind == "f" and (len(ids) < 3 or min(polygons[-1]) < 0) or not kind.isprintable() or "\ufffd" in kind:
+                    if len(ids) < 3 or min(polygons[-1]) < 0:
+                        raise ValueError
+                elif not kind.isprintable() or "\ufffd" in kind:
                     raise ValueError
             except ValueError:
                 input.fail(f"line {number}: expected coordinates or a face of 3 points, found {quote(line)}.")
@@ -97,7 +99,7 @@ def read(input):
     """The mesh in a file, vtkPolyData. Raises Failure."""
     if input.format not in READ:
         raise Failure(f"Cannot read {input.name} as a mesh or landmarks: meshes are {dotted(('json', 'mesh') + READ)}; "
-                      "landmarks are .points, .json or .csv with columns source_x, source_y, target_x, target_y.", USAGE)
+                      "landmarks .points, .json or .csv with columns source_x, source_y, target_x, target_y.", USAGE)
     mesh = read_data(input)
     if isinstance(mesh, vtkUnstructuredGrid):
         grid, mesh = mesh, vtkPolyData()

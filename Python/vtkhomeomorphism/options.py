@@ -71,10 +71,10 @@ inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the targe
 mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles, do not refuse the pair.")
 format_option = click.option("--input-format", default="", metavar="EXTENSION",
                              help="Format of standard input (-); default: json (pairs), csv (data), png (images).")
-crs = click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 (default: that "
-                   "of the file of the pair, or of the data).")
-background = click.option("--background", default="", metavar="COLOR", help="Color outside the domain: transparent, a name "
-                          "or #rrggbb (default: transparent or no data; white in .jpg and .ppm).")
+crs = click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 "
+                   "(default: that of the file of the pair, or of the data).")
+background = click.option("--background", default="", metavar="COLOR", help="Color outside: transparent, a name or "
+                          "#rrggbb (default: transparent or no data; white in .jpg and .ppm).")
 
 
 def output(help, default, formats, what):
@@ -114,9 +114,9 @@ def pair_files(names):
         click.option("--working-size", type=Size(), metavar="WIDTHxHEIGHT",
                      help="The size of xmorph's working image, for meshes that do not fill their images."),
         click.option("--scan", default=(), multiple=True, metavar="FILE",
-                     help="The image of landmarks in pixels: its rectangle is the domain (twice: of source and target)."),
-        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas: their ids, "
-                     "or their lines in a file without ids."),
+                     help="The image of landmarks in pixels: its rectangle is the domain (twice: source and target)."),
+        click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas: "
+                     "their ids, or their lines in a file without ids."),
         format_option,
     )
 
@@ -137,8 +137,8 @@ def map_settings(default):
     return replacing(
         "settings", dict,
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
-                     help="Coordinate system: linear (piecewise), contour (as published), smooth (differentiable except at "
-                          f"vertices) or cubic (at vertices too; planar meshes). Default: {default}."),
+                     help="Coordinate system: linear (piecewise), contour (as published), smooth (differentiable "
+                          f"except at vertices) or cubic (at vertices too; planar meshes). Default: {default}."),
         click.option("--bending", "cubic_bending", type=click.Choice(list(BENDINGS)), default="least",
                      help="Cubic: least bending, or a local map, which is faster and depends on nearby vertices only."),
         click.option("--max-deviation", "maximum_deviation", type=POSITIVE, metavar="DISTANCE",
@@ -148,6 +148,6 @@ def map_settings(default):
         click.option("--linear-where-discordant", "discordant_by_linear", is_flag=True,
                      help="Contour: map discordant triangles by Linear instead of refusing the pair."),
         click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
-                     help="Map points outside, up to this share of the domain's diagonal, like the nearest point inside."),
+                     help="Map points outside, up to this share of the domain's diagonal, like the nearest inside."),
         mask_option,
     )

@@ -50,7 +50,8 @@ def draw_pair(pair, invalid, discordant):
     for panel, mesh, cells in zip(axes[0], pair.meshes, discordant):
         points = points_of(mesh)
         # The two coordinates with the largest extent.
-        flat = points[:, sorted(numpy.argsort(numpy.nanmin(points, axis=0) - numpy.nanmax(points, axis=0), kind="stable")[:2])]
+        extents = numpy.nanmax(points, axis=0) - numpy.nanmin(points, axis=0)
+        flat = points[:, sorted(numpy.argsort(-extents, kind="stable")[:2])]
         draw_polygons(panel, mesh, flat, cells, facecolors=DISCORDANT, edgecolors=DISCORDANT)
         draw_polygons(panel, mesh, flat, facecolors="none", edgecolors=EDGE, linewidths=0.7)
         centers = draw_polygons(panel, mesh, flat, invalid, facecolors=INVALID, edgecolors=INVALID, alpha=0.85)

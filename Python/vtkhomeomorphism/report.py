@@ -17,8 +17,8 @@ OPTIONS = {"MaskInvalidTriangles": "--mask-invalid", "DiscordantTriangles": "--l
            "FairnessRefinement": "--fairness", "CubicBending": "--bending", "Tolerance": "--tolerance"}
 """What options that messages of filters name are called here."""
 ADVICE = {
-    "Triangulate": "Write both meshes to one file (dhm convert -o both.vtp), and triangulate that (ParaView's Triangulate), so "
-                   "that both are cut along the same diagonals.",
+    "Triangulate": "Write both meshes to one file (dhm convert -o both.vtp), and triangulate that (ParaView's "
+                   "Triangulate), so that both are cut along the same diagonals.",
     "RepairOrMask": "Repair them in both meshes, or leave them out (--mask-invalid).",
     "MovePointsOrMask": "Move points, or leave them out (--mask-invalid).",
 }

@@ -23,8 +23,7 @@ ENCODING = {"errors": "surrogateescape", "newline": ""}
 
 
 def records(lines, separator):
-    """Yields the number of the first line, from 1, and the fields of each row that is not empty. Fields may be in quotes.
-    Raises csv.Error."""
+    """Yields the number of the first line, from 1, and the fields of each row that is not empty. Raises csv.Error."""
     if separator == " ":
         fields = ([field[1:-1].replace('""', '"') if field[0] == '"' else field
                    for field in re.findall(r'"(?:[^"]|"")*"|\S+', line)] for line in lines)

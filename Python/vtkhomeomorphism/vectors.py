@@ -94,8 +94,8 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
             try:
                 result[name].crs = target_crs or None
             except Exception:
-                raise Failure(f"The coordinate reference system {quote(target_crs)} is not known: give another (--crs).",
-                              USAGE) from None
+                raise Failure(f"The coordinate reference system {quote(target_crs)} is not known: give another "
+                              "(--crs).", USAGE) from None
         if any(marks):
             result[name][MARK] = numpy.array(marks, int)
             outside += sum(marks)

@@ -80,7 +80,8 @@ def command(inputs, output, settings, all_systems, grid, image, close_up):
             panel.autoscale(False)
             panel.plot(*drawn.T, color=line_color, linewidth=0.8 * (1 + row))
             if picture:
-                panel.imshow(picture[0], extent=picture[1], cmap="gray", vmin=0, vmax=images.brightest(picture[0].dtype))
+                largest = images.brightest(picture[0].dtype)
+                panel.imshow(picture[0], extent=picture[1], cmap="gray", vmin=0, vmax=largest)
             if row:
                 (x, y), r = centers[side], close_up[2]
                 panel.set(xlim=(x - r, x + r), ylim=(y - r, y + r))

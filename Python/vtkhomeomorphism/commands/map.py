@@ -15,7 +15,7 @@ from ..mapping import PointMap, choose_system
 @options.inverse
 @options.crs
 @click.option("--densify", type=options.POSITIVE, metavar="LENGTH", help="Divide longer segments of vector data first.")
-@click.option("-j", "--jacobian", is_flag=True, help="Add the array Jacobian: the derivative, 9 numbers in row-major order.")
+@click.option("-j", "--jacobian", is_flag=True, help="Add the array Jacobian: the derivative, 9 numbers row by row.")
 @click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas.")
 @click.option("--triangle-id", is_flag=True, help="Add the array TriangleId: the cell id of each point's triangle.")
 @click.option("--vectors", type=click.Choice(["active", "all", "none"]), default="active",

@@ -41,30 +41,30 @@ def print_report(made, marks):
 
 
 @click.command("triangulate")
-@options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk (the target is the point array Target).", "json",
-                pair.FORMATS, "a pair")
-@click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, one line per row.")
-@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, one loop per row.")
+@options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk (the target is the point array Target).",
+                "json", pair.FORMATS, "a pair")
+@click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, a line per row.")
+@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, a loop per row.")
 @click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic",
-              help="The inside of outlines, a frame around landmarks, or convex hulls; automatic: outline if given, else frame.")
-@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", help="What triangles are optimized for.")
-@click.option("--target-angle", type=options.Number(0, 60), default=0.0, metavar="DEGREES",
+              help="The inside of outlines, a frame, or the convex hulls; automatic: outline if given, else frame.")
+@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", help="What is optimized.")
+@click.option("--target-angle", "target_minimum_angle", type=options.Number(0, 60), default=0.0, metavar="DEGREES",
               help="Add points until no angle is smaller than this (default: necessary points only).")
 @click.option("--maximum-added-points", type=click.IntRange(0), metavar="NUMBER",
               help="Greatest number of added points (default: the necessary ones, and up to 100 for --target-angle).")
-@click.option("--maximum-size", type=options.Number(0, 1), default=0.0, metavar="SHARE",
+@click.option("--maximum-size", "maximum_triangle_size", type=options.Number(0, 1), default=0.0, metavar="SHARE",
               help="Divide triangles with more than this share of the domain's area.")
-@click.option("--leave-out-conflicts", is_flag=True, help="Leave out and list lines that conflict with others.")
+@click.option("--leave-out-conflicts", "leave_out_conflicting_segments", is_flag=True,
+              help="Leave out and list lines that conflict with others.")
 @click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks with the largest residuals.")
 @options.pair_files("LANDMARKS | SOURCE TARGET")
-def command(inputs, output, lines, outlines, domain, quality, target_angle, maximum_added_points,
-            maximum_size, leave_out_conflicts, report):
+def command(inputs, output, lines, outlines, report, **settings):
     """Make a pair of meshes with the same triangles from landmarks.
 
-    LANDMARKS is a .csv file (source_x, source_y, target_x, target_y, optionally id; or BigWarp's format), a QGIS .points
-    file, or an IIIF georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops (polygons or
-    lines) and constraint lines, with the same cells. Triangles do not fold in either domain; points are added where
-    necessary."""
+    LANDMARKS is a .csv file (source_x, source_y, target_x, target_y, optionally id; or BigWarp's format), a QGIS
+    .points file, or an IIIF georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops
+    (polygons or lines) and constraint lines, with the same cells. Triangles do not fold in either domain; points are
+    added where necessary."""
     figure = {}
     if len(inputs.pair) == 2:
         figures = [read_figure(name) for name in inputs.pair]
@@ -73,23 +73,20 @@ def command(inputs, output, lines, outlines, domain, quality, target_angle, maxi
     else:
         with Input(inputs.pair[0], inputs.format or "csv") as file:
             if not is_landmark_file(file.path):
-                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv (source_x, source_y, target_x, "
-                              "target_y), .points and IIIF's .json.", USAGE)
+                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv (source_x, source_y, "
+                              "target_x, target_y), .points and IIIF's .json.", USAGE)
             marks = landmarks.read(file, inputs)
         try:
             figure = {name: read_lines(file, marks.names)
                       for name, file in (("segments", lines), ("outlines", outlines)) if file}
         except (LandmarkFileError, OSError) as error:
             raise Failure(f"{error}.", FILE) from None
-        if domain == "outline" and not outlines:
+        if settings["domain"] == "outline" and not outlines:
             raise Failure("There are no outlines for --domain outline (--outlines).", USAGE)
-    both, made = pair.from_landmarks(
-        marks, " and ".join(inputs.pair), inputs, **figure, domain=domain, quality=quality, target_minimum_angle=target_angle,
-        maximum_added_points=maximum_added_points, maximum_triangle_size=maximum_size,
-        leave_out_conflicting_segments=leave_out_conflicts)
-    smallest = min(made.report["smallest_angles"])
-    if smallest < target_angle:
-        inform(f"the smallest angle is {smallest:.3g} degrees and misses --target-angle {target_angle:g}: allow more points "
+    both, made = pair.from_landmarks(marks, " and ".join(inputs.pair), inputs, **figure, **settings)
+    smallest, target = min(made.report["smallest_angles"]), settings["target_minimum_angle"]
+    if smallest < target:
+        inform(f"the smallest angle is {smallest:.3g} degrees and misses --target-angle {target:g}: allow more points "
                "(--maximum-added-points); angles between landmarks and lines cannot be enlarged.")
     with output.writing():
         pair.write(both, output)
