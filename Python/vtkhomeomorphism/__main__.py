@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command dhm: maps files from one triangulated domain to another."""
 
+import gc
 import os
 import signal
 import sys
@@ -56,6 +57,8 @@ def main():
     os.environ.setdefault("CPL_LOG", os.devnull)
     # By default GDAL keeps a twentieth of the memory.
     os.environ.setdefault("GDAL_CACHEMAX", "200")
+    # Large tables have millions of rows, which are searched for cycles at every collection.
+    gc.set_threshold(1000000)
     # Libraries also report failed writes when their objects are deleted.
     sys.unraisablehook = lambda what: None
     try:

@@ -15,21 +15,30 @@ DPI = 100
 INVALID, DISCORDANT, DUPLICATE, EDGE = "#d91a1a", "#fabf4d", "#990099", "#33496f"
 
 
-def new_figure(width, titles, rows=1):
-    """A figure, and axes of shape (rows, titles) of about a width in pixels each."""
+def new_figure(width, titles, points, rows=1):
+    """A figure, and axes of shape (rows, titles) of about a width in pixels each: the first row for points, of shape
+    (n, 2), further rows square."""
     import_extra("matplotlib", "Drawing")
     import matplotlib.figure
 
     matplotlib.rcParams.update({"svg.fonttype": "none", "pdf.fonttype": 42})
-    size = len(titles) * width / DPI, rows * width / DPI
+    extents = numpy.nanmax(points, axis=0) - numpy.nanmin(points, axis=0) + 1e-300
+    ratio = float((extents[1] / extents[0]).clip(0.2, 3.0))
+    size = len(titles) * width / DPI, (ratio + rows - 1) * width / DPI
     figure = matplotlib.figure.Figure(size, dpi=DPI, layout="compressed")
-    axes = figure.subplots(rows, len(titles), squeeze=False)
+    axes = figure.subplots(rows, len(titles), squeeze=False, height_ratios=[ratio] + [1] * (rows - 1))
     for panel, title in zip(axes[0], titles):
         panel.set_title(title, fontsize=12)
     for panel in axes.flat:
         panel.set(aspect="equal", xticks=[], yticks=[], xmargin=0.03, ymargin=0.03)
         panel.spines[:].set_color("#cccccc")
     return figure, axes
+
+
+def flatten(points):
+    """The two coordinates with the largest extent."""
+    extents = numpy.nanmax(points, axis=0) - numpy.nanmin(points, axis=0)
+    return points[:, sorted(numpy.argsort(-extents, kind="stable")[:2])]
 
 
 def draw_polygons(axes, mesh, points, cells=None, **style):
@@ -46,18 +55,15 @@ def draw_polygons(axes, mesh, points, cells=None, **style):
 
 def draw_pair(pair, invalid, discordant):
     """The pair, with invalid triangles, discordant triangles of each mesh and duplicate points of each mesh marked."""
-    figure, axes = new_figure(620, ("Source", "Target"))
-    for panel, mesh, cells in zip(axes[0], pair.meshes, discordant):
-        points = points_of(mesh)
-        # The two coordinates with the largest extent.
-        extents = numpy.nanmax(points, axis=0) - numpy.nanmin(points, axis=0)
-        flat = points[:, sorted(numpy.argsort(-extents, kind="stable")[:2])]
+    both = [flatten(points_of(mesh)) for mesh in pair.meshes]
+    figure, axes = new_figure(620, ("Source", "Target"), both[1])
+    for panel, mesh, flat, cells in zip(axes[0], pair.meshes, both, discordant):
         draw_polygons(panel, mesh, flat, cells, facecolors=DISCORDANT, edgecolors=DISCORDANT)
         draw_polygons(panel, mesh, flat, facecolors="none", edgecolors=EDGE, linewidths=0.7)
         centers = draw_polygons(panel, mesh, flat, invalid, facecolors=INVALID, edgecolors=INVALID, alpha=0.85)
         # So that degenerate triangles are seen.
         panel.plot(*centers.T, "o", markersize=9, markerfacecolor="none", markeredgecolor=INVALID)
-        _, first, counts = numpy.unique(points, axis=0, return_index=True, return_counts=True)
+        _, first, counts = numpy.unique(points_of(mesh), axis=0, return_index=True, return_counts=True)
         panel.plot(*flat[first[counts > 1]].T, ".", color=DUPLICATE, markersize=7)
     names = ((INVALID, "invalid"), (DISCORDANT, "discordant (no Contour there)"), (DUPLICATE, "duplicate points"))
     marks = [axes[0][0].plot([], [], "o", color=color, label=name)[0] for color, name in names]

@@ -68,7 +68,7 @@ def command(inputs, output, settings, all_systems, grid, image, close_up):
         centers = [PointMap(both, panels[1][2], inverse=True).map_points(center[None])[0][0], center]
         if numpy.isnan(centers[0]).any():
             raise Failure(f"The point {close_up[:2]} is outside the target (--close-up).")
-    figure, axes = plots.new_figure(420, [panel[0] for panel in panels], 2 if close_up else 1)
+    figure, axes = plots.new_figure(420, [panel[0] for panel in panels], points[1], 2 if close_up else 1)
     colors = raster and raster.all()[:, :, : raster.bands - raster.has_alpha]
     dark = raster and colors.mean() < 0.5 * images.brightest(raster.dtype)
     line_color, mesh_color = ("#ffd91a", "#1a339980") if dark else ("#bf1a26", "#334d7373")
