@@ -92,8 +92,8 @@ def pair_files(names):
 
     def read_inputs(files, scan, **given):
         are_others = [format_of(name) in PICTURES + VECTORS and not is_landmark_file(name) for name in files]
-        if others and are_others == [True, False]:
-            files = files[::-1]
+        if others and are_others[:1] == [True] and not any(are_others[1:]):
+            files = files[1:] + files[:1]
         if not 1 + others <= len(files) <= 2 + others:
             raise click.UsageError(f"The files are {names}; found {len(files)}")
         if files.count("-") > 1:
@@ -140,7 +140,7 @@ def map_settings(default):
                      help="Coordinate system: linear (piecewise), contour (as published), smooth (differentiable "
                           f"except at vertices) or cubic (at vertices too; planar meshes). Default: {default}."),
         click.option("--bending", "cubic_bending", type=click.Choice(list(BENDINGS)), default="least",
-                     help="Cubic: least bending, or a local map, which is faster and depends on nearby vertices only."),
+                     help="Cubic: least bending, or a local map that depends on nearby vertices only."),
         click.option("--max-deviation", "maximum_deviation", type=POSITIVE, metavar="DISTANCE",
                      help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
         click.option("--fairness", "fairness_refinement", type=click.IntRange(0, 4), default=0, metavar="LEVELS",

@@ -54,6 +54,14 @@ def test_photographs_are_upright(dhm, pair, image):
     numpy.testing.assert_array_equal(read(warp(dhm, same, image="turned.png", output="out.ppm")), image)
 
 
+def test_the_image_may_come_first(dhm, pair, image):
+    for name, points in (("a.off", pair.source), ("b.off", pair.target)):
+        write_mesh(dhm.path(name), points, pair.triangles)
+    dhm("warp", "a.off", "b.off", "image.png", "-o", "last.png")
+    dhm("warp", "image.png", "a.off", "b.off", "-o", "first.png")
+    assert dhm.path("first.png").read_bytes() == dhm.path("last.png").read_bytes()
+
+
 def test_shift_alpha_and_background(dhm, pair, image):
     # Four pixels to the right and three up; rows are counted from above.
     moved = pair._replace(target=pair.source + [4, 3])
