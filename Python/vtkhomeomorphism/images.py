@@ -63,6 +63,11 @@ class Grid:
     def size(self):
         return self.width, self.height
 
+    @property
+    def pixel(self):
+        """The width of a pixel, if it is square."""
+        return math.sqrt(abs(numpy.linalg.det(self.steps)))
+
     def hanging(self):
         """The same pixels with the upper left corner at (0, 0), as QGIS shows images that are not georeferenced."""
         return self if self.placed else Grid(*self.size, numpy.array([0.5, -0.5]))
@@ -226,8 +231,12 @@ class Warp:
         self.filter = set_up(vtkResampleThroughHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
         self.filter.BlankOutsideOff()
+        triangles = triangles_of(pair.source)
+        corners = [points_of(pair.meshes[side])[triangles, :2] for side in (inverse, not inverse)]
+        areas = [numpy.abs(numpy.linalg.det(c[:, 1:] - c[:, :1])).sum() for c in corners]
+        self.scale = math.sqrt(areas[1] / areas[0])  # the mean factor of lengths
         # The boundary of the domain, in small pieces, in the image and in the result.
-        edges = numpy.sort(triangles_of(pair.source)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        edges = numpy.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, counts = numpy.unique(edges, axis=0, return_counts=True)
         ends = points_of(pair.meshes[inverse])[edges[counts == 1], :2]
         t = numpy.linspace(0, 1, 2 + 8192 // len(ends))[:, None, None]
@@ -264,9 +273,8 @@ class Warp:
         if size:
             spacing = (high - low) / numpy.maximum(numpy.array(size) - 1, 1)
         else:
-            extents = [numpy.hypot(*numpy.ptp(rim.reshape(-1, 2), axis=0)) for rim in self.rims]
-            factor = extents[1] / extents[0] if abs(extents[1] / extents[0] - 1) >= 0.01 else 1.0
-            spacing = numpy.full(2, resolution or factor * math.sqrt(abs(numpy.linalg.det(grid.steps))))
+            factor = self.scale if abs(self.scale - 1) >= 0.01 else 1.0
+            spacing = numpy.full(2, resolution or factor * grid.pixel)
             numbers = [length / step for length, step in zip((high - low).tolist(), spacing.tolist())]
             if math.prod(numbers) > LARGEST:
                 raise Failure("The result would have {:.6g} x {:.6g} pixels, more than 2^32: use a larger "
@@ -277,7 +285,8 @@ class Warp:
 
     def tiles(self, raster, grid, text="Warping"):
         """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
-        factor = self._find_reduction(raster.grid, grid)
+        # How many pixels of the raster are as wide as one of the grid.
+        factor = int(min(grid.pixel / self.scale / raster.grid.pixel + 0.01, *raster.grid.size))
         raster = raster.reduce(factor) if factor > 1 else raster
         tiles = [(c, r) for r in range(0, grid.height, TILE) for c in range(0, grid.width, TILE)]
         for column, row in progress(tiles, text) if text else tiles:
@@ -310,16 +319,6 @@ class Warp:
         if raster.nodata is not None:
             mask &= arrays["Known"][:, :, 0] > 1 - 1e-9
         return arrays["Pixels"], mask
-
-    def _find_reduction(self, own, grid):
-        """How many pixels of a raster are as wide as a pixel of a grid: the whole part of the median."""
-        ends = [(numpy.arange(32) + 0.5) / 32 * n - 0.5 for n in grid.size]
-        pixels = numpy.stack(numpy.meshgrid(*ends), axis=2).reshape(-1, 2)
-        corners = [own.pixels(self._map(grid.at(pixels + step), False)) for step in ([0, 0], [1, 0], [0, 1])]
-        (a, b), (c, d) = ((corner - corners[0]).T for corner in corners[1:])
-        areas = numpy.abs(a * d - b * c)
-        areas = areas[numpy.isfinite(areas)]
-        return int(min(numpy.sqrt(numpy.median(areas)) + 0.01, *own.size)) if len(areas) else 1
 
     def _find_window(self, grid, tile):
         """The first pixel (column, row) that a tile needs of a raster, and the end."""

@@ -355,6 +355,17 @@ def test_turned_geotiff(dhm, shift):
     assert known.mean() > 0.9 and numpy.median(numpy.abs(back - pixels)[:, known]) < 1e-2
 
 
+def test_turned_domains_keep_the_size_of_pixels(dhm, shift):
+    c, s = numpy.cos(0.7), numpy.sin(0.7)
+    for factor, expected in ((1.0, 10), (2.0, 20)):
+        turned = shift._replace(target=factor * (shift.source - shift.source[0]) @ [[c, s], [-s, c]])
+        write_json(dhm.path("turned.json"), turned)
+        write_geotiff(dhm.path("in.tif"), numpy.zeros((90, 120, 1), "u1"), 3384400, 6673200, 10, crs=None)
+        dhm("warp", "turned.json", "in.tif", "-o", "out.tif", "--force")
+        with rasterio.open(dhm.path("out.tif")) as file:
+            assert file.transform.a == pytest.approx(expected)
+
+
 def test_geotiff_alpha_nodata_and_palette(dhm, shift):
     rgb = numpy.random.default_rng(13).integers(1, 256, (60, 80, 3)).astype("u1")
     write_geotiff(dhm.path("rgb.tif"), rgb, 3383500, 6673500, 20)
