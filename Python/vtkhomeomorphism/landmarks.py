@@ -43,16 +43,11 @@ class Landmarks:
 
     source: numpy.ndarray
     target: numpy.ndarray
-    names: List[str]
-    """As the file has them; where it has none, the number of the line (of a feature of JSON, from 1)."""
-    left_out: List[Tuple[str, str]] = field(default_factory=list)
-    """(name, reason) of each landmark that the file lists but that is not used."""
-    image_coordinates: bool = False
-    """Whether the source is in pixels with y down."""
-    crs: Optional[str] = None
-    """Coordinate reference system of the target as the file states it."""
-    origin: float = 0.0
-    """What to add to coordinates in pixels so that 0 is at the edge of an image."""
+    names: List[str]  # the file's; where it has none, the number of the line (of a feature of JSON), from 1
+    left_out: List[Tuple[str, str]] = field(default_factory=list)  # name and reason of landmarks that are not used
+    image_coordinates: bool = False  # whether the source is in pixels with y down
+    crs: Optional[str] = None  # the target's coordinate reference system as the file states it
+    origin: float = 0.0  # what to add to coordinates in pixels so that 0 is at the edge of an image
 
     def without(self, names: Sequence[str]) -> Landmarks:
         """The landmarks except those of the given names, which are left out."""
@@ -116,8 +111,7 @@ def _read_qgis(lines: List[str], path: str) -> Landmarks:
 
 
 def _annotations(document) -> list:
-    if not isinstance(document, dict):
-        return []
+    document = document if isinstance(document, dict) else {}
     if document.get("type") == "AnnotationPage":
         return [a for item in document.get("items", []) for a in _annotations(item)]
     body = document.get("body")
@@ -219,9 +213,8 @@ def read(file, options) -> Landmarks:
     if twice:
         inform(f"{file.name}: several landmarks have the same id: {join(twice)}.")
     if marks.left_out:
-        names = ", ".join(f"{name} ({reason})" for name, reason in marks.left_out[:10])
-        inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}"
-               f"{', ...' if len(marks.left_out) > 10 else ''}.")
+        names = join([f"{name} ({reason})" for name, reason in marks.left_out])
+        inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}.")
     if options.crs and marks.crs and options.crs != marks.crs:
         rasterio = import_extra("rasterio.warp", f"Taking landmarks from {marks.crs} to {options.crs}")
         try:
