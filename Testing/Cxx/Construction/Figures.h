@@ -17,8 +17,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -27,10 +27,7 @@
 namespace figures
 {
 
-using homeomorphism::FigurePair;
-using homeomorphism::IsomorphicTriangulationOptions;
-using homeomorphism::IsomorphicTriangulationResult;
-using homeomorphism::Vector2;
+using namespace homeomorphism;
 
 /// Uniform numbers, the same on every machine.
 class Random
@@ -271,17 +268,23 @@ inline bool Read(const std::string& name, FigurePair& figure, bool withLines)
   return true;
 }
 
+/// The smallest angle of a complete result, in degrees.
+inline double SmallestAngle(const IsomorphicTriangulationResult& result)
+{
+  const auto statistics = MeasurePair(result.Points, result.Triangles);
+  return std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]);
+}
+
 /// Empty if a result is a pair of isomorphic triangulations of the figure, else what is wrong.
 /// Triangles that are all counterclockwise, meet edge to edge, and end at the figure's loops only
 /// cover the domain once if their areas add up to the area that the boundary surrounds.
 inline std::string Check(const FigurePair& figure, const IsomorphicTriangulationResult& result)
 {
-  using homeomorphism::Cross;
   if (!result.IsComplete())
   {
     return result.Problems[0].Message();
   }
-  std::map<std::pair<int, int>, int> edges;
+  std::set<std::pair<int, int>> edges;
   std::array<double, 2> areas{ { 0.0, 0.0 } };
   const std::array<double, 2> senses{ { 1.0, result.Mirrored ? -1.0 : 1.0 } };
   std::vector<char> used(result.OriginalIds.size(), 0);
@@ -290,7 +293,7 @@ inline std::string Check(const FigurePair& figure, const IsomorphicTriangulation
     for (int d = 0; d < 2; ++d)
     {
       const auto& p = result.Points[d];
-      if (homeomorphism::Orientation(p[t[0]], p[t[1]], p[t[2]]) * senses[d] <= 0.0)
+      if (Orientation(p[t[0]], p[t[1]], p[t[2]]) * senses[d] <= 0.0)
       {
         return "a triangle has the wrong orientation in domain " + std::to_string(d);
       }
@@ -299,7 +302,7 @@ inline std::string Check(const FigurePair& figure, const IsomorphicTriangulation
     for (int k = 0; k < 3; ++k)
     {
       used[t[k]] = 1;
-      if (++edges[{ t[k], t[(k + 1) % 3] }] > 1)
+      if (!edges.emplace(t[k], t[(k + 1) % 3]).second)
       {
         return "an edge has two triangles on one side";
       }
@@ -314,17 +317,16 @@ inline std::string Check(const FigurePair& figure, const IsomorphicTriangulation
     return "an edge of the figure is missing";
   }
   std::array<double, 2> surrounded{ { 0.0, 0.0 } };
-  std::map<std::pair<int, int>, int> loops;
+  std::set<std::pair<int, int>> loops;
   for (const auto& edge : result.LoopEdges)
   {
-    loops[{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) }] = 1;
+    loops.insert(std::minmax(edge[0], edge[1]));
   }
-  for (const auto& entry : edges)
+  for (const auto& [a, b] : edges)
   {
-    const auto [a, b] = entry.first;
     if (edges.count({ b, a }) == 0)
     {
-      if (loops.count({ std::min(a, b), std::max(a, b) }) == 0)
+      if (loops.count(std::minmax(a, b)) == 0)
       {
         return "the boundary leaves the loops";
       }

@@ -22,9 +22,6 @@
 #include <sys/resource.h> // for the memory
 
 using namespace figures;
-using homeomorphism::MakeIsomorphicTriangulation;
-using homeomorphism::MeasurePair;
-using homeomorphism::PairQuality;
 
 namespace
 {
@@ -44,12 +41,9 @@ void Row(const std::string& name, const FigurePair& figure,
   const double seconds = Seconds() - start;
   const std::string wrong = Check(figure, result);
   Failures += wrong.empty() ? 0 : 1;
-  const auto statistics = MeasurePair(result.Points, result.Triangles);
   char text[200];
   std::snprintf(text, sizeof(text), " | %zu | %d | %.2g | %.2f | ", figure.Points[0].size(),
-    result.NumberOfAddedPoints,
-    result.IsComplete() ? std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]) : 0.0,
-    seconds);
+    result.NumberOfAddedPoints, result.IsComplete() ? SmallestAngle(result) : 0.0, seconds);
   std::cout << "| " << name << text << (wrong.empty() ? "valid" : wrong) << " |" << std::endl;
 }
 

@@ -12,12 +12,8 @@
 #include <set>
 
 using namespace figures;
-using homeomorphism::FigureDomain;
-using homeomorphism::FigureProblem;
-using homeomorphism::MakeIsomorphicTriangulation;
-using homeomorphism::MeasurePair;
-using homeomorphism::PairQuality;
-using Kind = homeomorphism::FigureProblem::Kind;
+using namespace homeomorphism;
+using Kind = FigureProblem::Kind;
 
 namespace
 {
@@ -41,27 +37,13 @@ void MakeCrossing(FigurePair& figure)
   figure.Points[0][6] = { 0.5, 3 };
 }
 
-const FigureProblem& OnlyProblem(const IsomorphicTriangulationResult& result)
-{
-  EXPECT_EQ(1u, result.Problems.size());
-  EXPECT_TRUE(result.Triangles.empty());
-  static const FigureProblem none;
-  return result.Problems.empty() ? none : result.Problems[0];
-}
-
-FigureProblem Refusal(const FigurePair& figure, const IsomorphicTriangulationOptions& options = {})
-{
-  const FigureProblem problem = OnlyProblem(MakeIsomorphicTriangulation(figure, options));
-  EXPECT_FALSE(problem.Message().empty());
-  return problem;
-}
-
 using Ids = std::vector<int>;
+using Options = IsomorphicTriangulationOptions;
 
 /// A frame around the unit square.
-IsomorphicTriangulationOptions WithFrames()
+Options WithFrames()
 {
-  IsomorphicTriangulationOptions options;
+  Options options;
   options.Frames.fill({ { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } });
   return options;
 }
@@ -85,8 +67,8 @@ std::set<std::set<std::array<double, 4>>> ByPosition(
   return triangles;
 }
 
-/// A change of the square of which the first problem follows; domain, line and loop are -1 where
-/// they do not matter.
+/// A change of the square or of the options of which the first problem follows; domain, line and
+/// loop are -1 where they do not matter.
 struct RefusalCase
 {
   Kind What;
@@ -94,7 +76,7 @@ struct RefusalCase
   Ids Points;
   int Line;
   int Loop;
-  std::function<void(FigurePair&)> Change;
+  std::function<void(FigurePair&, Options&)> Change;
 };
 
 TEST(FigureRefusals, NameWhatIsWrong)
@@ -102,58 +84,80 @@ TEST(FigureRefusals, NameWhatIsWrong)
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Vector2> line{ { 0, 0 }, { 1, 1 }, { 3, 3 } };
   const std::vector<RefusalCase> cases{
-    { Kind::Empty, -1, {}, -1, -1, [](FigurePair& f) { f = {}; } },
-    { Kind::PointCountsDiffer, -1, {}, -1, -1, [](FigurePair& f) { f.Points[1].pop_back(); } },
-    { Kind::NotFinite, 1, { 5 }, -1, -1, [nan](FigurePair& f) { f.Points[1][5].x = nan; } },
+    { Kind::Empty, -1, {}, -1, -1, [](FigurePair& f, Options&) { f = {}; } },
+    { Kind::PointCountsDiffer, -1, {}, -1, -1,
+      [](FigurePair& f, Options&) { f.Points[1].pop_back(); } },
+    { Kind::NotFinite, 1, { 5 }, -1, -1,
+      [nan](FigurePair& f, Options&) { f.Points[1][5].x = nan; } },
     { Kind::Coincident, 0, { 4, 6 }, -1, -1,
-      [](FigurePair& f) { f.Points[0][6] = f.Points[0][4]; } },
-    { Kind::Crossing, 1, { 0, 6, 4, 5 }, 1, -1, MakeCrossing },
+      [](FigurePair& f, Options&) { f.Points[0][6] = f.Points[0][4]; } },
+    { Kind::Crossing, 1, { 0, 6, 4, 5 }, 1, -1, [](FigurePair& f, Options&) { MakeCrossing(f); } },
     { Kind::PointOnSegment, 1, { 6, 4, 5 }, -1, -1,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         f.Lines = { { 4, 5 } };
         f.Points[1][6] = { 2, 1 };
       } },
     { Kind::CyclicOrder, -1, { 7 }, -1, -1,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         Add(f, { 2, 1.5 }, { 2, 1.5 });
         f.Lines = { { 7, 4 }, { 7, 5 }, { 7, 6 } };
         std::swap(f.Points[1][4], f.Points[1][5]);
       } },
     { Kind::OtherFace, -1, {}, -1, -1,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         Add(f, { 2, 2 }, { 0.5, 3 });
         f.Lines = { { 4, 5, 6, 4 } };
       } },
     { Kind::OutlineAgainstHole, -1, {}, -1, 0,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         f.Loops.push_back({ 4, 5, 6 });
         std::for_each(f.Points[1].begin() + 4, f.Points[1].end(), [](Vector2& p) { p.x += 10.0; });
       } },
     { Kind::LoopSense, -1, {}, -1, 1,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         f.Loops.push_back({ 4, 5, 6 });
         std::swap(f.Points[1][4], f.Points[1][5]);
       } },
     { Kind::OutsideDomain, -1, { 7 }, -1, -1,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         Add(f, { 9, 9 }, { 9, 9 });
       } },
     { Kind::BadCell, -1, {}, 0, -1,
-      [](FigurePair& f) {
+      [](FigurePair& f, Options&) {
         f.Lines = { { 4, 99 } };
       } },
     { Kind::Collinear, 0, {}, -1, -1,
-      [&line](FigurePair& f) {
+      [&line](FigurePair& f, Options&) {
         f = {};
         f.Points = { { line, { { 0, 0 }, { 1, 0 }, { 0, 1 } } } };
       } },
+    { Kind::HullsDiffer, -1, { 6 }, -1, -1,
+      [](FigurePair& f, Options& options) {
+        options.Domain = FigureDomain::ConvexHull;
+        f.Loops.clear();
+        f.Points[1][6] = { 2, 5 };
+      } },
+    { Kind::PointOnSegment, 0, { 7 }, -1, -1,
+      [](FigurePair& f, Options& options) {
+        f.Loops.clear();
+        options.Frames.fill({ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 0, 6 } });
+        Add(f, { 2, 0 }, { 1, 0.25 });
+      } },
+    { Kind::PointLimit, -1, {}, -1, -1,
+      [](FigurePair& f, Options& options) {
+        f = Outline(Snake(40, false), Snake(40, true));
+        options.MaximumNumberOfAddedPoints = 0;
+      } },
+    { Kind::Aborted, -1, {}, -1, -1,
+      [](FigurePair&, Options& options) { options.Progress = [](double) { return false; }; } },
   };
   for (const RefusalCase& one : cases)
   {
     SCOPED_TRACE(static_cast<int>(one.What));
     FigurePair figure = Square();
-    one.Change(figure);
-    const auto result = MakeIsomorphicTriangulation(figure, {});
+    Options options;
+    one.Change(figure, options);
+    const auto result = MakeIsomorphicTriangulation(figure, options);
     ASSERT_FALSE(result.Problems.empty());
     EXPECT_TRUE(result.Triangles.empty());
     const FigureProblem& problem = result.Problems[0];
@@ -163,44 +167,15 @@ TEST(FigureRefusals, NameWhatIsWrong)
     EXPECT_TRUE(one.Points.empty() || one.Points == problem.Points);
     EXPECT_TRUE(one.Line < 0 || one.Line == problem.Line);
     EXPECT_TRUE(one.Loop < 0 || one.Loop <= problem.Loop);
+    EXPECT_TRUE(one.What != Kind::PointLimit || (problem.Count > 0 && !problem.Points.empty()));
   }
-}
-
-TEST(FigureRefusals, HullsDiffer)
-{
-  IsomorphicTriangulationOptions options;
-  options.Domain = FigureDomain::ConvexHull;
-  FigurePair figure = Square();
-  figure.Loops.clear();
-  figure.Points[1][6] = { 2, 5 };
-  const FigureProblem problem = Refusal(figure, options);
-  EXPECT_EQ(Kind::HullsDiffer, problem.What);
-  EXPECT_EQ(Ids{ 6 }, problem.Points);
-}
-
-TEST(FigureRefusals, PointLimit)
-{
-  const FigurePair figure = Outline(Snake(40, false), Snake(40, true));
-  IsomorphicTriangulationOptions options;
-  options.MaximumNumberOfAddedPoints = 0;
-  const FigureProblem problem = Refusal(figure, options);
-  EXPECT_EQ(Kind::PointLimit, problem.What);
-  EXPECT_LT(0, problem.Count);
-  EXPECT_FALSE(problem.Points.empty());
-}
-
-TEST(FigureRefusals, StopsOnRequest)
-{
-  IsomorphicTriangulationOptions options;
-  options.Progress = [](double) { return false; };
-  EXPECT_EQ(Kind::Aborted, Refusal(Square(), options).What);
 }
 
 TEST(IsomorphicTriangulation, LeavesOutWhatConflicts)
 {
   FigurePair figure = Square();
   MakeCrossing(figure);
-  IsomorphicTriangulationOptions options;
+  Options options;
   options.LeaveOutConflictingSegments = true;
   const auto result = MakeIsomorphicTriangulation(figure, options);
   EXPECT_EQ("", Check(figure, result));
@@ -217,16 +192,11 @@ TEST(IsomorphicTriangulation, PointsOnFramesAndOutlines)
   auto result = MakeIsomorphicTriangulation(figure, {});
   EXPECT_EQ("", Check(figure, result));
   figure.Loops.clear();
-  IsomorphicTriangulationOptions options;
+  Options options;
   options.Frames.fill({ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 0, 6 } });
   result = MakeIsomorphicTriangulation(figure, options);
   EXPECT_EQ("", Check(figure, result));
   EXPECT_EQ(2, result.NumberOfFramePoints);
-  figure.Points[1].back().y = 0.25;
-  const FigureProblem problem = Refusal(figure, options);
-  EXPECT_EQ(Kind::PointOnSegment, problem.What);
-  EXPECT_EQ(0, problem.Domain);
-  EXPECT_EQ(Ids{ 7 }, problem.Points);
 }
 
 TEST(IsomorphicTriangulation, AutomaticFramesMakeNoThinTriangles)
@@ -243,8 +213,7 @@ TEST(IsomorphicTriangulation, AutomaticFramesMakeNoThinTriangles)
   EXPECT_EQ(0, result.NumberOfAddedPoints);
   EXPECT_EQ(figure.Points[0].size() + result.NumberOfFramePoints, result.Points[0].size());
   EXPECT_LT(4, result.NumberOfFramePoints);
-  const auto statistics = MeasurePair(result.Points, result.Triangles);
-  EXPECT_LT(20.0, std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]));
+  EXPECT_LT(20.0, SmallestAngle(result));
   for (std::size_t i = 100; i < result.Points[0].size(); ++i)
   {
     const Vector2& p = result.Points[0][i];
@@ -265,7 +234,7 @@ TEST(IsomorphicTriangulation, ConvexHullOfMirroredPoints)
     p.x = 15e6 - 1000.0 * p.x;
     p.y = 4e6 + 1000.0 * p.y;
   }
-  IsomorphicTriangulationOptions options;
+  Options options;
   options.Domain = FigureDomain::ConvexHull;
   const auto result = MakeIsomorphicTriangulation(figure, options);
   EXPECT_TRUE(result.Mirrored);
@@ -273,18 +242,10 @@ TEST(IsomorphicTriangulation, ConvexHullOfMirroredPoints)
   EXPECT_EQ("", Check(figure, result));
 }
 
-TEST(IsomorphicTriangulation, HolesAndIslands)
-{
-  FigurePair figure = Annulus(24, 1.0, true);
-  Add(figure, { 3.0, 0.5 }, { 3.0, 0.5 });
-  Add(figure, { 0.5, 0.5 }, { 0.5, 0.5 });
-  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
-}
-
 TEST(IsomorphicTriangulation, AddedPointsNeedNotBeOptimized)
 {
   const FigurePair figure = Noise(200, 0.5, 4);
-  IsomorphicTriangulationOptions options;
+  Options options;
   const auto few = MakeIsomorphicTriangulation(figure, options);
   options.OptimizeAddedPoints = false;
   const auto many = MakeIsomorphicTriangulation(figure, options);
@@ -340,34 +301,32 @@ TEST(IsomorphicTriangulation, SwappingSourceAndTargetSwapsThePair)
   }
 }
 
-TEST(IsomorphicTriangulation, NoisyAndUnrelatedPoints)
+TEST(IsomorphicTriangulation, FiguresOfAllKinds)
 {
-  for (const double spacings : { 0.1, 0.5, 1.0 })
-  {
-    const FigurePair figure = Noise(150, spacings, 11);
-    EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {}))) << spacings;
-  }
-  const FigurePair figure = Unrelated(25, 12);
-  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
-}
-
-TEST(IsomorphicTriangulation, FloatCoordinatesOfAMap)
-{
-  FigurePair figure = Smooth(300, 13);
-  for (auto& points : figure.Points)
+  FigurePair island = Annulus(24, 1.0, true);
+  Add(island, { 3.0, 0.5 }, { 3.0, 0.5 });
+  Add(island, { 0.5, 0.5 }, { 0.5, 0.5 });
+  FigurePair inFloat = Smooth(300, 13);
+  for (auto& points : inFloat.Points)
   {
     for (Vector2& p : points)
     {
       p = { static_cast<float>(1.5e7 + 1e4 * p.x), static_cast<float>(-4e6 - 1e4 * p.y) };
     }
   }
-  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
+  for (const auto& [name, figure] :
+    { std::pair{ "holes and islands", island }, { "noise", Noise(150, 0.1, 11) },
+      { "more noise", Noise(150, 0.5, 11) }, { "much noise", Noise(150, 1.0, 11) },
+      { "unrelated", Unrelated(25, 12) }, { "float coordinates of a map", inFloat } })
+  {
+    EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {}))) << name;
+  }
 }
 
 TEST(IsomorphicTriangulation, LargeTrianglesAreDivided)
 {
   const FigurePair figure = Square();
-  IsomorphicTriangulationOptions options;
+  Options options;
   options.MaximumTriangleSize = 0.002;
   const auto result = MakeIsomorphicTriangulation(figure, options);
   EXPECT_EQ("", Check(figure, result));
@@ -387,14 +346,13 @@ TEST(IsomorphicTriangulation, AddedPointsImproveAngles)
   double before = 0.0;
   for (const int count : { 2, 6 })
   {
-    IsomorphicTriangulationOptions options;
+    Options options;
     options.MaximumNumberOfAddedPoints = count;
     options.TargetQuality = 60.0;
     const auto result = MakeIsomorphicTriangulation(figure, options);
     ASSERT_EQ("", Check(figure, result));
     EXPECT_GE(count, result.NumberOfAddedPoints);
-    const auto statistics = MeasurePair(result.Points, result.Triangles);
-    const double now = std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]);
+    const double now = SmallestAngle(result);
     EXPECT_LT(before, now);
     before = now;
   }
@@ -403,11 +361,10 @@ TEST(IsomorphicTriangulation, AddedPointsImproveAngles)
 TEST(IsomorphicTriangulation, OtherQualitiesKeepTheAngles)
 {
   const FigurePair figure = Smooth(30, 5);
-  IsomorphicTriangulationOptions options;
+  Options options;
   options.MaximumNumberOfAddedPoints = 0;
   const auto start = MakeIsomorphicTriangulation(figure, options);
   const auto before = MeasurePair(start.Points, start.Triangles);
-  const double angle = std::min(before.MinimumAngle[0], before.MinimumAngle[1]);
   for (const PairQuality quality : { PairQuality::Concordance, PairQuality::NonObtuse })
   {
     options.MaximumNumberOfAddedPoints = 6;
@@ -416,7 +373,7 @@ TEST(IsomorphicTriangulation, OtherQualitiesKeepTheAngles)
     const auto result = MakeIsomorphicTriangulation(figure, options);
     EXPECT_EQ("", Check(figure, result));
     const auto after = MeasurePair(result.Points, result.Triangles);
-    EXPECT_LE(0.5 * std::min(angle, 5.0), std::min(after.MinimumAngle[0], after.MinimumAngle[1]));
+    EXPECT_LE(0.5 * std::min(SmallestAngle(start), 5.0), SmallestAngle(result));
     if (quality == PairQuality::Concordance)
     {
       EXPECT_GT(before.DiscordantShare, after.DiscordantShare);
@@ -471,24 +428,20 @@ TEST(LandmarkResiduals, QuadraticMapsLeaveNone)
   }
 }
 
-class RealLandmarks : public testing::TestWithParam<const char*>
+TEST(RealFigures, HistoricalMapsNeedNoAddedPoints)
 {
-};
-
-TEST_P(RealLandmarks, NeedNoAddedPoints)
-{
-  FigurePair figure;
-  if (!Read(GetParam(), figure, true))
+  for (const char* name : { "nobeoka", "nobeoka-inset", "fushimi-castle", "tatebayashi-town" })
   {
-    GTEST_SKIP() << "The shared data is absent.";
+    FigurePair figure;
+    if (!Read(name, figure, true))
+    {
+      GTEST_SKIP() << "The shared data is absent.";
+    }
+    Options options;
+    options.MaximumNumberOfAddedPoints = 0;
+    EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, options))) << name;
   }
-  IsomorphicTriangulationOptions options;
-  options.MaximumNumberOfAddedPoints = 0;
-  EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, options)));
 }
-
-INSTANTIATE_TEST_SUITE_P(HistoricalMaps, RealLandmarks,
-  testing::Values("nobeoka", "nobeoka-inset", "fushimi-castle", "tatebayashi-town"));
 
 TEST(RealFigures, SchematicMap)
 {
@@ -499,7 +452,7 @@ TEST(RealFigures, SchematicMap)
     {
       GTEST_SKIP() << "The shared data is absent.";
     }
-    IsomorphicTriangulationOptions options;
+    Options options;
     options.LeaveOutConflictingSegments = true;
     const auto result = MakeIsomorphicTriangulation(figure, options);
     EXPECT_EQ("", Check(figure, result)) << name;
@@ -526,13 +479,12 @@ TEST(RealFigures, PublishedOutlines)
       GTEST_SKIP() << "The shared data is absent.";
     }
     figure.Loops.push_back(Range(0, static_cast<int>(figure.Points[0].size())));
-    IsomorphicTriangulationOptions options;
+    Options options;
     options.MaximumNumberOfAddedPoints = expected.Points;
     options.TargetQuality = 60.0;
     const auto result = MakeIsomorphicTriangulation(figure, options);
     EXPECT_EQ("", Check(figure, result));
-    const auto statistics = MeasurePair(result.Points, result.Triangles);
-    EXPECT_LE(expected.Angle, std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]))
+    EXPECT_LE(expected.Angle, SmallestAngle(result))
       << expected.Name << " with " << expected.Points << " points";
   }
 }
