@@ -7,6 +7,7 @@
 #ifndef CubicPairs_h
 #define CubicPairs_h
 
+#include "Mesh/CubicMapOptions.h"
 #include "Mesh/PlanarPair.h"
 
 #include <algorithm>
@@ -20,6 +21,24 @@ namespace cubic_test
 using homeomorphism::LargeVector;
 using homeomorphism::PlanarPair;
 using homeomorphism::Vector2;
+
+inline homeomorphism::CubicMapOptions Options(homeomorphism::CubicBending bending)
+{
+  homeomorphism::CubicMapOptions options;
+  options.Bending = bending;
+  return options;
+}
+
+/// The pair with every point of both meshes moved by a function.
+template <typename Move>
+PlanarPair Moved(PlanarPair pair, Move&& move)
+{
+  for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
+  {
+    std::transform(points->begin(), points->end(), points->begin(), move);
+  }
+  return pair;
+}
 
 /// A jittered grid of @a cells^2 squares cut in two, each inner point moved by up to @a jitter
 /// of a cell, in the unit square.

@@ -140,24 +140,6 @@ void ExpectRoundTrip(const CubicMap& map, int count, double deviation = 1e300)
   }
 }
 
-CubicMapOptions Options(CubicBending bending)
-{
-  CubicMapOptions options;
-  options.Bending = bending;
-  return options;
-}
-
-/// The pair with every point of both meshes moved by a function.
-template <typename Move>
-PlanarPair Moved(PlanarPair pair, Move&& move)
-{
-  for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
-  {
-    std::transform(points->begin(), points->end(), points->begin(), move);
-  }
-  return pair;
-}
-
 /// A grid, and its image by a smooth map.
 PlanarPair SmoothPair(int cells, double jitter, double size)
 {

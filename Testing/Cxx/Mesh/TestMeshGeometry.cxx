@@ -101,22 +101,6 @@ TEST(MeshGeometry, NormalizesWithoutRounding)
   EXPECT_EQ(normalized[1] * geometry.GetInverseScale(), point[1]);
 }
 
-TEST(MeshGeometry, OrientationIsExact)
-{
-  // The third point is exactly on the line, or one ulp beside it.
-  const double beside = std::nextafter(24.0, 25.0);
-  const auto mesh = MakeMesh({ { 0.5, 0.5, 0.0 }, { 12.0, 12.0, 0.0 }, { 24.0, 24.0, 0.0 },
-                               { 24.0, beside, 0.0 }, { beside, 24.0, 0.0 } },
-    { { 0, 1, 2 }, { 0, 1, 3 }, { 0, 1, 4 } });
-  const Triangulation topology = TriangulationOf(mesh);
-  const MeshGeometry geometry(mesh->GetPoints(), topology);
-  EXPECT_EQ(geometry.GetOrientation(topology.GetCorners(0)), 0);
-  EXPECT_EQ(geometry.GetOrientation(topology.GetCorners(1)), 1);
-  EXPECT_EQ(geometry.GetOrientation(topology.GetCorners(2)), -1);
-  EXPECT_TRUE(geometry.IsDegenerate(topology, 0));
-  EXPECT_FALSE(geometry.IsDegenerate(topology, 1));
-}
-
 TEST(MeshGeometry, RotatedAndShiftedPlanesArePlanar)
 {
   // Whether points of the grid, stored as doubles or floats, are those of a plane.

@@ -27,13 +27,6 @@ namespace
 using namespace homeomorphism;
 using namespace cubic_test;
 
-CubicMapOptions Options(CubicBending bending)
-{
-  CubicMapOptions options;
-  options.Bending = bending;
-  return options;
-}
-
 double Share = 1.0;
 bool Failed = false;
 
@@ -210,15 +203,11 @@ void RunFar()
     for (int seed = 0; seed < Count(10); ++seed)
     {
       // A map sheet of 10 km at coordinates of 10^7 m, in millimeters.
-      PlanarPair pair = RandomPair(seed, 0.5, 11);
-      for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
-      {
-        for (Vector2& p : *points)
-        {
-          p = { 1e7 + std::round(1e7 * p.x) / 1000.0, 1e7 + std::round(1e7 * p.y) / 1000.0 };
-        }
-      }
-      const CubicMap map(std::move(pair), Options(bending));
+      const auto away = [](const Vector2& p) {
+        return Vector2{ 1e7 + std::round(1e7 * p.x) / 1000.0,
+          1e7 + std::round(1e7 * p.y) / 1000.0 };
+      };
+      const CubicMap map(Moved(RandomPair(seed, 0.5, 11), away), Options(bending));
       Measure(map, 2000, random, result);
     }
     Print(bending == CubicBending::Least ? "at 10^7, LEAST" : "at 10^7, LOCAL", result);
@@ -228,17 +217,11 @@ void RunFar()
   for (int seed = 0; seed < Count(10); ++seed)
   {
     // Cells that shrink by 0.7 from one to the next.
-    PlanarPair pair = RandomPair(seed, 0.5, 11);
-    const auto grade = [](double x) {
-      return (1.0 - std::pow(0.7, 11.0 * x)) / (1.0 - std::pow(0.7, 11.0));
+    const auto grade = [](const Vector2& p) {
+      const double shrunk = std::pow(0.7, 11.0 * p.x);
+      return Vector2{ (1.0 - shrunk) / (1.0 - std::pow(0.7, 11.0)), p.y };
     };
-    for (LargeVector<Vector2>* points : { &pair.Source, &pair.Target })
-    {
-      for (Vector2& p : *points)
-      {
-        p = { grade(p.x), p.y };
-      }
-    }
+    PlanarPair pair = Moved(RandomPair(seed, 0.5, 11), grade);
     bool valid = true;
     for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
     {
