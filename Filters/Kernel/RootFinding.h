@@ -19,12 +19,13 @@ namespace homeomorphism
 
 /// The step of Halley's method to the root of an increasing function, to be subtracted. Its
 /// denominator differs from Newton's by at most a factor of 2.
-HOMEOMORPHISM_ALWAYS_INLINE double HalleyStep(double value, double slope, double curvature)
+template <typename Real>
+HOMEOMORPHISM_ALWAYS_INLINE Real HalleyStep(Real value, Real slope, Real halfCurvature)
 {
-  const double square = slope * slope;
-  double denominator = square - 0.5 * (value * curvature);
-  denominator = denominator > 0.5 * square ? denominator : 0.5 * square;
-  denominator = denominator < 2.0 * square ? denominator : 2.0 * square;
+  const Real square = slope * slope;
+  Real denominator = square - value * halfCurvature;
+  denominator = denominator > 0.5f * square ? denominator : 0.5f * square;
+  denominator = denominator < 2.0f * square ? denominator : 2.0f * square;
   return value * slope / denominator;
 }
 
@@ -55,15 +56,22 @@ public:
     this->Done[index] = 0;
   }
 
-  /// Subtracts a step without a bracket. The result is the root if the step is at most @a enough
-  /// times it, and it is in the interval.
-  HOMEOMORPHISM_ALWAYS_INLINE void StepFreely(int index, double step, double enough)
+  /// Subtracts a step without a bracket. The result is the root if @a found is not 0, the step is
+  /// at most @a enough times it, and it is in the interval.
+  HOMEOMORPHISM_ALWAYS_INLINE void StepFreely(
+    int index, double step, double enough, double found = 1.0)
   {
     const double x = this->Root[index] - step;
-    double done = std::abs(step) <= enough * x ? 1.0 : 0.0;
+    double done = std::abs(step) <= enough * x ? found : 0.0;
     done = x <= this->Upper[index] ? done : 0.0;
     this->Root[index] = x;
     this->Done[index] = done > 0.0 ? 1 : 0;
+  }
+
+  /// 1 if the root is found, else 0.
+  HOMEOMORPHISM_ALWAYS_INLINE double IsFound(int index) const
+  {
+    return this->Done[index] != 0 ? 1.0 : 0.0;
   }
 
   /// Subtracts a step of Newton or Halley, given with the value of the function at Root. Iteration
@@ -143,7 +151,7 @@ private:
   std::int64_t Done[Width];
 };
 
-/// Whether an equation has a function Approach.
+/// Whether an equation has the functions Approach and Finish.
 template <typename Equation, typename = void>
 struct HasApproach : std::false_type
 {
@@ -155,9 +163,9 @@ struct HasApproach<Equation, std::void_t<decltype(&Equation::Approach)>> : std::
 
 /// Finds the roots of the equations of a batch. @a Equation is a RootBatch with functions Set and
 /// Evaluate, which take an index and the elements of @a numbers (arrays with one value per
-/// equation) for that index. An equation may have a function Approach that takes a step without a
-/// bracket; it is called twice for each index, before bracketed steps are taken where the root is
-/// not found yet.
+/// equation) for that index. An equation may have functions Approach and Finish, which take a step
+/// each without a bracket. They are called once for each index, before bracketed steps are taken
+/// where the root is not found yet.
 template <int Width, typename Equation, typename... Numbers>
 HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*... numbers)
 {
@@ -168,13 +176,15 @@ HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*..
   }
   if constexpr (HasApproach<Equation>::value)
   {
-    for (int step = 0; step < 2; ++step)
+    HOMEOMORPHISM_SIMD
+    for (int index = 0; index < Width; ++index)
     {
-      HOMEOMORPHISM_SIMD
-      for (int index = 0; index < Width; ++index)
-      {
-        equation.Approach(index, numbers[index]...);
-      }
+      equation.Approach(index, numbers[index]...);
+    }
+    HOMEOMORPHISM_SIMD
+    for (int index = 0; index < Width; ++index)
+    {
+      equation.Finish(index, numbers[index]...);
     }
   }
   for (int step = 0; !equation.IsDone(step); ++step)

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace homeomorphism
 {
@@ -20,159 +21,182 @@ constexpr double GreatestStripFunction = 4.0 / 81.0;
 
 /// B_k, its derivatives and the determinant of the chart at a point of the strip of edge k. The
 /// arguments are the coordinates of the point for k, the next corner and the previous one. Outside
-/// the strip B_k is continued by l_k beyond the edge and by 0 elsewhere.
+/// the strip B_k is continued by l_k beyond the edge and by 0 elsewhere. Constants are exact in
+/// single precision, so that the formulas are of the type Real.
+template <typename Real>
 struct StripFunction
 {
-  double K;
-  double ShareNext;
-  double SharePrevious;
-  double Tau;
-  double U;
-  /// 1 / (l_i + l_j) and 1 / (tau q).
-  double OverSum;
-  double OverWidth;
+  static constexpr Real Tiny = std::is_same_v<Real, float> ? 1e-30f : Real(1e-290);
 
-  HOMEOMORPHISM_ALWAYS_INLINE StripFunction(double k, double next, double previous, double tau)
+  Real K;
+  Real ShareNext;
+  Real SharePrevious;
+  Real Tau;
+  Real U;
+  /// 1 / (l_i + l_j) and 1 / (tau q).
+  Real OverSum;
+  Real OverWidth;
+
+  HOMEOMORPHISM_ALWAYS_INLINE StripFunction(Real k, Real next, Real previous, Real tau)
     : K(k)
     , Tau(tau)
   {
     // A single division gives 1 / sum and k / (tau q) = k sum / product.
-    const double sum = next + previous;
+    const Real sum = next + previous;
     // The product underflows only so close to a corner that the value does not matter.
-    double product = tau * (next * previous);
-    product += 1e-290;
-    const double over = 1.0 / (sum * product);
+    Real product = tau * (next * previous);
+    product += Tiny;
+    const Real over = 1.0f / (sum * product);
     this->OverSum = product * over;
     this->ShareNext = next * this->OverSum;
     this->SharePrevious = previous * this->OverSum;
     this->OverWidth = sum * sum * over;
     // The first product does not wait for the division.
-    double u = k * (sum * sum) * over;
+    Real u = k * (sum * sum) * over;
     // At a corner u is NaN, and there is no strip.
-    u = u < 1.0 ? u : 1.0;
-    u = u > 0.0 ? u : 0.0;
-    const double lesser = next < previous ? next : previous;
-    this->U = lesser > 0.0 ? u : 1.0;
+    u = u < 1.0f ? u : 1.0f;
+    u = u > 0.0f ? u : 0.0f;
+    const Real lesser = next < previous ? next : previous;
+    this->U = lesser > 0.0f ? u : 1.0f;
   }
 
   /// W(u) = (1 - u)^3 (1 + 3 u).
-  HOMEOMORPHISM_ALWAYS_INLINE double W() const
+  HOMEOMORPHISM_ALWAYS_INLINE Real W() const
   {
-    const double rest = 1.0 - this->U;
-    return rest * rest * (rest * (1.0 + 3.0 * this->U));
+    const Real rest = 1.0f - this->U;
+    return rest * rest * (rest * (1.0f + 3.0f * this->U));
   }
 
   /// B = l_k W(u).
-  HOMEOMORPHISM_ALWAYS_INLINE double Value() const { return this->K * this->W(); }
+  HOMEOMORPHISM_ALWAYS_INLINE Real Value() const { return this->K * this->W(); }
 
   /// 1 - K'(u) with K' = (1 - u)^2 (1 - 3 u) (1 + 5 u), which is dB/dl_k.
-  HOMEOMORPHISM_ALWAYS_INLINE double OneMinusSlope() const
+  HOMEOMORPHISM_ALWAYS_INLINE Real OneMinusSlope() const
   {
-    return this->U * this->U * (18.0 - this->U * (32.0 - 15.0 * this->U));
+    return this->U * this->U * (18.0f - this->U * (32.0f - 15.0f * this->U));
   }
 
   /// The part of the other two corners: dB/dl_i = 12 tau u^3 (1 - u)^2 (l_j / (l_i + l_j))^2, and
   /// with i, j exchanged.
-  HOMEOMORPHISM_ALWAYS_INLINE double AlongSides(double next, double previous) const
+  HOMEOMORPHISM_ALWAYS_INLINE Real AlongSides(Real next, Real previous) const
   {
-    const double rest = 1.0 - this->U;
-    return 12.0 * this->Tau * this->U * this->U * this->U * rest * rest *
+    const Real rest = 1.0f - this->U;
+    return 12.0f * this->Tau * this->U * this->U * this->U * rest * rest *
       (this->SharePrevious * this->SharePrevious * next +
         this->ShareNext * this->ShareNext * previous);
   }
 
   /// 1 + d_k K' + AlongSides(d), without the cancellation of a small kappa = 1 + d_k.
-  HOMEOMORPHISM_ALWAYS_INLINE double DeterminantRatio(
-    double kappa, double offsetNext, double offsetPrevious) const
+  HOMEOMORPHISM_ALWAYS_INLINE Real DeterminantRatio(
+    Real kappa, Real offsetNext, Real offsetPrevious) const
   {
-    const double rest = this->OneMinusSlope();
-    return kappa * (1.0 - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
+    const Real rest = this->OneMinusSlope();
+    return kappa * (1.0f - rest) + rest + this->AlongSides(offsetNext, offsetPrevious);
   }
 
-  /// The second derivative of beta - B(affine - d beta) with respect to beta, -d^T B'' d. With K''
-  /// = -12 u (1 - u) (3 - 5 u), q' = (l_j / (l_i + l_j))^2 d_i + (l_i / (l_i + l_j))^2 d_j and q''
-  /// = -2 (d_i l_j - d_j l_i)^2 / (l_i + l_j)^3, B'' is 12 tau u^3 (1 - u)^2 q'' + K'' / (tau q)
-  /// (d_k - u tau q')^2.
-  HOMEOMORPHISM_ALWAYS_INLINE double Curvature(
-    double kappa, double offsetNext, double offsetPrevious) const
+  /// Half the second derivative of beta - B(affine - d beta) with respect to beta, -d^T B'' d. With
+  /// K'' = -12 u (1 - u) (3 - 5 u), q' = (l_j / (l_i + l_j))^2 d_i + (l_i / (l_i + l_j))^2 d_j and
+  /// q'' = -2 (d_i l_j - d_j l_i)^2 / (l_i + l_j)^3, B'' is 12 tau u^3 (1 - u)^2 q'' + K'' / (tau
+  /// q) (d_k - u tau q')^2.
+  HOMEOMORPHISM_ALWAYS_INLINE Real HalfCurvature(
+    Real kappa, Real offsetNext, Real offsetPrevious) const
   {
-    const double rest = 1.0 - this->U;
-    const double turn = offsetNext * this->SharePrevious - offsetPrevious * this->ShareNext;
-    const double slope = this->SharePrevious * this->SharePrevious * offsetNext +
+    const Real rest = 1.0f - this->U;
+    const Real turn = offsetNext * this->SharePrevious - offsetPrevious * this->ShareNext;
+    const Real slope = this->SharePrevious * this->SharePrevious * offsetNext +
       this->ShareNext * this->ShareNext * offsetPrevious;
-    const double approach = (kappa - 1.0) - this->U * (this->Tau * slope);
-    const double u2 = this->U * this->U;
-    return 24.0 * u2 * this->U * (rest * rest) * this->Tau * (turn * turn) * this->OverSum +
-      12.0 * this->U * rest * (3.0 - 5.0 * this->U) * this->OverWidth * (approach * approach);
+    const Real approach = (kappa - 1.0f) - this->U * (this->Tau * slope);
+    const Real u2 = this->U * this->U;
+    return 12.0f * u2 * this->U * (rest * rest) * this->Tau * (turn * turn) * this->OverSum +
+      6.0f * this->U * rest * (3.0f - 5.0f * this->U) * this->OverWidth * (approach * approach);
   }
 
   /// beta - B for a point with the affine coordinate affineK = l_k + d_k beta, without
   /// cancellation: beta (1 + d_k W) - affineK W.
-  HOMEOMORPHISM_ALWAYS_INLINE double Residual(double beta, double affineK, double kappa) const
+  HOMEOMORPHISM_ALWAYS_INLINE Real Residual(Real beta, Real affineK, Real kappa) const
   {
-    const double w = this->W();
-    const double oneMinusW = this->U * this->U * (6.0 - this->U * (8.0 - 3.0 * this->U));
+    const Real w = this->W();
+    const Real oneMinusW = this->U * this->U * (6.0f - this->U * (8.0f - 3.0f * this->U));
     return beta * (kappa * w + oneMinusW) - affineK * w;
   }
 };
 
 /// The equations of strips. From affine = l + d B(l) and beta = B(l) follows beta = B(affine - d
 /// beta). The difference of both sides increases with beta, because its slope is the determinant
-/// ratio. Three steps of Halley's method from 0 solve it beside most triangles. Only where the last
-/// of them is not short are further steps bracketed.
+/// ratio. Three steps of Halley's method from 0 solve it beside most triangles. The first needs
+/// few digits, and the third uses the curvature of the second. Only where these two are not short
+/// are further steps bracketed.
 template <int Width>
 struct StripEquation : RootBatch<Width, false>
 {
-  /// The error after a step is at most about 8 times its cube, in units of the root, so this is a
-  /// fraction of the rounding error of a barycentric coordinate.
+  /// The error after a whole step is at most about 8 times its cube, in units of the root, so this
+  /// is a fraction of the rounding error of a barycentric coordinate.
   static constexpr double Enough = 0x1p-18;
+  /// The same of two steps with one curvature: the error is about the length of the first times
+  /// the square of the second.
+  static constexpr double EnoughBefore = 0x1p-5;
+  static constexpr double EnoughAfter = 0x1p-24;
 
   HOMEOMORPHISM_ALWAYS_INLINE void Set(int index, double k, double next, double previous,
     double kappa, double offsetNext, double offsetPrevious, double tau)
   {
     constexpr double bound = 0.05;
     static_assert(bound > GreatestStripFunction, "the bracket contains the root");
-    const StripFunction function(k, next, previous, tau);
-    const double step =
-      HalleyStep(-function.Value(), function.DeterminantRatio(kappa, offsetNext, offsetPrevious),
-        function.Curvature(kappa, offsetNext, offsetPrevious));
+    const auto f = [](double x) { return static_cast<float>(x); };
+    const StripFunction<float> function(f(k), f(next), f(previous), f(tau));
+    const float step = HalleyStep(-function.Value(),
+      function.DeterminantRatio(f(kappa), f(offsetNext), f(offsetPrevious)),
+      function.HalfCurvature(f(kappa), f(offsetNext), f(offsetPrevious)));
     this->Start(index, 0.0, bound, -step);
   }
 
   HOMEOMORPHISM_ALWAYS_INLINE void Approach(int index, double k, double next, double previous,
     double kappa, double offsetNext, double offsetPrevious, double tau)
   {
-    const Linearized at =
-      At(this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
-    this->StepFreely(index, at.Step, Enough);
+    const Linearized at(
+      this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
+    this->HalfCurvature[index] = at.Function.HalfCurvature(kappa, offsetNext, offsetPrevious);
+    this->StepFreely(
+      index, HalleyStep(at.Value, at.Slope, this->HalfCurvature[index]), EnoughBefore);
+  }
+
+  HOMEOMORPHISM_ALWAYS_INLINE void Finish(int index, double k, double next, double previous,
+    double kappa, double offsetNext, double offsetPrevious, double tau)
+  {
+    const Linearized at(
+      this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
+    this->StepFreely(index, HalleyStep(at.Value, at.Slope, this->HalfCurvature[index]), EnoughAfter,
+      this->IsFound(index));
   }
 
   HOMEOMORPHISM_ALWAYS_INLINE void Evaluate(int index, double k, double next, double previous,
     double kappa, double offsetNext, double offsetPrevious, double tau)
   {
-    const Linearized at =
-      At(this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
-    this->Step(index, at.Value, at.Step, Enough);
+    const Linearized at(
+      this->Root[index], k, next, previous, kappa, offsetNext, offsetPrevious, tau);
+    const double curvature = at.Function.HalfCurvature(kappa, offsetNext, offsetPrevious);
+    this->Step(index, at.Value, HalleyStep(at.Value, at.Slope, curvature), Enough);
   }
 
 private:
-  /// The equation's value and Halley's step at beta.
+  /// The equation's value and slope at beta.
   struct Linearized
   {
+    StripFunction<double> Function;
     double Value;
-    double Step;
+    double Slope;
+
+    HOMEOMORPHISM_ALWAYS_INLINE Linearized(double beta, double k, double next, double previous,
+      double kappa, double offsetNext, double offsetPrevious, double tau)
+      : Function(
+          k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau)
+      , Value(this->Function.Residual(beta, k, kappa))
+      , Slope(this->Function.DeterminantRatio(kappa, offsetNext, offsetPrevious))
+    {
+    }
   };
 
-  HOMEOMORPHISM_ALWAYS_INLINE static Linearized At(double beta, double k, double next,
-    double previous, double kappa, double offsetNext, double offsetPrevious, double tau)
-  {
-    const StripFunction function(
-      k - (kappa - 1.0) * beta, next - offsetNext * beta, previous - offsetPrevious * beta, tau);
-    const double value = function.Residual(beta, k, kappa);
-    return { value,
-      HalleyStep(value, function.DeterminantRatio(kappa, offsetNext, offsetPrevious),
-        function.Curvature(kappa, offsetNext, offsetPrevious)) };
-  }
+  double HalfCurvature[Width];
 };
 
 Barycentric Moved(const Barycentric& l, int k, const SmoothStrip& strip, double factor)
@@ -184,9 +208,9 @@ Barycentric Moved(const Barycentric& l, int k, const SmoothStrip& strip, double 
   return moved;
 }
 
-StripFunction FunctionAt(const Barycentric& l, int k, const SmoothStrip& strip)
+StripFunction<double> FunctionAt(const Barycentric& l, int k, const SmoothStrip& strip)
 {
-  return StripFunction(l[k], l[NextCorner(k)], l[PreviousCorner(k)], strip.Tau);
+  return StripFunction<double>(l[k], l[NextCorner(k)], l[PreviousCorner(k)], strip.Tau);
 }
 
 bool Contains(const SmoothStrip& strip, const Barycentric& l, int k)
@@ -388,7 +412,7 @@ void MapSmoothBatch(SmoothBatch& batch, int count, double (*references)[SmoothBa
     HOMEOMORPHISM_SIMD
     for (int i = 0; i < width; ++i)
     {
-      const double beta = StripFunction(k[i], next[i], previous[i], tau[i]).Value();
+      const double beta = StripFunction<double>(k[i], next[i], previous[i], tau[i]).Value();
       k[i] += (kappa[i] - 1.0) * beta;
       next[i] += offsetNext[i] * beta;
       previous[i] += offsetPrevious[i] * beta;
@@ -430,7 +454,7 @@ SmoothChart::Differential::Differential(
     this->Edge = -1;
     return;
   }
-  const StripFunction function = FunctionAt(l, this->Edge, this->Strip);
+  const StripFunction<double> function = FunctionAt(l, this->Edge, this->Strip);
   this->ByOwn = 1.0 - function.OneMinusSlope();
   this->ByNext = function.AlongSides(1.0, 0.0);
   this->ByPrevious = function.AlongSides(0.0, 1.0);
