@@ -183,8 +183,9 @@ struct TriangleShape
   /// The components of a vector of the plane, which sum to 0: the derivative of ToBarycentric.
   Barycentric VectorToBarycentric(const Vector2& vector) const
   {
-    const double apex = vector.y / this->Height;
-    const double second = (vector.x - this->ApexX * apex) / this->Base;
+    // Reciprocals, which are the same for both axes.
+    const double apex = vector.y * (1.0 / this->Height);
+    const double second = (vector.x - this->ApexX * apex) * (1.0 / this->Base);
     Barycentric l;
     l[this->Apex] = apex;
     l[PreviousCorner(this->Apex)] = second;

@@ -460,6 +460,7 @@ SmoothChart::Differential::Differential(
   this->ByPrevious = function.AlongSides(0.0, 1.0);
   this->DeterminantRatio = function.DeterminantRatio(
     this->Strip.Kappa, this->Strip.OffsetNext, this->Strip.OffsetPrevious);
+  this->InverseDeterminantRatio = 1.0 / this->DeterminantRatio;
 }
 
 double SmoothChart::Differential::Along(const Barycentric& direction) const
@@ -485,7 +486,7 @@ SmoothChart::Direction SmoothChart::Differential::Pullback(const Vector2& vector
   }
   // Sherman-Morrison formula.
   return homeomorphism::Moved(
-    direction, this->Edge, this->Strip, -this->Along(direction) / this->DeterminantRatio);
+    direction, this->Edge, this->Strip, -this->Along(direction) * this->InverseDeterminantRatio);
 }
 
 TriangularCoordinates SmoothChart::ToCoordinates(const Reference& l) const

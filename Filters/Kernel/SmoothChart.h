@@ -196,6 +196,7 @@ public:
     Vector2 Pushforward(const Direction& direction) const;
     /// See SmoothChart.
     double GetDeterminantRatio() const { return this->DeterminantRatio; }
+    double GetInverseDeterminantRatio() const { return this->InverseDeterminantRatio; }
 
   private:
     /// The derivative of B along a direction whose components sum to 0.
@@ -209,6 +210,7 @@ public:
     double ByNext = 0.0;
     double ByPrevious = 0.0;
     double DeterminantRatio = 1.0;
+    double InverseDeterminantRatio = 1.0;
   };
 
   Differential DifferentialAt(const Reference& l) const

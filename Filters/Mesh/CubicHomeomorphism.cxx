@@ -171,8 +171,23 @@ void CubicHomeomorphism::LeaveUncertified(CubicBatch& batch) const
   }
 }
 
+void CubicHomeomorphism::GetSourcePoints(Domain from, const TriangleIndex* triangles,
+  const CubicBatch& batch, double* x, double* y, int* numbers) const
+{
+  const bool isSource = from == Domain::Source;
+  std::copy_n(isSource ? batch.X : batch.ImageX, batch.Count, x);
+  std::copy_n(isSource ? batch.Y : batch.ImageY, batch.Count, y);
+  for (int i = 0; i < batch.Count; ++i)
+  {
+    // MapPoints leaves the triangle of a preimage, but the refined triangle of a point.
+    numbers[i] = batch.Triangles[i] < 0 ? -1
+      : isSource                        ? this->Numbers[triangles[i]]
+                                        : batch.Triangles[i];
+  }
+}
+
 bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
-  const Vector2& inFrame, Vector2& image) const
+  const Vector2& inFrame, Vector2& image, Matrix2* derivative) const
 {
   CubicBatch batch;
   batch.Count = 1;
@@ -192,38 +207,27 @@ bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Bar
   CubicTriangle prepared = this->Map->Prepare();
   this->MapPoints(from, batch, prepared);
   image = { batch.ImageX[0], batch.ImageY[0] };
+  if (derivative)
+  {
+    Vector2 point;
+    int number;
+    this->GetSourcePoints(from, &triangle, batch, &point.x, &point.y, &number);
+    *derivative = this->Derive(from, triangle, number, point);
+  }
   return batch.Triangles[0] >= 0;
 }
 
-void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame,
-  Vector2& image, Matrix2& derivative) const
+Matrix2 CubicHomeomorphism::Derive(
+  Domain from, TriangleIndex triangle, int number, const Vector2& point) const
 {
-  const PlaneFrame& here = this->Pair.GetGeometry(from).GetPlaneFrame(triangle);
-  const PlaneFrame& there = this->Pair.GetGeometry(Opposite(from)).GetPlaneFrame(triangle);
-  Vector2 point = here.FromFrame(inFrame);
-  int number = this->Numbers[triangle];
-  const bool mirrored = this->Mirrored[number] != 0;
-  Matrix2 forward;
-  if (from == Domain::Source)
-  {
-    this->Map->MapPoint(number, point, image, forward);
-  }
-  else
-  {
-    point.x = mirrored ? -point.x : point.x;
-    this->Map->FindPreimage(point, number, image);
-    Vector2 again;
-    this->Map->MapPoint(number, image, again, forward);
-  }
-  if (!this->Map->IsCertified(number))
+  if (number < 0)
   {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    image = { none, none };
-    forward = { image, image };
+    return { { none, none }, { none, none } };
   }
-  if (mirrored)
+  Matrix2 forward = this->Map->GetDerivative(number, point);
+  if (this->Mirrored[number] != 0)
   {
-    image.x = from == Domain::Source ? -image.x : image.x;
     forward.ImageOfX.x = -forward.ImageOfX.x;
     forward.ImageOfY.x = -forward.ImageOfY.x;
   }
@@ -235,11 +239,13 @@ void CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Vec
         { -forward.ImageOfY.x, forward.ImageOfX.x } };
   }
   // From the planes' axes to those of the frames.
+  const PlaneFrame& here = this->Pair.GetGeometry(from).GetPlaneFrame(triangle);
+  const PlaneFrame& there = this->Pair.GetGeometry(Opposite(from)).GetPlaneFrame(triangle);
   const auto toFrame = [](const PlaneFrame& frame, const Vector2& v) {
     return Vector2{ Dot(frame.Tangent, v), frame.Orientation * Cross(frame.Tangent, v) };
   };
   const Vector2 inward{ -here.Orientation * here.Tangent.y, here.Orientation * here.Tangent.x };
-  derivative = { toFrame(there, forward * here.Tangent), toFrame(there, forward * inward) };
+  return { toFrame(there, forward * here.Tangent), toFrame(there, forward * inward) };
 }
 
 std::vector<std::int32_t> CubicHomeomorphism::GetExceptionalPoints(bool interior) const

@@ -52,14 +52,19 @@ public:
   /// the map's.
   void MapPoints(Domain from, CubicBatch& batch, CubicTriangle& prepared) const;
 
-  /// The image of one point, to the same bits. Returns false if there is none.
-  bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,
-    Vector2& image) const;
+  /// The points of the map's source that belong to a batch which MapPoints has mapped, and their
+  /// triangles in the map: the points themselves or their preimages. @a triangles are the meshes'.
+  void GetSourcePoints(Domain from, const TriangleIndex* triangles, const CubicBatch& batch,
+    double* x, double* y, int* numbers) const;
 
-  /// The image of a point of a triangle's frame, and the derivative from frame to frame. Both are
-  /// in the plane of the other mesh, and NaN where there is no image.
-  void MapPoint(Domain from, TriangleIndex triangle, const Vector2& inFrame, Vector2& image,
-    Matrix2& derivative) const;
+  /// The image of one point, to the same bits, in the plane of the other mesh. Returns false if
+  /// there is none. Sets the derivative from frame to frame unless it is null: to NaN where there
+  /// is no image.
+  bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,
+    Vector2& image, Matrix2* derivative = nullptr) const;
+
+  /// The derivative, from frame to frame of a mesh's triangle, at a point of the map's source.
+  Matrix2 Derive(Domain from, TriangleIndex triangle, int number, const Vector2& point) const;
 
   /// The least Bernstein coefficient of the determinant over the piecewise linear map's, 0 for a
   /// masked triangle.

@@ -442,16 +442,14 @@ Vector2 CubicMap::MapPoint(int triangle, const Vector2& point, CubicTriangle& pr
 }
 
 //------------------------------------------------------------------------------
-void CubicMap::MapPoint(
-  int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+Matrix2 CubicMap::GetDerivative(int triangle, const Vector2& point) const
 {
   const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
-  Vector2 local;
+  Vector2 image;
+  Matrix2 derivative;
   this->MapFine(
-    child, point - this->GetFine().Source[this->GetFine().Triangles[child][0]], local, derivative);
-  // To the same bits as without a derivative.
-  CubicTriangle prepared = this->Prepare();
-  image = this->MapPoint(triangle, point, prepared);
+    child, point - this->GetFine().Source[this->GetFine().Triangles[child][0]], image, derivative);
+  return derivative;
 }
 
 //------------------------------------------------------------------------------

@@ -100,8 +100,14 @@ public:
   /// The image of a point of a triangle.
   Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const;
 
-  /// The image of a point of a triangle, and the derivative there.
-  void MapPoint(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
+  /// The derivative at a point of a triangle.
+  Matrix2 GetDerivative(int triangle, const Vector2& point) const;
+  void MapPoint(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
+  {
+    CubicTriangle prepared = this->Prepare();
+    image = this->MapPoint(triangle, point, prepared);
+    derivative = this->GetDerivative(triangle, point);
+  }
 
   /// The point that is mapped to @a image, and the triangle in which it lies. @a triangle is where
   /// the piecewise linear map has it. Returns false if no point of the domain is found, which

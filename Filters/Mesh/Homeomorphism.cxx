@@ -155,7 +155,7 @@ HOMEOMORPHISM_FOR_WIDE_VECTORS void ToHorizontalPlane(const PlaneFrame& frame, d
 
 double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
 {
-  return (other.Base / shape.Base) * (other.Height / shape.Height);
+  return (other.Base * (1.0 / shape.Base)) * (other.Height * (1.0 / shape.Height));
 }
 
 /// The determinant of a map's derivative, from frame to frame.
@@ -178,7 +178,7 @@ double Determinant(const SmoothChart::Differential& chart, const SmoothChart::Di
   const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
 {
   return AffineDeterminant(shape, otherShape) *
-    (other.GetDeterminantRatio() / chart.GetDeterminantRatio());
+    (other.GetDeterminantRatio() * chart.GetInverseDeterminantRatio());
 }
 
 } // namespace
@@ -380,7 +380,7 @@ void Homeomorphism::MapByStrips(Domain from, PointBlock& block) const
   MapSmoothBatch(batch, block.Count, block.KeepsReferences ? block.References : nullptr);
   for (int i = 0; i < block.Count && block.KeepsReferences; ++i)
   {
-    block.ReferenceCorners[i] = static_cast<int>(batch.Corner[i]);
+    block.ReferencePlaces[i] = static_cast<int>(batch.Corner[i]);
   }
   runs.ForEach(
     [&](int begin, int end, TriangleIndex t) {
@@ -471,6 +471,11 @@ int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
       std::make_shared<CubicTriangle>(this->Cubic->GetMap().Prepare(CubicTriangle::ManyTriangles));
   }
   this->Cubic->MapPoints(this->ToCubic(from), batch, *block.PreparedCubics);
+  if (block.KeepsReferences)
+  {
+    this->Cubic->GetSourcePoints(this->ToCubic(from), block.Triangles, batch, block.References[0],
+      block.References[1], block.ReferencePlaces);
+  }
   target.FromNormalized(batch.ImageX, batch.ImageY, heights, block.Count, block.Images);
   int missing = 0;
   for (int i = 0; i < block.Count; ++i)
@@ -540,17 +545,7 @@ bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   }
   if (this->Cubic)
   {
-    const Barycentric l = this->Pair->GetGeometry(from)
-                            .GetShape(surfacePoint.Triangle)
-                            .ToBarycentric(surfacePoint.Point.InPlane);
-    Vector2 inPlane;
-    const bool exists = this->Cubic->MapPoint(
-      this->ToCubic(from), surfacePoint.Triangle, l, surfacePoint.Point.InPlane, inPlane);
-    // Heights are measured as in the triangle's frame.
-    const double orientation =
-      target.IsColumnar() ? 1.0 : target.GetPlaneFrame(surfacePoint.Triangle).Orientation;
-    target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
-    return exists;
+    return this->MapByCubic(from, surfacePoint, image, nullptr);
   }
   FramePoint point;
   point.Offset = offset;
@@ -607,11 +602,10 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoin
 {
   if (this->Cubic)
   {
-    Vector2 image;
-    Matrix2 derivative;
-    this->Cubic->MapPoint(
-      this->ToCubic(from), surfacePoint.Triangle, surfacePoint.Point.InPlane, image, derivative);
-    return this->FromFrames(from, surfacePoint.Triangle, derivative, derivative.Determinant());
+    double image[3];
+    Jacobian jacobian;
+    this->MapByCubic(from, surfacePoint, image, &jacobian);
+    return jacobian;
   }
   return this->VisitCharts(
     from, surfacePoint.Triangle, [this, from, &surfacePoint](const auto& chart, const auto& other) {
@@ -624,10 +618,14 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoin
 bool Homeomorphism::MapPoint(
   Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const
 {
-  if (this->Cubic || surfacePoint.Corner >= 0)
+  if (surfacePoint.Corner >= 0)
   {
     jacobian = this->GetJacobian(from, surfacePoint);
     return this->MapPoint(from, surfacePoint, image);
+  }
+  if (this->Cubic)
+  {
+    return this->MapByCubic(from, surfacePoint, image, &jacobian);
   }
   const TriangleIndex triangle = surfacePoint.Triangle;
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
@@ -652,6 +650,29 @@ bool Homeomorphism::MapPoint(
   return true;
 }
 
+/// Maps a point by the Cubic system. @a jacobian may be null.
+bool Homeomorphism::MapByCubic(
+  Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian* jacobian) const
+{
+  const TriangleIndex triangle = surfacePoint.Triangle;
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+  const Vector2& point = surfacePoint.Point.InPlane;
+  const Barycentric l = this->Pair->GetGeometry(from).GetShape(triangle).ToBarycentric(point);
+  Vector2 inPlane;
+  Matrix2 derivative;
+  const bool exists = this->Cubic->MapPoint(
+    this->ToCubic(from), triangle, l, point, inPlane, jacobian ? &derivative : nullptr);
+  if (jacobian)
+  {
+    *jacobian = this->FromFrames(from, triangle, derivative, derivative.Determinant());
+  }
+  // Heights are measured as in the triangle's frame.
+  const double orientation = target.IsColumnar() ? 1.0 : target.GetPlaneFrame(triangle).Orientation;
+  const double offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
+  target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
+  return exists;
+}
+
 /// Maps a point by the Smooth system.
 SmoothPoint Homeomorphism::MapByStrip(Domain from, const SurfacePoint& surfacePoint) const
 {
@@ -663,17 +684,24 @@ SmoothPoint Homeomorphism::MapByStrip(Domain from, const SurfacePoint& surfacePo
 
 Jacobian Homeomorphism::GetJacobian(Domain from, const PointBlock& block, int i) const
 {
+  const TriangleIndex triangle = block.Triangles[i];
+  const CoordinateSystem system = this->GetCharts(from).GetSystem();
   if (!block.KeepsReferences || block.Corners[i] >= 0 ||
-    this->GetCharts(from).GetSystem() != CoordinateSystem::Smooth)
+    (system != CoordinateSystem::Smooth && system != CoordinateSystem::Cubic))
   {
     return this->GetJacobian(from, block.GetSurfacePoint(i));
   }
-  const int corner = block.ReferenceCorners[i];
+  if (this->Cubic)
+  {
+    const Matrix2 derivative = this->Cubic->Derive(this->ToCubic(from), triangle,
+      block.ReferencePlaces[i], { block.References[0][i], block.References[1][i] });
+    return this->FromFrames(from, triangle, derivative, derivative.Determinant());
+  }
+  const int corner = block.ReferencePlaces[i];
   Barycentric reference;
   reference[corner] = block.References[0][i];
   reference[NextCorner(corner)] = block.References[1][i];
   reference[PreviousCorner(corner)] = block.References[2][i];
-  const TriangleIndex triangle = block.Triangles[i];
   return this->DeriveByStrip(from, triangle, reference);
 }
 
@@ -698,7 +726,8 @@ Jacobian Homeomorphism::FromFrames(
 {
   const MeshGeometry& source = this->Pair->GetGeometry(from);
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  const double rescale = source.GetScale() / target.GetScale();
+  // Powers of two: nothing is rounded.
+  const double rescale = source.GetScale() * target.GetInverseScale();
   Jacobian jacobian;
   jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
     target.GetHandedness(triangle);

@@ -120,8 +120,8 @@ public:
   /// The derivative at a point; on an edge, the limit from the point's triangle.
   Jacobian GetJacobian(Domain from, const SurfacePoint& surfacePoint) const;
 
-  /// The derivative at a point of a block that MapBlock has mapped, to the same bits. Solves
-  /// nothing again in the Smooth system if the block keeps references.
+  /// The derivative at a point of a block that MapBlock has mapped, to the same bits. The Smooth
+  /// and the Cubic system solve nothing again if the block keeps references.
   Jacobian GetJacobian(Domain from, const PointBlock& block, int i) const;
 
   /// The derivative at the point of a triangle that has these coordinates; where the coordinate
@@ -160,6 +160,8 @@ private:
   }
   void MapLinearly(
     Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
+  bool MapByCubic(
+    Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian* jacobian) const;
   SmoothPoint MapByStrip(Domain from, const SurfacePoint& surfacePoint) const;
   void MapByStrips(Domain from, PointBlock& block) const;
   void MapByContours(Domain from, PointBlock& block) const;

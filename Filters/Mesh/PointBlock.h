@@ -73,9 +73,10 @@ struct PointBlock
 
   /// Set to keep what GetJacobian needs when points are mapped.
   bool KeepsReferences = false;
-  /// References of the Smooth system, for Corner, the next corner and the previous one.
+  /// Of the Smooth system: references, for a corner, the next one and the previous one, and which
+  /// corner that is. Of the Cubic system: points of the map's source, and their triangles.
   double References[3][Size];
-  int ReferenceCorners[Capacity];
+  int ReferencePlaces[Capacity];
 
   double PointBuffer[Capacity][3];
   double ImageBuffer[Size][3];
