@@ -421,92 +421,75 @@ void TryDerivative(const VertexFan& fan, const std::vector<Matrix2>& rayGradient
   }
 }
 
-// Interpolates the images of the rays between their own (0) and those of a linear map (1), as
-// logarithms: a valid star for every share.
-struct StarHomotopy
+// A way between two stars: the images of the rays as logarithms, so that their order and lengths
+// greater than zero are kept.
+struct StarWay
 {
-  StarHomotopy(const VertexFan& fan, const Matrix2& derivative)
-    : Fan(fan)
-    , Logarithms(fan)
-  {
-    const std::size_t n = fan.Sectors.size();
-    double mean = 0.0;
-    for (std::size_t i = 0; i <= n; ++i)
-    {
-      const Vector2 ray = i < n ? fan.Sectors[i].Start : fan.Sectors[n - 1].End;
-      Complex end = std::log(ToComplex(derivative * ray));
-      if (i > 0)
-      {
-        end.imag(Near(end.imag(), this->Ends.back().imag() + 0.5 * Pi));
-      }
-      this->Ends.push_back(end);
-      mean += end.imag() - this->Logarithms.Image[i].imag();
-    }
-    // The end that turns least.
-    const double turns = 2.0 * Pi * std::round(mean / static_cast<double>(n + 1) / (2.0 * Pi));
-    for (Complex& end : this->Ends)
-    {
-      end.imag(end.imag() - turns);
-    }
-  }
+  std::vector<Complex> Start;
+  std::vector<Complex> End;
 
-  // The star and the map's derivatives at an outline. @a rate is the share's derivative by the
-  // logarithm of the radius.
-  VertexRings::Outline GetOutline(double share, double rate) const
+  double GetLength() const
   {
-    const std::size_t n = this->Fan.Sectors.size();
-    std::vector<Vector2> images(n + 1);
-    std::vector<Vector2> changes(n + 1);
-    for (std::size_t i = 0; i <= n; ++i)
+    double greatest = 0.0;
+    for (std::size_t i = 0; i < this->Start.size(); ++i)
     {
-      const Complex difference = this->Ends[i] - this->Logarithms.Image[i];
-      const Complex image = std::exp(this->Logarithms.Image[i] + share * difference);
-      const Complex change = rate * image * difference;
-      images[i] = { image.real(), image.imag() };
-      changes[i] = { change.real(), change.imag() };
+      greatest = std::max(greatest, std::abs(this->End[i] - this->Start[i]));
     }
-    if (this->Fan.Closed)
-    {
-      images[n] = images[0];
-      changes[n] = changes[0];
-    }
-    VertexRings::Outline outline;
-    VertexFan star = this->Fan;
-    std::vector<Matrix2> drift(n);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const FanSector& sector = this->Fan.Sectors[i];
-      const std::array<Vector2, 3> from{ Vector2{}, sector.Start, sector.End };
-      star.Sectors[i].Affine = share == 0.0
-        ? sector.Affine
-        : AffineDerivative(from, { Vector2{}, images[i], images[i + 1] });
-      drift[i] = AffineDerivative(from, { Vector2{}, changes[i], changes[i + 1] });
-      outline.Affine.push_back(star.Sectors[i].Affine);
-    }
-    outline.Rays = GetRayGradients(star);
-    for (std::size_t i = 0; i < outline.Rays.size(); ++i)
-    {
-      const Vector2 ray = i < n ? this->Fan.Sectors[i].Start : this->Fan.Sectors[n - 1].End;
-      outline.Rays[i] = outline.Rays[i] + OuterProduct(changes[i], (1.0 / Dot(ray, ray)) * ray);
-    }
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const FanSector& sector = this->Fan.Sectors[i];
-      for (int end = 0; end < 2; ++end)
-      {
-        const Vector2 point = end == 0 ? sector.InnerStart : sector.InnerEnd;
-        const Matrix2 gradient =
-          outline.Affine[i] + OuterProduct(drift[i] * point, (1.0 / Dot(point, point)) * point);
-        (end == 0 ? outline.InnerStart : outline.InnerEnd).push_back(gradient);
-      }
-    }
-    return outline;
+    return greatest;
   }
-
-  const VertexFan& Fan;
-  RayLogarithms Logarithms;
-  std::vector<Complex> Ends;
 };
+
+// The star and the map's derivatives at an outline. @a rate is the share's derivative by the
+// logarithm of the radius.
+VertexRings::Outline GetOutline(
+  const VertexFan& fan, const StarWay& way, double share, double rate)
+{
+  const std::size_t n = fan.Sectors.size();
+  std::vector<Vector2> images(n + 1);
+  std::vector<Vector2> changes(n + 1);
+  for (std::size_t i = 0; i <= n; ++i)
+  {
+    const Complex difference = way.End[i] - way.Start[i];
+    const Complex image = std::exp(way.Start[i] + share * difference);
+    const Complex change = rate * image * difference;
+    images[i] = { image.real(), image.imag() };
+    changes[i] = { change.real(), change.imag() };
+  }
+  if (fan.Closed)
+  {
+    images[n] = images[0];
+    changes[n] = changes[0];
+  }
+  VertexRings::Outline outline;
+  VertexFan star = fan;
+  std::vector<Matrix2> drift(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const FanSector& sector = fan.Sectors[i];
+    const std::array<Vector2, 3> from{ Vector2{}, sector.Start, sector.End };
+    star.Sectors[i].Affine = AffineDerivative(from, { Vector2{}, images[i], images[i + 1] });
+    drift[i] = AffineDerivative(from, { Vector2{}, changes[i], changes[i + 1] });
+    outline.Affine.push_back(star.Sectors[i].Affine);
+  }
+  outline.Rays = GetRayGradients(star);
+  for (std::size_t i = 0; i < outline.Rays.size(); ++i)
+  {
+    const Vector2 ray = i < n ? fan.Sectors[i].Start : fan.Sectors[n - 1].End;
+    outline.Rays[i] = outline.Rays[i] + OuterProduct(changes[i], (1.0 / Dot(ray, ray)) * ray);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const FanSector& sector = fan.Sectors[i];
+    for (int end = 0; end < 2; ++end)
+    {
+      const Vector2 point = end == 0 ? sector.InnerStart : sector.InnerEnd;
+      const Matrix2 gradient =
+        outline.Affine[i] + OuterProduct(drift[i] * point, (1.0 / Dot(point, point)) * point);
+      (end == 0 ? outline.InnerStart : outline.InnerEnd).push_back(gradient);
+    }
+  }
+  return outline;
+}
 
 VertexFan GetStar(const VertexFan& fan, const VertexRings::Outline& outline)
 {
@@ -765,85 +748,63 @@ VertexRings::Outline GetHomogeneousOutline(const VertexFan& fan)
 namespace
 {
 
-// Rings towards a linear map.
-bool FindRingsTowards(const Matrix2& derivative, const VertexFan& fan, VertexRings& rings)
+// Adds rings along a way, at rest at both ends: faster and faster, as long as they are certified.
+// Ends, and returns true, where the star has a derivative; or else at the way's end, or where no
+// ring is certified.
+bool FollowWay(const VertexFan& fan, const StarWay& way, double fastest, VertexRings& rings)
 {
-  const StarHomotopy homotopy(fan, derivative);
   const double ratioLogarithm = std::log(VertexRings::Ratio);
   // The innermost outline must stay well above what coordinates beside the vertex can represent.
   constexpr int greatestNumber = 46;
-  const auto append = [&](std::vector<VertexRings::Outline>& outlines, double share, double rate) {
-    outlines.push_back(homotopy.GetOutline(share, rate / ratioLogarithm));
-    const bool certified =
-      outlines.size() == 1 || IsRingCertified(fan, outlines[outlines.size() - 2], outlines.back());
+  const auto append = [&](double share, double rate) {
+    if (rings.GetNumberOfRings() == greatestNumber)
+    {
+      return false;
+    }
+    rings.Outlines.push_back(GetOutline(fan, way, share, rate / ratioLogarithm));
+    const VertexRings::Outline* const inner = &rings.Outlines.back();
+    const bool certified = IsRingCertified(fan, inner[-1], inner[0]);
     if (!certified)
     {
-      outlines.pop_back();
+      rings.Outlines.pop_back();
     }
     return certified;
   };
-  // The share of the way to the linear map, and by how much it grows from ring to ring. It starts
-  // at rest, grows as fast as rings are certified, and ends at rest where there is a derivative.
-  // Hurry may end in a star that is hard to leave, so slower ways are tried too.
-  for (double fastest : { 0.5, 0.2, 0.1, 0.06, 0.045, 0.035, 0.028 })
+  // The share of the way, and by how much it grows from ring to ring.
+  double share = 0.0;
+  double rate = 0.0;
+  bool isLast = false;
+  while (true)
   {
-    double share = 0.0;
-    double rate = 0.0;
-    rings.Outlines.clear();
-    append(rings.Outlines, share, rate);
-    while (rings.GetNumberOfRings() < greatestNumber && share < 1.2)
+    if (rate > 0.0 && append(share + 0.5 * rate, 0.0))
     {
-      if (rings.GetNumberOfRings() > 0 &&
-        FindVertexDerivative(GetStar(fan, rings.Outlines.back())).Margin > 0.0)
+      rings.Center = FindVertexDerivative(GetStar(fan, rings.Outlines.back()));
+      if (rings.Center.Margin > 0.0 || isLast)
       {
-        VertexRings stopped = rings;
-        double at = share;
-        double speed = rate;
-        bool certified = true;
-        while (certified && speed > 0.0 && stopped.GetNumberOfRings() < greatestNumber)
-        {
-          const double next = speed < 0.02 ? 0.0 : 0.6 * speed;
-          at += 0.5 * (speed + next);
-          certified = append(stopped.Outlines, at, next);
-          speed = next;
-        }
-        if (certified && speed == 0.0)
-        {
-          stopped.Center = FindVertexDerivative(GetStar(fan, stopped.Outlines.back()));
-          if (stopped.Center.Margin > 0.0)
-          {
-            rings = std::move(stopped);
-            return true;
-          }
-        }
+        return rings.Center.Margin > 0.0;
       }
-      bool advanced = false;
-      for (double factor : { 1.6, 1.2, 1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002,
-             5e-4, 1e-4, 2e-5 })
+      rings.Outlines.pop_back();
+    }
+    // From where the next ring would come to rest at the end.
+    const double last = 1.0 - share - 0.5 * rate;
+    bool isCertified = false;
+    for (double factor : { 1.6, 1.2, 1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005 })
+    {
+      const double next = std::min({ fastest, factor * (rate > 0.0 ? rate : fastest), last });
+      if (next > 0.0 && append(share + 0.5 * (rate + next), next))
       {
-        // A very thin sector's image leaves its place slowly, with the first ring.
-        if (factor < 0.002 && rings.GetNumberOfRings() > 0)
-        {
-          break;
-        }
-        const double next =
-          std::min(fastest, factor * std::max(rate, rings.GetNumberOfRings() == 0 ? 0.2 : 0.0));
-        if (append(rings.Outlines, share + 0.5 * (rate + next), next))
-        {
-          share += 0.5 * (rate + next);
-          rate = next;
-          advanced = true;
-          break;
-        }
-      }
-      if (!advanced)
-      {
+        isLast = next == last;
+        share += 0.5 * (rate + next);
+        rate = next;
+        isCertified = true;
         break;
       }
     }
+    if (!isCertified)
+    {
+      return false;
+    }
   }
-  rings.Outlines.clear();
-  return false;
 }
 
 } // anonymous namespace
@@ -851,23 +812,54 @@ bool FindRingsTowards(const Matrix2& derivative, const VertexFan& fan, VertexRin
 //------------------------------------------------------------------------------
 bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
 {
-  if (!fan.Closed)
+  const RayLogarithms logarithms(fan);
+  const std::size_t rays = logarithms.Source.size();
+  // First the rays' images become equally long and keep their directions, then they turn.
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = -shortest;
+  double turn = 0.0;
+  for (std::size_t i = 0; i < rays; ++i)
   {
-    return FindRingsTowards(FitBoundary(fan), fan, rings);
+    shortest = std::min(shortest, logarithms.Image[i].real());
+    longest = std::max(longest, logarithms.Image[i].real());
+    turn += (logarithms.Image[i] - logarithms.Source[i]).imag() / static_cast<double>(rays);
   }
-  // Where the way to the fit is too long, maps that distort more or less may be closer. The fit is
-  // the sum of a similarity and of what is left.
-  const Matrix2 fit = FitLinear(fan);
-  const Matrix2 turned{ { fit.ImageOfY.y, -fit.ImageOfY.x }, { -fit.ImageOfX.y, fit.ImageOfX.x } };
-  const Matrix2 similarity = 0.5 * (fit + turned);
-  for (double share : { 1.0, 0.0, 0.5, 1.3, -0.5, 1.6, 0.25 })
+  StarWay stretch{ logarithms.Image, logarithms.Image };
+  for (Complex& end : stretch.End)
   {
-    const Matrix2 derivative = similarity + share * (fit - similarity);
-    if (derivative.Determinant() > 0.0 && FindRingsTowards(derivative, fan, rings))
+    end.real(0.5 * (shortest + longest));
+  }
+  StarWay turning{ stretch.End, stretch.End };
+  const Matrix2 boundary = fan.Closed ? Matrix2{} : FitBoundary(fan);
+  for (std::size_t i = 0; i < rays; ++i)
+  {
+    Complex& end = turning.End[i];
+    if (fan.Closed)
+    {
+      end.imag(logarithms.Source[i].imag() + turn);
+      continue;
+    }
+    const FanSector& sector = fan.Sectors[std::min(i, rays - 2)];
+    const double angle = end.imag();
+    end = std::log(ToComplex(boundary * (i + 1 < rays ? sector.Start : sector.End)));
+    end.imag(Near(end.imag(), i > 0 ? turning.End[i - 1].imag() + 0.5 * Pi : angle));
+  }
+  // By how much, at most, logarithms change from ring to ring: half of the radius's logarithm, or
+  // less.
+  for (double speed : { 0.35, 0.2, 0.1 })
+  {
+    rings.Outlines.assign(1, GetHomogeneousOutline(fan));
+    bool hasDerivative = false;
+    for (const StarWay* way : { &stretch, &turning })
+    {
+      hasDerivative = hasDerivative || FollowWay(fan, *way, speed / way->GetLength(), rings);
+    }
+    if (hasDerivative)
     {
       return true;
     }
   }
+  rings.Outlines.clear();
   return false;
 }
 

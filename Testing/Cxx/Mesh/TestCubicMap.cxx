@@ -339,6 +339,29 @@ TEST(CubicMap, StarsBeyondTheProgramHaveRings)
   EXPECT_GT(rings, 0);
 }
 
+TEST(CubicMap, RingsLeadToADerivativeWhereSectorsAreAlmostHalfTurns)
+{
+  // At vertices of these, images of sectors are 177 to 180 degrees beside others of a hundredth.
+  for (double strength : { 3.0, 4.0 })
+  {
+    const CubicMap map(RandomPair(3, strength), Options(CubicBending::Local));
+    EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+    EXPECT_TRUE(map.GetStatistics().ExceptionalInteriorPoints.empty());
+    EXPECT_GT(map.GetStatistics().Rings, 0);
+    ExpectRoundTrip(map, 500);
+  }
+  // Far from what can be done without rings that turn the rays.
+  std::mt19937_64 random(72);
+  for (int n = 0; n < 200; ++n)
+  {
+    double range;
+    const CubicMap map(RandomStar(random, 3 + n % 7, 2.8, range), Options(CubicBending::Local));
+    EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+    EXPECT_TRUE(map.GetStatistics().ExceptionalInteriorPoints.empty());
+    EXPECT_LT(map.GetStatistics().Rings, 30);
+  }
+}
+
 TEST(CubicMap, DoesNotDependOnThreads)
 {
   const PlanarPair pair = RandomPair(81, 1.0, 6);
