@@ -151,11 +151,7 @@ public:
     const Vector2 d = point - this->Start;
     const double height = Dot(this->Across, d);
     const double along = Dot(this->Along, d) - height * this->Foot;
-    Barycentric l;
-    l[this->Apex] = height;
-    l[PreviousCorner(this->Apex)] = along;
-    l[NextCorner(this->Apex)] = 1.0 - height - along;
-    return l;
+    return InOrder(this->Apex, height, 1.0 - height - along, along);
   }
 
 private:

@@ -30,6 +30,19 @@ constexpr int PreviousCorner(int corner)
   return corner == 0 ? 2 : corner - 1;
 }
 
+/// What belongs to a corner, the one after it and the one before it, in the order of the corners.
+/// Loads from places that depend on the corner are fast. Stores to them would be waited for by
+/// whoever loads the result in one piece.
+template <typename T>
+HOMEOMORPHISM_ALWAYS_INLINE std::array<T, 3> InOrder(
+  int corner, const T& own, const T& next, const T& previous)
+{
+  constexpr std::int8_t places[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } };
+  const T values[3] = { own, next, previous };
+  const std::int8_t(&place)[3] = places[corner];
+  return { values[place[0]], values[place[1]], values[place[2]] };
+}
+
 /// A point or a vector of a plane.
 struct Vector2
 {
@@ -137,11 +150,7 @@ struct TriangleShape
     {
       return this->NearestOnBoundary(point);
     }
-    Barycentric l;
-    l[this->Apex] = apex;
-    l[NextCorner(this->Apex)] = first;
-    l[PreviousCorner(this->Apex)] = second;
-    return l;
+    return InOrder(this->Apex, apex, first, second);
   }
 
   /// Barycentric coordinates of the boundary point nearest to @a point.
@@ -186,11 +195,7 @@ struct TriangleShape
     // Reciprocals, which are the same for both axes.
     const double apex = vector.y * (1.0 / this->Height);
     const double second = (vector.x - this->ApexX * apex) * (1.0 / this->Base);
-    Barycentric l;
-    l[this->Apex] = apex;
-    l[PreviousCorner(this->Apex)] = second;
-    l[NextCorner(this->Apex)] = -apex - second;
-    return l;
+    return InOrder(this->Apex, apex, -apex - second, second);
   }
 };
 

@@ -83,11 +83,7 @@ public:
     const double p = coordinates.EdgeParameter;
     const double c = coordinates.ContourParameter;
     const double least = (1.0 - c) / 3.0;
-    Barycentric l;
-    l[edge] = least;
-    l[NextCorner(edge)] = least + c * (1.0 - p);
-    l[PreviousCorner(edge)] = least + c * p;
-    return l;
+    return InOrder(edge, least, least + c * (1.0 - p), least + c * p);
   }
 
 private:

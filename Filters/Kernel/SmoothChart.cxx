@@ -199,13 +199,12 @@ private:
   double HalfCurvature[Width];
 };
 
-Barycentric Moved(const Barycentric& l, int k, const SmoothStrip& strip, double factor)
+HOMEOMORPHISM_ALWAYS_INLINE Barycentric Moved(
+  const Barycentric& l, int k, const SmoothStrip& strip, double factor)
 {
-  Barycentric moved;
-  moved[k] = l[k] + (strip.Kappa - 1.0) * factor;
-  moved[NextCorner(k)] = l[NextCorner(k)] + strip.OffsetNext * factor;
-  moved[PreviousCorner(k)] = l[PreviousCorner(k)] + strip.OffsetPrevious * factor;
-  return moved;
+  return InOrder(k, l[k] + (strip.Kappa - 1.0) * factor,
+    l[NextCorner(k)] + strip.OffsetNext * factor,
+    l[PreviousCorner(k)] + strip.OffsetPrevious * factor);
 }
 
 StripFunction<double> FunctionAt(const Barycentric& l, int k, const SmoothStrip& strip)
@@ -243,11 +242,7 @@ void LimitDeviation(
   SmoothStrip& source, SmoothStrip& target, int edge, const TriangleShape& shape, double greatest)
 {
   const auto length = [&shape, edge](double own, double next, double previous) {
-    Barycentric components;
-    components[edge] = own;
-    components[NextCorner(edge)] = next;
-    components[PreviousCorner(edge)] = previous;
-    const Vector2 offset = shape.FromBarycentric(components);
+    const Vector2 offset = shape.FromBarycentric(InOrder(edge, own, next, previous));
     return std::hypot(offset.x, offset.y);
   };
   const double strays =

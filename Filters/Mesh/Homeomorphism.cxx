@@ -697,12 +697,9 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const PointBlock& block, int i)
       block.ReferencePlaces[i], { block.References[0][i], block.References[1][i] });
     return this->FromFrames(from, triangle, derivative, derivative.Determinant());
   }
-  const int corner = block.ReferencePlaces[i];
-  Barycentric reference;
-  reference[corner] = block.References[0][i];
-  reference[NextCorner(corner)] = block.References[1][i];
-  reference[PreviousCorner(corner)] = block.References[2][i];
-  return this->DeriveByStrip(from, triangle, reference);
+  return this->DeriveByStrip(from, triangle,
+    InOrder(block.ReferencePlaces[i], block.References[0][i], block.References[1][i],
+      block.References[2][i]));
 }
 
 Jacobian Homeomorphism::GetJacobian(

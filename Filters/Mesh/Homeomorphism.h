@@ -151,12 +151,8 @@ private:
   std::array<const double*, 3> ByCorner(
     Domain domain, TriangleIndex triangle, const PointBlock& block) const
   {
-    std::array<const double*, 3> coordinates;
-    const int apex = this->Pair->GetGeometry(domain).GetApex(triangle);
-    coordinates[apex] = block.Apex;
-    coordinates[NextCorner(apex)] = block.First;
-    coordinates[PreviousCorner(apex)] = block.Second;
-    return coordinates;
+    return InOrder<const double*>(
+      this->Pair->GetGeometry(domain).GetApex(triangle), block.Apex, block.First, block.Second);
   }
   void MapLinearly(
     Domain from, TriangleIndex triangle, int begin, int end, PointBlock& block) const;
