@@ -7,8 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 using namespace fixtures;
 using homeomorphism::DerivativeEstimate;
 using homeomorphism::OneSidedDerivative;

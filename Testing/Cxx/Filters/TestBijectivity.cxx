@@ -12,7 +12,7 @@ namespace
 {
 
 using namespace fixtures;
-using homeomorphism::Vector2;
+using homeomorphism::Orientation;
 
 /// The mesh with its triangles divided into 24^2 parts each.
 vtkSmartPointer<vtkPolyData> Divided(vtkPolyData* mesh)
@@ -52,13 +52,9 @@ double AreaOf(vtkPolyData* mesh)
   double area = 0.0;
   for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
   {
-    std::array<Vector2, 3> corners;
-    const std::array<Point, 3> points = CornersOf(mesh, t);
-    std::transform(points.begin(), points.end(), corners.begin(), [](const Point& p) {
-      return Vector2{ p[0], p[1] };
-    });
-    EXPECT_GT(homeomorphism::Orientation(corners[0], corners[1], corners[2]), 0) << t;
-    area += 0.5 * homeomorphism::Cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const auto [a, b, c] = CornersOf(mesh, t);
+    EXPECT_GT(Orientation({ a[0], a[1] }, { b[0], b[1] }, { c[0], c[1] }), 0) << t;
+    area += 0.5 * Cross(b - a, c - a)[2];
   }
   return area;
 }
@@ -66,15 +62,11 @@ double AreaOf(vtkPolyData* mesh)
 /// The points of a mesh of almost equilateral triangles, all of which are concordant.
 MeshPair MakeConcordantPair(int n, std::uint64_t seed)
 {
-  const auto slant = [](vtkPolyData* mesh) {
-    // The diagonals of the grid run from the lower left to the upper right, so they must be the
-    // short ones.
-    return Moved(mesh, [](const Point& p) -> Point {
-      return { p[0] - 0.5 * p[1], 0.866 * p[1], 0.0 };
-    });
-  };
+  // The diagonals of the grid run from the lower left to the upper right, so they must be the short
+  // ones.
+  const Matrix slant{ { { 1.0, -0.5, 0.0 }, { 0.0, 0.866, 0.0 }, { 0.0, 0.0, 1.0 } } };
   const MeshPair square = MakePlanarPair(n, seed, 0.1);
-  return { slant(square.Source), slant(square.Target) };
+  return { Tilted(square.Source, slant, {}), Tilted(square.Target, slant, {}) };
 }
 
 void ExpectBijective(const System& system, const MeshPair& pair)

@@ -6,8 +6,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkJacobianContinuity.h"
-
 namespace
 {
 
@@ -56,13 +54,15 @@ TEST(CubicSystem, MapsThereAndBack)
     }
     const auto cloud = MakeCloud(points);
     const auto forward = MakeFilter(Cubic, pair, cloud);
-    forward->SetCubicBending(kind < 4 ? Map::LOCAL : Map::LEAST);
-    forward->SetTolerance(1e-12);
+    const auto backward = MakeFilter(Cubic, pair);
+    for (const auto& filter : { forward, backward })
+    {
+      filter->SetCubicBending(kind < 4 ? Map::LOCAL : Map::LEAST);
+      filter->SetTolerance(1e-12);
+    }
     forward->ComputeJacobianOn();
     vtkPointSet* images = Output(forward);
-    const auto backward = MakeFilter(Cubic, pair, images);
-    backward->SetCubicBending(kind < 4 ? Map::LOCAL : Map::LEAST);
-    backward->SetTolerance(1e-12);
+    backward->SetDataObject(images);
     backward->InverseOn();
     EXPECT_EQ(forward->GetNumberOfOutsidePoints(), 0);
     EXPECT_LE(LargestDistance(Output(backward), cloud), 1e-12);
@@ -74,24 +74,6 @@ TEST(CubicSystem, MapsThereAndBack)
       ASSERT_TRUE((k != 1 && k != 3) ||
         Distance(differenceOf(images), JacobianOf(images, i - k) * differenceOf(cloud)) < 1e-4 * h);
     }
-  }
-}
-
-TEST(CubicSystem, IsDifferentiableAtEdgesAndVertices)
-{
-  using Continuity = vtkJacobianContinuity;
-  for (const int bending : { Continuity::LOCAL, Continuity::LEAST })
-  {
-    const auto measure = MakeAlgorithm<Continuity>(MakePair(false, false));
-    measure->SetCoordinateSystemToCubic();
-    measure->SetCubicBending(bending);
-    measure->VerticesOn();
-    measure->Update();
-    // Interior vertices and, where the boundary is straight or turns alike, the others.
-    EXPECT_GE(measure->GetNumberOfFeatures(Continuity::EDGE, Continuity::DIFFERENTIABLE), 95);
-    EXPECT_EQ(measure->GetNumberOfFeatures(Continuity::EDGE, Continuity::CREASE), 0);
-    EXPECT_EQ(measure->GetNumberOfFeatures(Continuity::VERTEX, Continuity::DIFFERENTIABLE), 49);
-    EXPECT_EQ(measure->GetNumberOfFeatures(Continuity::VERTEX, Continuity::CREASE), 0);
   }
 }
 
@@ -141,16 +123,12 @@ TEST(CubicSystem, LeavesWhatIsNotCertified)
   const MeshPair pair{ MakeMesh(source, GridTriangles(8)), RegularGrid(8) };
   Random random(11);
   std::vector<Point> points;
-  for (int n = 0; n < 4000; ++n)
-  {
-    points.push_back({ random.Uniform(0.01, 7.99), random.Uniform(0.01, 7.99), 0 });
-  }
-  MapOptions options;
-  options.CoordinateSystem = vtkDifferentiableHomeomorphism::CUBIC;
-  const MappedPoints mapped = MapPoints(pair, points, options);
+  std::generate_n(std::back_inserter(points), 4000, [&random]() -> Point {
+    return { random.Uniform(0.01, 7.99), random.Uniform(0.01, 7.99), 0 };
+  });
+  const MappedPoints mapped = MapPoints(pair, points, { Cubic });
   EXPECT_NE(mapped.Warning.find("not certified"), std::string::npos) << mapped.Warning;
-  options.Inverse = true;
-  const MappedPoints back = MapPoints(pair, mapped.Images, options);
+  const MappedPoints back = MapPoints(pair, mapped.Images, { Cubic, false, true });
   int inside = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
   {

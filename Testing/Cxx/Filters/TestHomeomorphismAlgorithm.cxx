@@ -32,17 +32,16 @@ TEST(HomeomorphismAlgorithm, ThreadsShareMeshes)
     vtkNew<vtkHomeomorphismTransform> transform;
     transform->DeepCopy(reference);
     different += Transformed(transform, point) != expected;
-    vtkNew<vtkPolyData> source;
-    vtkNew<vtkPolyData> target;
-    source->ShallowCopy(pair.Source);
-    target->ShallowCopy(pair.Target);
-    const auto filter = MakeFilter(Smooth, { source.Get(), target.Get() }, MakeCloud({ point }));
+    const MeshPair shallow{ vtkSmartPointer<vtkPolyData>::New(),
+      vtkSmartPointer<vtkPolyData>::New() };
+    shallow.Source->ShallowCopy(pair.Source);
+    shallow.Target->ShallowCopy(pair.Target);
+    const auto filter = MakeFilter(Smooth, shallow, MakeCloud({ point }));
     different += PointOf(Output(filter), 0) != expected;
-    const auto resample =
-      MakeAlgorithm<vtkResampleThroughHomeomorphism>({ source.Get(), target.Get() });
+    const auto resample = MakeAlgorithm<vtkResampleThroughHomeomorphism>(shallow);
     resample->SetSamplingDimensions(8, 8);
     resample->Update();
-    MakeCoordinates(Smooth, source)->Update();
+    MakeCoordinates(Smooth, shallow.Source)->Update();
   };
   for (int repetition = 0; repetition < 8; ++repetition)
   {
@@ -78,14 +77,14 @@ TEST(HomeomorphismAlgorithm, PointsThatMissASurfaceAreExplained)
   std::vector<Point> points;
   for (const Triangle& triangle : TrianglesOf(pair.Source))
   {
-    points.push_back(CentroidOf(pair.Source, triangle));
+    points.push_back(PointIn(pair.Source, triangle, { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 }));
     for (double& coordinate : points.back())
     {
       coordinate = std::round(1e4 * coordinate) / 1e4;
     }
   }
   // The least tolerance, relative to the diagonal.
-  const double least = LargestDistanceFrom(pair.Source, points) / SizeOf(pair.Source);
+  const double least = LargestDistanceFrom(pair.Source, points) / pair.Source->GetLength();
   const auto filter = MakeFilter(Smooth, pair, MakeCloud(points));
   for (const double factor : { 0.0, 0.8, 1.1 })
   {

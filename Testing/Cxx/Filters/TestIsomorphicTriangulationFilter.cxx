@@ -44,16 +44,8 @@ vtkSmartPointer<vtkPolyData> Figure(
   const std::vector<Point>& positions, const Cells& cells, int type)
 {
   const auto figure = MakeCloud(positions, type);
-  figure->SetLines(vtkNew<vtkCellArray>());
-  figure->SetPolys(vtkNew<vtkCellArray>());
-  for (const auto& [ids, array] : { std::make_pair(cells.Lines, figure->GetLines()),
-         std::make_pair(cells.Polygons, figure->GetPolys()) })
-  {
-    for (const Ids& one : ids)
-    {
-      array->InsertNextCell(static_cast<vtkIdType>(one.size()), one.data());
-    }
-  }
+  figure->SetLines(MakePolygons(cells.Lines));
+  figure->SetPolys(MakePolygons(cells.Polygons));
   return figure;
 }
 

@@ -124,19 +124,17 @@ void ExpectArraysPassed(vtkFieldData* input, vtkFieldData* output)
 void ExpectPassed(vtkDataSet* input, vtkDataSet* output)
 {
   ASSERT_EQ(output->GetNumberOfCells(), input->GetNumberOfCells());
-  vtkNew<vtkIdList> before;
-  vtkNew<vtkIdList> after;
   for (vtkIdType i = 0; i < input->GetNumberOfCells(); ++i)
   {
-    input->GetCellPoints(i, before);
-    output->GetCellPoints(i, after);
+    std::vector<vtkIdType> before = IdsOf(input, i);
+    std::vector<vtkIdType> after = IdsOf(output, i);
     if (output->GetClassName() != std::string(input->GetClassName()))
     {
       // Voxels and hexahedra number their points differently.
-      before->Sort();
-      after->Sort();
+      std::sort(before.begin(), before.end());
+      std::sort(after.begin(), after.end());
     }
-    ASSERT_TRUE(std::equal(before->begin(), before->end(), after->begin(), after->end()));
+    ASSERT_EQ(before, after);
   }
   ExpectArraysPassed(input->GetPointData(), output->GetPointData());
   ExpectArraysPassed(input->GetCellData(), output->GetCellData());
@@ -223,42 +221,29 @@ void KindsOfData::ExpectTree(vtkDataObjectTree* input)
   ASSERT_TRUE(output);
   EXPECT_STREQ(output->GetClassName(), input->GetClassName());
   ExpectArraysPassed(input->GetFieldData(), output->GetFieldData());
-  struct Node
-  {
-    std::string Name;
-    vtkDataObject* Data;
+  const auto node = vtkSmartPointer<vtkDataObjectTreeIterator>::Take(input->NewTreeIterator());
+  const auto nameOf = [&node](vtkDataObjectTree* tree) {
+    return tree->HasMetaData(node) ? tree->GetMetaData(node)->Get(vtkCompositeDataSet::NAME())
+                                   : nullptr;
   };
-  const auto nodesOf = [](vtkDataObjectTree* tree) {
-    std::vector<Node> nodes;
-    const auto each = vtkSmartPointer<vtkDataObjectTreeIterator>::Take(tree->NewTreeIterator());
-    each->VisitOnlyLeavesOff();
-    each->SkipEmptyNodesOff();
-    for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
-    {
-      const auto* name = each->HasCurrentMetaData()
-        ? each->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())
-        : nullptr;
-      nodes.push_back({ name ? name : "", each->GetCurrentDataObject() });
-    }
-    return nodes;
-  };
-  const std::vector<Node> before = nodesOf(input);
-  const std::vector<Node> after = nodesOf(output);
-  ASSERT_EQ(before.size(), after.size());
+  node->VisitOnlyLeavesOff();
+  node->SkipEmptyNodesOff();
   vtkIdType outside = 0;
-  for (std::size_t i = 0; i < before.size(); ++i)
+  for (node->InitTraversal(); !node->IsDoneWithTraversal(); node->GoToNextItem())
   {
-    EXPECT_EQ(before[i].Name, after[i].Name);
-    ASSERT_EQ(before[i].Data != nullptr, after[i].Data != nullptr);
-    auto* leaf = vtkDataSet::SafeDownCast(before[i].Data);
+    vtkDataObject* before = node->GetCurrentDataObject();
+    vtkDataObject* after = output->GetDataSet(node);
+    EXPECT_STREQ(nameOf(input), nameOf(output));
+    ASSERT_EQ(before != nullptr, after != nullptr);
+    auto* leaf = vtkDataSet::SafeDownCast(before);
     if (leaf && leaf->GetNumberOfPoints() > 0)
     {
-      Expect(GetParam(), leaf, after[i].Data);
-      outside += CountOutside(vtkDataSet::SafeDownCast(after[i].Data));
+      Expect(GetParam(), leaf, after);
+      outside += CountOutside(vtkDataSet::SafeDownCast(after));
     }
-    else if (before[i].Data)
+    else if (before)
     {
-      EXPECT_STREQ(after[i].Data->GetClassName(), before[i].Data->GetClassName());
+      EXPECT_STREQ(after->GetClassName(), before->GetClassName());
     }
   }
   EXPECT_EQ(this->Filter->GetNumberOfOutsidePoints(), outside);
@@ -308,15 +293,11 @@ TEST_P(KindsOfData, EmptyInputsGiveEmptyOutputs)
   EXPECT_EQ(this->Run(vtkNew<vtkMultiBlockDataSet>())->GetNumberOfElements(0), 0);
   EXPECT_EQ(this->Run(vtkNew<vtkPartitionedDataSetCollection>())->GetNumberOfElements(0), 0);
   // All points are outside an empty domain.
-  vtkNew<vtkPolyData> nothing;
-  vtkNew<vtkPolyData> noCells;
-  noCells->SetPoints(vtkNew<vtkPoints>());
-  for (vtkPolyData* empty : { nothing.Get(), noCells.Get() })
+  for (const auto& empty : { vtkSmartPointer<vtkPolyData>::New(), MakeCloud({}) })
   {
     for (const System& system : AllSystems())
     {
-      this->Filter->SetCoordinateSystem(system.CoordinateSystem);
-      this->Filter->SetCenterPoint(system.CenterPoint);
+      SetSystem(this->Filter.Get(), system);
       this->Filter->SetSourceData(empty);
       if (this->Filter->GetNumberOfInputPorts() > 2)
       {
@@ -333,23 +314,16 @@ TEST_P(KindsOfData, EmptyInputsGiveEmptyOutputs)
 
 TEST(KindsOfData, WithoutDataTheMeshIsMapped)
 {
-  MeshPair pair = ThePair();
-  vtkNew<vtkPolyData> source;
-  source->ShallowCopy(pair.Source);
-  WithArrays(source.Get());
-  vtkNew<vtkPolyData> target;
-  target->ShallowCopy(pair.Target);
-  target->GetPointData()->SetScalars(RandomArray("OfTarget", 1, target->GetNumberOfPoints(), 29));
-  const auto filter = MakeFilter(Smooth, { source.Get(), target.Get() });
-  Expect(TheMap, source, Output(filter));
-  EXPECT_EQ(CountDifferentPoints(Output(filter), target), 0);
+  const MeshPair pair = CopyOf(ThePair());
+  WithArrays(pair.Source.Get());
+  pair.Target->GetPointData()->SetScalars(RandomArray("OfTarget", 1, 81, 29));
+  const auto filter = MakeFilter(Smooth, pair);
+  Expect(TheMap, pair.Source, Output(filter));
   EXPECT_FALSE(PointArray(Output(filter), "OfTarget"));
   filter->InverseOn();
-  vtkPointSet* output = Output(filter);
-  EXPECT_EQ(CountDifferentPoints(output, source), 0);
-  EXPECT_EQ(CountDifferentCells(output, target), 0);
-  EXPECT_TRUE(PointArray(output, "OfTarget"));
-  EXPECT_FALSE(PointArray(output, "Temperature"));
+  EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0);
+  EXPECT_TRUE(PointArray(Output(filter), "OfTarget"));
+  EXPECT_FALSE(PointArray(Output(filter), "Temperature"));
 }
 
 TEST(KindsOfData, PrecisionOfPoints)

@@ -7,7 +7,6 @@
 
 #include "vtkJacobianContinuity.h"
 #include "vtkResampleThroughHomeomorphism.h"
-#include "vtkTriangularCoordinates.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -52,42 +51,37 @@ vtkDataArray* ResultOf(vtkAlgorithm* filter)
   return result ? result : vtkPointSet::SafeDownCast(DataOf(filter))->GetPoints()->GetData();
 }
 
-/// The two filters that take data, which share their pipeline behavior.
-using MakeAFilter = vtkSmartPointer<vtkHomeomorphismAlgorithm> (*)(const MeshPair&);
-
-vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeMap(const MeshPair& pair)
-{
-  return MakeFilter(Smooth, pair);
-}
-
-vtkSmartPointer<vtkHomeomorphismAlgorithm> MakeCoordinatesOfSource(const MeshPair& pair)
-{
-  return MakeCoordinates(Smooth, pair.Source);
-}
-
-class PipelinesOfData : public ::testing::TestWithParam<MakeAFilter>
+/// The map and the coordinates, the two filters that take data, share their pipeline behavior.
+class PipelinesOfData : public ::testing::TestWithParam<bool>
 {
 protected:
+  vtkSmartPointer<vtkHomeomorphismAlgorithm> Make(const MeshPair& pair)
+  {
+    if (GetParam())
+    {
+      return MakeFilter(Smooth, pair);
+    }
+    return MakeCoordinates(Smooth, pair.Source);
+  }
   /// A filter whose data are the output of an algorithm.
   vtkSmartPointer<vtkHomeomorphismAlgorithm> Connect(const MeshPair& pair, vtkAlgorithm* data)
   {
-    const auto filter = GetParam()(pair);
+    const auto filter = this->Make(pair);
     filter->SetDataConnection(data->GetOutputPort());
     return filter;
   }
   /// The filter has the result for a copy of the data that has no pipeline.
   void ExpectResultFor(vtkDataSet* data, vtkAlgorithm* filter, const MeshPair& pair)
   {
-    const auto alone = GetParam()(pair);
+    const auto alone = this->Make(pair);
     alone->SetDataObject(CopyOf(data));
     alone->Update();
-    EXPECT_EQ(CountDifferentValues(ResultOf(filter), ResultOf(alone)), 0);
+    EXPECT_TRUE(IsSame(ResultOf(filter), ResultOf(alone)));
     EXPECT_EQ(CountDifferentCells(DataOf(filter), DataOf(alone)), 0);
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(
-  All, PipelinesOfData, ::testing::Values(&MakeMap, &MakeCoordinatesOfSource));
+INSTANTIATE_TEST_SUITE_P(All, PipelinesOfData, ::testing::Bool());
 
 /// An algorithm whose meshes and data are outputs.
 template <typename Algorithm>
@@ -148,9 +142,9 @@ using Extent = std::array<int, 6>;
 
 Extent ExtentOf(vtkDataSet* data)
 {
-  auto* grid = vtkStructuredGrid::SafeDownCast(data);
-  const int* e = grid ? grid->GetExtent() : vtkImageData::SafeDownCast(data)->GetExtent();
-  return { e[0], e[1], e[2], e[3], e[4], e[5] };
+  Extent extent;
+  data->GetInformation()->Get(vtkDataObject::DATA_EXTENT(), extent.data());
+  return extent;
 }
 
 TEST_P(PipelinesOfData, PiecesAndExtentsOfAnImage)
@@ -174,9 +168,8 @@ TEST_P(PipelinesOfData, PiecesAndExtentsOfAnImage)
     EXPECT_EQ(ExtentOf(wavelet->GetOutput()), extent);
     alone->UpdateExtent(extent.data());
     this->ExpectResultFor(alone->GetOutput(), filter, pair);
-    EXPECT_EQ(CountDifferentValues(
-                PointArray(DataOf(filter), "RTData"), PointArray(alone->GetOutput(), "RTData")),
-      0);
+    EXPECT_TRUE(
+      IsSame(PointArray(DataOf(filter), "RTData"), PointArray(alone->GetOutput(), "RTData")));
   };
   vtkIdType cells = 0;
   for (int piece = 0; piece < 4; ++piece)
@@ -200,15 +193,6 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
 {
   // One source of both mesh and data cannot be requested both whole and in pieces. The mesh is a
   // sphere mapped onto itself, whose source makes any piece.
-  const auto counts = [](vtkAlgorithm* filter) {
-    std::vector<vtkIdType> cells;
-    for (const int piece : { 0, 1, 2, 0 })
-    {
-      EXPECT_TRUE(filter->UpdatePiece(piece, 3, 0));
-      cells.push_back(DataOf(filter)->GetNumberOfCells());
-    }
-    return cells;
-  };
   vtkNew<vtkSphereSource> mesh;
   vtkNew<vtkSphereSource> same;
   vtkNew<vtkElevationFilter> made;
@@ -231,11 +215,16 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
     for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ map, coordinates, resample })
     {
       SCOPED_TRACE(filter->GetClassName());
-      const std::vector<vtkIdType> cells = counts(filter);
       const bool inPieces = data == other || data == forth;
+      vtkIdType cells = 0;
+      for (const int piece : { 0, 1, 2 })
+      {
+        EXPECT_TRUE(filter->UpdatePiece(piece, 3, 0));
+        EXPECT_EQ(DataOf(filter)->GetNumberOfCells() > 0, inPieces || piece == 0);
+        cells += DataOf(filter)->GetNumberOfCells();
+      }
+      EXPECT_EQ(cells, whole);
       EXPECT_EQ(RequestedPieces(data), inPieces ? 3 : 1);
-      EXPECT_EQ(cells[1] > 0 && cells[2] > 0, inPieces);
-      EXPECT_EQ(cells[0] + cells[1] + cells[2], whole);
     }
     EXPECT_EQ(map->GetNumberOfMeshBuilds(), 1);
     EXPECT_EQ(resample->GetNumberOfMeshBuilds(), 1);
@@ -417,9 +406,8 @@ TEST(Pipelines, TimeStepsOfTheMeshes)
       EXPECT_EQ(TimesOf(continuity, 1), mesh->Times);
       auto* measured = vtkPolyData::SafeDownCast(expected->GetOutputDataObject(1));
       EXPECT_EQ(CountDifferentPoints(continuity->GetOutput(), measured), 0);
-      EXPECT_EQ(CountDifferentValues(CellArray(continuity->GetOutput(), "JacobianJump"),
-                  CellArray(measured, "JacobianJump")),
-        0);
+      EXPECT_TRUE(IsSame(
+        CellArray(continuity->GetOutput(), "JacobianJump"), CellArray(measured, "JacobianJump")));
     }
     // Each filter executes once per time, and all for the same times.
     EXPECT_EQ(mesh->Executions, 4);

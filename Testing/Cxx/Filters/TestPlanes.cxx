@@ -154,64 +154,6 @@ TEST_P(Planes, NormalsAgreeUpToARightAngle)
   }
 }
 
-TEST_P(Planes, TurnedByAxesTheMapHasTheSameBits)
-{
-  const MeshPair pair = MakePlanarPair(10, 200);
-  const auto cloud =
-    Moved(MakeCloud(pair.Source, RandomSamples(pair.Source, 5000, 11)), [](const Point& p) {
-      return p + Point{ 0.0, 0.0, 0.3 };
-    });
-  const auto flat = MakeFilter(GetParam(), pair, cloud);
-  flat->ComputeJacobianOn();
-  // x and y become y and z, or z and x.
-  const Matrix cyclic{ { { 0, 0, 1 }, { 1, 0, 0 }, { 0, 1, 0 } } };
-  for (const Matrix& turn : { cyclic, cyclic * cyclic })
-  {
-    const auto turned = [&turn](vtkPolyData* mesh) { return Tilted(mesh, turn, {}); };
-    const auto filter =
-      MakeFilter(GetParam(), { turned(pair.Source), turned(pair.Target) }, turned(cloud));
-    filter->ComputeJacobianOn();
-    for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
-    {
-      ASSERT_EQ(PointOf(Output(filter), i), turn * PointOf(Output(flat), i));
-      ASSERT_EQ(
-        JacobianOf(Output(filter), i), turn * JacobianOf(Output(flat), i) * Transposed(turn));
-    }
-  }
-}
-
-TEST_P(Planes, CornersMapToTheStoredCorners)
-{
-  // Corners in float lie off the plane by rounding errors of their own.
-  Random random(23);
-  for (int round = 0; round < 40; ++round)
-  {
-    SCOPED_TRACE(round);
-    const Plane source = round % 4 == 0
-      ? AxisPlane(2, 0.1, 1.0)
-      : PlaneWithNormal({ 0.1, 0.2, -0.3 }, random.Vector(), random.Vector());
-    const Plane target = round % 4 == 1
-      ? AxisPlane(round % 3, 0.1, 1.0)
-      : PlaneWithNormal({ 3.1, 0.7, 0.9 }, random.Vector(), random.Vector());
-    MeshPair pair = MakePair(4, random, source, target);
-    if (round % 4 == 2)
-    {
-      for (const auto& mesh : { pair.Source, pair.Target })
-      {
-        mesh->SetPoints(MakeCloud(PointsOf(mesh), VTK_FLOAT)->GetPoints());
-      }
-    }
-    else if (round % 4 == 3)
-    {
-      pair.Target = MakeSheet(4, static_cast<std::uint64_t>(round), 0.8);
-    }
-    const auto filter = MakeFilter(GetParam(), pair);
-    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Target), 0);
-    filter->InverseOn();
-    EXPECT_EQ(CountDifferentPoints(Output(filter), pair.Source), 0);
-  }
-}
-
 TEST_P(Planes, PointsWithinTheToleranceOfASurfaceMapOntoTheOther)
 {
   const auto sheet = MakeSheet(4, 42, 0.9);

@@ -22,34 +22,25 @@ vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, do
   return filter;
 }
 
-/// The images of points under the homeomorphism of a pair.
-vtkSmartPointer<vtkPointSet> MapPoints(
-  vtkPolyData* source, vtkPolyData* target, vtkPolyData* cloud, int system, double deviation)
-{
-  vtkNew<vtkDifferentiableHomeomorphism> map;
-  map->SetSourceData(source);
-  map->SetTargetData(target);
-  map->SetDataObject(cloud);
-  map->SetCoordinateSystem(system);
-  map->SetMaximumDeviation(deviation);
-  // On surfaces, and on the boundary, points between corners are off the mesh by rounding.
-  map->SetTolerance(1e-12);
-  map->Update();
-  EXPECT_EQ(map->GetNumberOfOutsidePoints(), 0);
-  return vtkPointSet::SafeDownCast(map->GetOutputDataObject(0));
-}
-
 /// The largest distance between the homeomorphism of a pair, in the system of the filter, and the
 /// piecewise linear map of the finer pair at random points, some of them on edges, the boundary's
 /// too, or close to edges and vertices.
 double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter)
 {
   const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 5));
-  const auto exact = MapPoints(
-    pair.Source, pair.Target, cloud, filter->GetCoordinateSystem(), filter->GetMaximumDeviation());
-  const auto linear = MapPoints(filter->GetOutput(), filter->GetTargetOutput(), cloud,
-    vtkDifferentiableHomeomorphism::LINEAR, VTK_DOUBLE_MAX);
-  return LargestDistance(exact, linear);
+  const System system{ "", filter->GetCoordinateSystem() };
+  const auto exact = fixtures::MakeFilter(system, pair, cloud);
+  exact->SetMaximumDeviation(filter->GetMaximumDeviation());
+  const auto linear =
+    fixtures::MakeFilter(Linear, { filter->GetOutput(), filter->GetTargetOutput() }, cloud);
+  for (const auto& map : { exact, linear })
+  {
+    // On surfaces, and on the boundary, points between corners are off the mesh by rounding.
+    map->SetTolerance(1e-12);
+    map->Update();
+    EXPECT_EQ(map->GetNumberOfOutsidePoints(), 0);
+  }
+  return LargestDistance(Output(exact), Output(linear));
 }
 
 /// The triangles have positive areas, which fill the square [0, size]^2. Every edge has two of them
@@ -63,24 +54,20 @@ void ExpectConforming(vtkPolyData* mesh, double size)
     const auto p = CornersOf(mesh, c);
     EXPECT_GT(Cross(p[1] - p[0], p[2] - p[0])[2], 0.0);
     twice += Cross(p[1] - p[0], p[2] - p[0])[2];
-    vtkNew<vtkIdList> ids;
-    mesh->GetCellPoints(c, ids);
-    for (int k = 0; k < 3; ++k)
+    const std::vector<vtkIdType> ids = IdsOf(mesh, c);
+    for (std::size_t k = 0; k < 3; ++k)
     {
-      ++edges[std::minmax(vtkIdType(ids->GetId(k)), vtkIdType(ids->GetId((k + 1) % 3)))];
+      ++edges[std::minmax(ids[k], ids[(k + 1) % 3])];
     }
   }
   EXPECT_NEAR(twice, 2.0 * size * size, 1e-11);
-  for (const auto& edge : edges)
+  for (const auto& [ends, triangles] : edges)
   {
-    ASSERT_LE(edge.second, 2);
-    if (edge.second == 1)
-    {
-      const Point a = PointOf(mesh, edge.first.first);
-      const Point b = PointOf(mesh, edge.first.second);
-      EXPECT_TRUE((a[0] == b[0] && (a[0] == 0.0 || a[0] == size)) ||
-        (a[1] == b[1] && (a[1] == 0.0 || a[1] == size)));
-    }
+    const Point a = PointOf(mesh, ends.first);
+    const Point b = PointOf(mesh, ends.second);
+    const bool isOnBoundary = (a[0] == b[0] && (a[0] == 0.0 || a[0] == size)) ||
+      (a[1] == b[1] && (a[1] == 0.0 || a[1] == size));
+    ASSERT_EQ(triangles, isOnBoundary ? 1 : 2);
   }
 }
 
@@ -170,22 +157,18 @@ TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
     const auto original = static_cast<vtkIdType>(ids->GetTuple1(c));
     EXPECT_EQ(regions->GetTuple1(c), cellNumbers->GetValue(original));
     const auto corners = CornersOf(pair.Source, original);
-    vtkNew<vtkIdList> cornerIds;
-    pair.Source->GetCellPoints(original, cornerIds);
-    vtkNew<vtkIdList> partIds;
-    refined->GetCellPoints(c, partIds);
+    const std::vector<vtkIdType> cornerIds = IdsOf(pair.Source, original);
     const double area = Cross(corners[1] - corners[0], corners[2] - corners[0])[2];
-    for (int k = 0; k < 3; ++k)
+    for (const vtkIdType id : IdsOf(refined, c))
     {
-      const Point p = PointOf(refined, partIds->GetId(k));
+      const Point p = PointOf(refined, id);
       double height = 0.0;
-      for (int corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k)
       {
-        const Point& next = corners[static_cast<std::size_t>((corner + 1) % 3)];
-        const Point& last = corners[static_cast<std::size_t>((corner + 2) % 3)];
-        height += Cross(next - p, last - p)[2] / area * heights->GetValue(cornerIds->GetId(corner));
+        const Point share = Cross(corners[(k + 1) % 3] - p, corners[(k + 2) % 3] - p);
+        height += share[2] / area * heights->GetValue(cornerIds[k]);
       }
-      EXPECT_NEAR(interpolated->GetTuple1(partIds->GetId(k)), height, 1e-10);
+      EXPECT_NEAR(interpolated->GetTuple1(id), height, 1e-10);
     }
   }
 }

@@ -51,10 +51,9 @@ vtkSmartPointer<vtkImageData> MakeImage()
   image->SetSpacing((n + 1.0) / 40.0, (n + 1.0) / 40.0, 1.0);
   AddField(image);
   const auto wind = RandomArray("Wind", 3, image->GetNumberOfPoints(), 1);
-  for (const int component : { 0, 1, 2 })
-  {
-    wind->FillComponent(component, (component + 1) % 3);
-  }
+  wind->FillComponent(0, 1.0);
+  wind->FillComponent(1, 2.0);
+  wind->FillComponent(2, 0.0);
   image->GetPointData()->SetVectors(wind);
   const auto row = RandomArray<vtkIntArray>("Row", 1, image->GetNumberOfCells(), 2);
   for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
@@ -169,8 +168,7 @@ TEST(Resample, AnyGridAndAnyDataAreSupported)
   ExpectPulledBack(Output(filter.Get()), pair);
 
   // The mesh is its own data.
-  vtkNew<vtkPolyData> source;
-  source->ShallowCopy(pair.Source);
+  const auto source = CopyOf(pair.Source.Get());
   AddField(source);
   filter->SetSourceData(source);
   filter->SetDataObject(nullptr);

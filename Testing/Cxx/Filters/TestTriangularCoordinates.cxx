@@ -32,17 +32,6 @@ struct Coordinates
   double C;
 };
 
-/// Single meshes of every kind.
-std::vector<std::pair<const char*, vtkSmartPointer<vtkPolyData>>> AllMeshes(std::uint64_t seed)
-{
-  std::vector<std::pair<const char*, vtkSmartPointer<vtkPolyData>>> meshes;
-  for (const Pairing& pairing : AllPairings(8, 2, seed))
-  {
-    meshes.emplace_back(pairing.Name, pairing.Meshes.Target);
-  }
-  return meshes;
-}
-
 /// The center of a triangle in a system: the start of its contours.
 Point CenterOf(const System& system, vtkPolyData* mesh, vtkIdType triangle)
 {
@@ -63,30 +52,24 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(CoordinatesInEverySystem, ArraysHaveTheirTypesAndRanges)
 {
-  struct Expected
+  for (const auto& [kind, pair] : AllPairings(8, 2, 700))
   {
-    const char* Array;
-    int Type;
-    double Least;
-    double Greatest;
-  };
-  for (const auto& [name, mesh] : AllMeshes(700))
-  {
-    const auto filter =
-      MakeCoordinates(GetParam(), mesh, MakeCloud(mesh, RandomSamples(mesh, 5000, 60)));
+    const auto filter = MakeCoordinates(
+      GetParam(), pair.Target, MakeCloud(pair.Target, RandomSamples(pair.Target, 5000, 60)));
     EXPECT_EQ(Output(filter)->GetPointData()->GetNumberOfArrays(), 5);
-    for (const Expected& one : std::vector<Expected>{
-           { "TriangleId", VTK_ID_TYPE, 0.0, static_cast<double>(mesh->GetNumberOfCells() - 1) },
-           { "EdgeLabel", VTK_INT, 1.0, 3.0 }, { "EdgeParameter", VTK_DOUBLE, 0.0, 1.0 },
-           { "ContourParameter", VTK_DOUBLE, 0.0, 1.0 },
-           { "vtkValidPointMask", VTK_UNSIGNED_CHAR, 1.0, 1.0 } })
+    const auto triangles = static_cast<double>(pair.Target->GetNumberOfCells());
+    for (const auto& [name, type, least, greatest] :
+      std::vector<std::tuple<const char*, int, double, double>>{
+        { "TriangleId", VTK_ID_TYPE, 0.0, triangles - 1.0 }, { "EdgeLabel", VTK_INT, 1.0, 3.0 },
+        { "EdgeParameter", VTK_DOUBLE, 0.0, 1.0 }, { "ContourParameter", VTK_DOUBLE, 0.0, 1.0 },
+        { "vtkValidPointMask", VTK_UNSIGNED_CHAR, 1.0, 1.0 } })
     {
-      SCOPED_TRACE(std::string(name) + one.Array);
-      vtkDataArray* array = PointArray(Output(filter), one.Array);
-      EXPECT_EQ(array->GetDataType(), one.Type);
+      SCOPED_TRACE(std::string(kind) + name);
+      vtkDataArray* array = PointArray(Output(filter), name);
+      EXPECT_EQ(array->GetDataType(), type);
       for (const double value : ValuesOf(array))
       {
-        ASSERT_TRUE(value >= one.Least && value <= one.Greatest) << value;
+        ASSERT_TRUE(value >= least && value <= greatest) << value;
       }
     }
   }
@@ -211,15 +194,13 @@ std::vector<Line> ReadLines(vtkTriangularCoordinates* filter)
   EXPECT_EQ(lines->GetCellData()->GetScalars(), CellArray(lines, "LineType"));
   EXPECT_EQ(lines->GetNumberOfCells(), lines->GetNumberOfLines());
   std::vector<Line> result;
-  vtkNew<vtkIdList> ids;
   for (vtkIdType i = 0; i < lines->GetNumberOfCells(); ++i)
   {
     Line line{ static_cast<int>(CellValue(lines, "LineType", i)),
       static_cast<vtkIdType>(CellValue(lines, "TriangleId", i)),
       static_cast<int>(CellValue(lines, "EdgeLabel", i)), CellValue(lines, "EdgeParameter", i),
       CellValue(lines, "ContourParameter", i), {} };
-    lines->GetCellPoints(i, ids);
-    for (const vtkIdType id : *ids)
+    for (const vtkIdType id : IdsOf(lines, i))
     {
       line.Points.push_back(PointOf(lines, id));
     }
@@ -242,13 +223,11 @@ void ExpectLines(
   filter->SetNumberOfRings(rings);
   filter->SetLineResolution(resolution);
   const std::vector<Line> lines = ReadLines(filter);
-  const double size = SizeOf(mesh);
+  const double size = mesh->GetLength();
   std::map<std::pair<vtkIdType, int>, int> counts;
   std::set<std::pair<double, int>> contoursSeen;
   // All points of the lines are input to the filter again.
-  vtkNew<vtkPolyData> points;
-  points->SetPoints(filter->GetLines()->GetPoints());
-  const auto check = MakeCoordinates(system, mesh, points);
+  const auto check = MakeCoordinates(system, mesh, MakeCloud(PointsOf(filter->GetLines())));
   vtkDataSet* output = Output(check);
   EXPECT_EQ(check->GetNumberOfOutsidePoints(), 0);
   vtkIdType first = 0;
@@ -295,7 +274,7 @@ void ExpectLines(
     }
     first += last + 1;
   }
-  EXPECT_EQ(first, points->GetNumberOfPoints());
+  EXPECT_EQ(first, output->GetNumberOfPoints());
   EXPECT_EQ(contoursSeen.size(), static_cast<std::size_t>(3 * contours));
   for (vtkIdType t = 1; t < mesh->GetNumberOfCells() && isConcordant; ++t)
   {
@@ -315,10 +294,10 @@ TEST_P(CoordinatesInEverySystem, LinesExistAndHaveTheirCoordinates)
   AddVerticesAndLines(concordant, 1, 0); // shifts the cell ids by one
   ExpectLines(GetParam(), concordant, 1, 1, true);
   ExpectLines(GetParam(), concordant, 7, 5, true);
-  for (const auto& [name, mesh] : AllMeshes(780))
+  for (const auto& [kind, pair] : AllPairings(8, 2, 780))
   {
-    SCOPED_TRACE(name);
-    ExpectLines(GetParam(), mesh, 5, 4, false);
+    SCOPED_TRACE(kind);
+    ExpectLines(GetParam(), pair.Target, 5, 4, false);
   }
 }
 
@@ -328,8 +307,9 @@ TEST(TriangularCoordinates, SegmentsAreThePublishedConstruction)
   // midpoints.
   for (const System& system : { Contour, Incenter })
   {
-    for (const auto& [name, mesh] : AllMeshes(790))
+    for (const auto& [kind, pair] : AllPairings(8, 2, 790))
     {
+      vtkPolyData* mesh = pair.Target;
       const auto filter = MakeCoordinates(system, mesh);
       const std::vector<Line> lines = ReadLines(filter);
       std::map<std::pair<vtkIdType, int>, Point> feet;
@@ -367,7 +347,7 @@ TEST(TriangularCoordinates, SegmentsAreThePublishedConstruction)
           ASSERT_LE(Distance(p.back(), middle), rounding);
         }
       }
-      EXPECT_GT(feet.size(), 100u) << system.Name << name;
+      EXPECT_GT(feet.size(), 100u) << system.Name << kind;
     }
   }
 }
@@ -375,9 +355,10 @@ TEST(TriangularCoordinates, SegmentsAreThePublishedConstruction)
 TEST(TriangularCoordinates, TrianglesAreDescribed)
 {
   vtkIdType discordantInAll = 0;
-  for (const auto& [name, mesh] : AllMeshes(800))
+  for (const auto& [kind, pair] : AllPairings(8, 2, 800))
   {
-    SCOPED_TRACE(name);
+    SCOPED_TRACE(kind);
+    vtkPolyData* mesh = pair.Target;
     const auto filter = MakeCoordinates(Contour, mesh);
     vtkPolyData* described = Described(filter);
     vtkDataArray* width = CellArray(described, "StripWidth");

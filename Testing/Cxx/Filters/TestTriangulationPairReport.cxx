@@ -196,14 +196,12 @@ TEST(TriangulationPairReport, ContinuityIsThatOfJacobianContinuity)
 {
   const MeshPair pair = MakePlanarPair(3, 13);
   const auto report = Report(pair, true);
-  const std::vector<std::string> names{ "Linear", "Contour", "Smooth" };
-  for (int system = 0; system < 3; ++system)
+  for (const System& system : { Linear, Contour, Smooth })
   {
     const auto continuity = MakeAlgorithm<vtkJacobianContinuity>(pair);
-    continuity->SetCoordinateSystem(system);
-    continuity->SetDiscordantTriangles(vtkJacobianContinuity::USE_LINEAR);
+    SetSystem(continuity.Get(), system);
     continuity->Update();
-    const std::string& name = names[static_cast<std::size_t>(system)];
+    const std::string name = system.Name;
     EXPECT_EQ(report->GetStatistic((name + "Creases").c_str()), continuity->GetNumberOfCreases());
     EXPECT_EQ(report->GetStatistic((name + "DifferentiableEdges").c_str()),
       continuity->GetNumberOfDifferentiableEdges());
@@ -218,7 +216,7 @@ TEST(TriangulationPairReport, DefectsAreDataAndNoErrors)
 {
   // A triangle of the target is flipped by its inner vertex: it overlaps its neighbors.
   MeshPair pair = MakePlanarPair(4, 19, 0.0);
-  pair.Target->GetPoints()->SetPoint(12, 3.2, 2.0, 0.0);
+  MovePoint(pair.Target, 12, { 3.2, 2.0, 0.0 });
   const auto report = Report(pair, true);
   EXPECT_FALSE(report->GetValid());
   EXPECT_EQ(report->GetStatistic("Measured"), 1.0);

@@ -12,14 +12,8 @@
 #include "Mesh/Homeomorphism.h"
 #include "Pipeline/DiagnosticMessages.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
 #include <memory>
 #include <numeric>
-#include <ostream>
-#include <set>
-#include <vector>
 
 namespace fixtures
 {
@@ -159,13 +153,8 @@ inline void ExpectMasked(const MeshPair& pair, const std::vector<Defect>& defect
   {
     for (const System& system : { Linear, Contour, Smooth })
     {
-      MapOptions options;
-      options.Inverse = inverse;
-      options.CoordinateSystem = system.CoordinateSystem;
-      options.DiscordantTriangles = vtkDifferentiableHomeomorphism::USE_LINEAR;
-      const MappedPoints expected = MapPoints(pierced, points[inverse], options);
-      options.Mask = true;
-      const MappedPoints mapped = MapPoints(pair, points[inverse], options);
+      const MappedPoints expected = MapPoints(pierced, points[inverse], { system, false, inverse });
+      const MappedPoints mapped = MapPoints(pair, points[inverse], { system, true, inverse });
       ASSERT_EQ(expected.Error + expected.Warning + mapped.Error, "");
       EXPECT_NE(mapped.Warning, "");
       EXPECT_EQ(mapped.Triangles, expectedTriangles[inverse]);
@@ -186,9 +175,7 @@ inline void ExpectFoundInEachMesh(const MeshPair& valid,
 {
   for (const bool inSource : { true, false })
   {
-    MeshPair pair{ vtkSmartPointer<vtkPolyData>::New(), vtkSmartPointer<vtkPolyData>::New() };
-    pair.Source->DeepCopy(valid.Source);
-    pair.Target->DeepCopy(valid.Target);
+    const MeshPair pair = CopyOf(valid);
     vtkPolyData* damaged = inSource ? pair.Source : pair.Target;
     damage(damaged);
     const std::vector<Defect> defects{ { kind, inSource ? Where::Source : Where::Target, cells } };

@@ -14,10 +14,7 @@
 #include "vtkThinPlateSplineTransform.h"
 #include "vtkWarpTransform.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <limits>
 
 namespace fixtures
 {

@@ -23,8 +23,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -137,6 +135,14 @@ inline std::vector<Point> PointsOf(vtkDataSet* data)
   return points;
 }
 
+/// The points of a cell.
+inline std::vector<vtkIdType> IdsOf(vtkDataSet* data, vtkIdType cell)
+{
+  vtkNew<vtkIdList> ids;
+  data->GetCellPoints(cell, ids);
+  return { ids->begin(), ids->end() };
+}
+
 inline std::vector<Triangle> TrianglesOf(vtkPolyData* mesh)
 {
   std::vector<Triangle> triangles;
@@ -198,21 +204,24 @@ inline MeshPair WithTriangles(const MeshPair& pair, const std::vector<Triangle>&
   return { WithTriangles(pair.Source, triangles), WithTriangles(pair.Target, triangles) };
 }
 
+/// Cells of any number of points.
+inline vtkSmartPointer<vtkCellArray> MakePolygons(
+  const std::vector<std::vector<vtkIdType>>& polygons)
+{
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  for (const auto& polygon : polygons)
+  {
+    cells->InsertNextCell(static_cast<vtkIdType>(polygon.size()), polygon.data());
+  }
+  return cells;
+}
+
 /// Puts vertex and line cells before the triangles of a mesh, which shifts their cell ids.
 inline void AddVerticesAndLines(vtkPolyData* mesh, int vertices, int lines)
 {
-  vtkNew<vtkCellArray> vertexCells;
-  for (vtkIdType i = 0; i < vertices; ++i)
-  {
-    vertexCells->InsertNextCell({ i });
-  }
-  vtkNew<vtkCellArray> lineCells;
-  for (vtkIdType i = 0; i < lines; ++i)
-  {
-    lineCells->InsertNextCell({ i, i + 1 });
-  }
-  mesh->SetVerts(vertexCells);
-  mesh->SetLines(lineCells);
+  using Cells = std::vector<std::vector<vtkIdType>>;
+  mesh->SetVerts(MakePolygons(Cells(static_cast<std::size_t>(vertices), { 0 })));
+  mesh->SetLines(MakePolygons(Cells(static_cast<std::size_t>(lines), { 0, 1 })));
 }
 
 /// An array vtkGhostType in which some elements have a mark.
@@ -272,8 +281,8 @@ inline MeshPair CopyOf(const MeshPair& pair)
 }
 
 /// The kinds of pairs: planar (a square and another square, a sheared one with many discordant
-/// triangles, and one in a tilted plane), surfaces with boundary, a plane and a surface, and closed
-/// surfaces.
+/// triangles, one in a tilted plane, and both in planes of constant x and y), surfaces with
+/// boundary, a plane and a surface, and closed surfaces.
 struct Pairing
 {
   const char* Name;
@@ -291,6 +300,12 @@ inline vtkSmartPointer<vtkPolyData> Tilted(
   return Moved(mesh, [&](const Point& p) { return rotation * p + shift; });
 }
 
+/// x and y become y and z.
+inline vtkSmartPointer<vtkPolyData> Upright(vtkPolyData* mesh)
+{
+  return Moved(mesh, [](const Point& p) -> Point { return { p[2], p[0], p[1] }; });
+}
+
 inline vtkSmartPointer<vtkPolyData> Sheared(vtkPolyData* mesh)
 {
   return Moved(mesh, [](const Point& p) -> Point { return { p[0] + 1.2 * p[1], p[1], p[2] }; });
@@ -302,6 +317,7 @@ inline std::vector<Pairing> AllPairings(int n, int divisions, std::uint64_t seed
   const MeshPair closed = MakeClosedPair(divisions, seed + 4);
   return { { "planar", planar }, { "sheared", { planar.Source, Sheared(planar.Target) } },
     { "tilted", { planar.Source, Tilted(planar.Target, Tilt(), { 1.0, 2.0, 3.0 }) } },
+    { "upright", { Upright(planar.Source), Upright(Upright(planar.Target)) } },
     { "sheets", { MakeSheet(n, seed + 2, 0.5), MakeSheet(n, seed + 3, 1.2) } },
     { "plane to sheet", { planar.Source, MakeSheet(n, seed + 3, 1.2) } }, { "closed", closed } };
 }
@@ -357,10 +373,8 @@ inline std::vector<MeshPoint> InnerSamples(
 
 inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
 {
-  vtkNew<vtkIdList> ids;
-  mesh->GetCellPoints(triangle, ids);
-  return { PointOf(mesh, ids->GetId(0)), PointOf(mesh, ids->GetId(1)),
-    PointOf(mesh, ids->GetId(2)) };
+  const std::vector<vtkIdType> ids = IdsOf(mesh, triangle);
+  return { PointOf(mesh, ids[0]), PointOf(mesh, ids[1]), PointOf(mesh, ids[2]) };
 }
 
 inline Point PositionOf(vtkPolyData* mesh, const MeshPoint& surfacePoint)
@@ -375,11 +389,6 @@ inline Point PointIn(vtkPolyData* mesh, const Triangle& triangle, const Point& w
 {
   return weights[0] * PointOf(mesh, triangle[0]) + weights[1] * PointOf(mesh, triangle[1]) +
     weights[2] * PointOf(mesh, triangle[2]);
-}
-
-inline Point CentroidOf(vtkPolyData* mesh, const Triangle& triangle)
-{
-  return PointIn(mesh, triangle, { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 });
 }
 
 /// Some points in every triangle.

@@ -18,8 +18,6 @@
 #include "Kernel/SmoothChart.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <sstream>
 #include <string>
 #include <type_traits>

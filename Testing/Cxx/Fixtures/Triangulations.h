@@ -12,31 +12,21 @@
 
 #include "Mesh/Triangulation.h"
 
-#include <algorithm>
-#include <cstdint>
-#include <vector>
-
 namespace fixtures
 {
-
-inline std::vector<homeomorphism::Triangulation::Corners> Narrow(
-  const std::vector<Triangle>& triangles)
-{
-  std::vector<homeomorphism::Triangulation::Corners> narrow;
-  for (const Triangle& t : triangles)
-  {
-    narrow.push_back({ static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
-      static_cast<std::int32_t>(t[2]) });
-  }
-  return narrow;
-}
 
 /// The triangles of a mesh with their adjacency; some may be masked.
 inline homeomorphism::Triangulation TriangulationOf(
   vtkPolyData* mesh, const std::vector<bool>& masked = {})
 {
+  std::vector<homeomorphism::Triangulation::Corners> narrow;
+  for (const Triangle& t : TrianglesOf(mesh))
+  {
+    narrow.push_back({ static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+      static_cast<std::int32_t>(t[2]) });
+  }
   homeomorphism::Triangulation triangulation;
-  triangulation.SetTriangles(Narrow(TrianglesOf(mesh)), 0);
+  triangulation.SetTriangles(narrow, 0);
   for (std::size_t t = 0; t < masked.size(); ++t)
   {
     if (masked[t])
@@ -83,12 +73,17 @@ struct IntegerMesh
     }
   }
 
+  template <typename Predicate>
+  void Remove(Predicate&& predicate)
+  {
+    this->Triangles.erase(std::remove_if(this->Triangles.begin(), this->Triangles.end(), predicate),
+      this->Triangles.end());
+  }
+
   /// Removes triangles: holes, islands, and vertices at which only corners meet.
   void Pierce(Random& random, double probability)
   {
-    this->Triangles.erase(std::remove_if(this->Triangles.begin(), this->Triangles.end(),
-                            [&](const Triangle&) { return random.Chance(probability); }),
-      this->Triangles.end());
+    this->Remove([&](const Triangle&) { return random.Chance(probability); });
   }
 
   /// Numbers and orients the triangles at random.

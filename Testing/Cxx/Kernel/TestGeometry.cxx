@@ -8,17 +8,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
 namespace
 {
 
 using namespace homeomorphism_test;
 
-double RelativeError(double found, double expected)
+double RelativeError(double found, long double exact)
 {
+  const auto expected = static_cast<double>(exact);
   return found == expected ? 0.0 : std::abs(found - expected) / std::abs(expected);
 }
 
@@ -61,9 +58,9 @@ TEST(Geometry, ViewFromEdgeIsAccurateToAFewUlp)
     const Vector2 end = start + Vector2{ static_cast<double>(ex), static_cast<double>(ey) };
     const Vector2 opposite = start + Vector2{ static_cast<double>(ox), static_cast<double>(oy) };
     const EdgeView view = ViewFromEdge(start, end, opposite);
-    worstLength = std::max(worstLength, RelativeError(view.Length, static_cast<double>(length)));
-    worstFoot = std::max(worstFoot, RelativeError(view.Foot, static_cast<double>(foot)));
-    worstHeight = std::max(worstHeight, RelativeError(view.Height, static_cast<double>(height)));
+    worstLength = std::max(worstLength, RelativeError(view.Length, length));
+    worstFoot = std::max(worstFoot, RelativeError(view.Foot, foot));
+    worstHeight = std::max(worstHeight, RelativeError(view.Height, height));
   }
   EXPECT_LT(worstLength, 2.0 * Ulp);
   EXPECT_LT(worstFoot, 8.0 * Ulp);

@@ -7,12 +7,6 @@
 #include "Fixtures/Tables.h"
 #include "Fixtures/Triangles.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
 namespace
 {
 

@@ -7,9 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 using namespace homeomorphism;
 using namespace homeomorphism_test;
 
@@ -83,12 +80,9 @@ TEST(RootFinding, EquationsOfABatchAreIndependent)
     double roots[width];
     double guesses[width];
     double powers[width];
-    for (int index = 0; index < width; ++index)
-    {
-      roots[index] = random.Uniform();
-      guesses[index] = random.Uniform();
-      powers[index] = random.Integer(1, 4);
-    }
+    std::generate_n(roots, width, [&random]() { return random.Uniform(); });
+    std::generate_n(guesses, width, [&random]() { return random.Uniform(); });
+    std::generate_n(powers, width, [&random]() { return random.Integer(1, 4); });
     PowerEquation<width, true> batch;
     SolveBatch<width>(batch, roots, guesses, powers);
     for (int index = 0; index < width; ++index)
@@ -106,8 +100,7 @@ TEST(RootFinding, EndsWithoutARoot)
     void Set(int index) { this->Start(index, 0.0, 1.0, 0.5); }
     void Evaluate(int index)
     {
-      const double nan = std::numeric_limits<double>::quiet_NaN();
-      this->Step(index, nan, nan, 0x1p-26);
+      this->Step(index, fixtures::NotANumber, fixtures::NotANumber, 0x1p-26);
     }
   };
   NoRoot equation;

@@ -8,11 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-
 namespace
 {
 
@@ -35,7 +30,7 @@ struct AdjacentTriangles
 private:
   static Vector2 Turned(const Vector2& p, const Vector2& u)
   {
-    return { p.x * u.x - p.y * u.y, p.x * u.y + p.y * u.x };
+    return p.x * u + p.y * Vector2{ -u.y, u.x };
   }
   SmoothChart MakeChart(std::size_t i) const
   {
@@ -122,22 +117,12 @@ TEST(SmoothEdge, DeterminantIsBoundedFromBelow)
     {
       // 0.6 is where K' is least and u^3 (1 - u)^2 greatest.
       const double u = i % 3 == 0 ? random.Uniform(0.55, 0.65) : random.Uniform();
-      double proportion = random.Uniform();
-      if (i % 2 == 0)
-      {
-        const double nearCorner = std::ldexp(proportion, -random.Below(30));
-        proportion = random.Chance(0.5) ? nearCorner : 1.0 - nearCorner;
-      }
+      const double fromCorner = std::ldexp(random.Uniform(), i % 2 == 0 ? -random.Below(30) : 0);
+      const double proportion = random.Chance(0.5) ? fromCorner : 1.0 - fromCorner;
       const double ratio = chart.DeterminantRatio(OnStripBorder(2, tau * u, proportion));
       ASSERT_TRUE(ratio > 0.0 && ratio >= bound * (1.0 - 4.0 * Ulp)) << Description(p);
-      if (share > 0.5)
-      {
-        lowest = std::min(lowest, ratio);
-      }
-      if (share < 0.25)
-      {
-        nearestShare = std::min(nearestShare, ratio / bound);
-      }
+      lowest = share > 0.5 ? std::min(lowest, ratio) : lowest;
+      nearestShare = share < 0.25 ? std::min(nearestShare, ratio / bound) : nearestShare;
     }
   }
   // 1 + K' - 6 u^3 (1 - u)^2 is least at u = 3/5, where K' and u^3 (1 - u)^2 are both extreme: 4385

@@ -44,11 +44,11 @@ void ExpectAdjacency(Triangulation& triangulation, vtkIdType numberOfPoints)
     }
   }
   std::set<TriangleIndex> crowded;
-  for (const auto& edge : edges)
+  for (const auto& [points, sharing] : edges)
   {
-    for (std::size_t i = 0; i < edge.second.size() && edge.second.size() > 2; ++i)
+    for (std::size_t i = 0; i < sharing.size() && sharing.size() > 2; ++i)
     {
-      crowded.insert(edge.second[i].first);
+      crowded.insert(sharing[i].first);
     }
   }
   ASSERT_EQ(std::vector<TriangleIndex>(crowded.begin(), crowded.end()),
@@ -93,11 +93,8 @@ TEST(Triangulation, AdjacencyOfRandomTriangles)
   {
     const int points = 3 + n % 12;
     std::vector<Triangulation::Corners> triangles(n % 25);
+    std::generate(triangles.begin(), triangles.end(), [&]() { return AnyCorners(random, points); });
     Triangulation triangulation;
-    for (Triangulation::Corners& t : triangles)
-    {
-      t = AnyCorners(random, points);
-    }
     triangulation.SetTriangles(triangles, 0);
     for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
     {
@@ -139,14 +136,12 @@ bool IsOrientable(const Triangulation& triangulation)
       }
     }
   }
+  bool isOrientable = true;
   for (TriangleIndex t = 0; t < count; ++t)
   {
-    if (root(2 * t) == root(2 * t + 1))
-    {
-      return false;
-    }
+    isOrientable = isOrientable && root(2 * t) != root(2 * t + 1);
   }
-  return true;
+  return isOrientable;
 }
 
 TEST(Triangulation, OrientabilityOfRandomTriangles)

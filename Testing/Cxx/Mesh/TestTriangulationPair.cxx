@@ -93,23 +93,19 @@ TEST(Masking, MaskedTrianglesAreNoPartOfTheDomain)
   const MeshPair finned = MakePlanarPair(3, 10, 0.2);
   // A collapsed triangle far away would enlarge the diagonal, to which the tolerance is relative.
   const MeshPair spread = MakePlanarPair(3, 12, 0.2);
-  for (vtkPolyData* mesh : { finned.Source.Get(), finned.Target.Get() })
-  {
-    mesh->GetPoints()->InsertNextPoint(0.5, 0.5, 2.0);
-    mesh->GetPolys()->InsertNextCell({ 0, 5, 16 });
-  }
-  for (vtkPolyData* mesh : { spread.Source.Get(), spread.Target.Get() })
-  {
-    mesh->GetPoints()->InsertNextPoint(1000.0, 0.0, 0.0);
-    mesh->GetPolys()->InsertNextCell({ 0, 3, 16 });
-  }
-  MapOptions options;
-  options.Mask = true;
-  const MappedPoints high = MapPoints(finned, { { 2.0, 1.3, 0.5 } }, options);
+  const auto add = [](vtkPolyData* mesh, const Point& point, vtkIdType second) {
+    mesh->GetPoints()->InsertNextPoint(point.data());
+    mesh->GetPolys()->InsertNextCell({ 0, second, 16 });
+  };
+  add(finned.Source, { 0.5, 0.5, 2.0 }, 5);
+  add(finned.Target, { 0.5, 0.5, 2.0 }, 5);
+  add(spread.Source, { 1000.0, 0.0, 0.0 }, 3);
+  add(spread.Target, { 1000.0, 0.0, 0.0 }, 3);
+  const MappedPoints high = MapPoints(finned, { { 2.0, 1.3, 0.5 } }, { Smooth, true });
   ASSERT_TRUE(high.IsInside(0));
   EXPECT_EQ(high.Images[0][2], 0.5);
-  options.Tolerance = 0.01;
-  const MappedPoints near = MapPoints(spread, { { 1.5, 3.04, 0.0 }, { 1.5, 3.05, 0.0 } }, options);
+  const MappedPoints near =
+    MapPoints(spread, { { 1.5, 3.04, 0.0 }, { 1.5, 3.05, 0.0 } }, { Smooth, true, false, 0.01 });
   EXPECT_TRUE(near.IsInside(0));
   EXPECT_FALSE(near.IsInside(1));
 }
@@ -136,10 +132,8 @@ TEST(Masking, NoneOrAllOfTheTriangles)
 {
   ExpectAccepted(ReadMasked(MakePlanarPair(4, 14)));
   const auto collapsed = MakeMesh(std::vector<Point>(4, { 1, 1, 1 }), GridTriangles(1));
-  MapOptions options;
-  options.Mask = true;
   const MappedPoints mapped =
-    MapPoints({ collapsed, collapsed }, { { 1, 1, 1 }, { 0, 0, 0 } }, options);
+    MapPoints({ collapsed, collapsed }, { { 1, 1, 1 }, { 0, 0, 0 } }, { Smooth, true });
   EXPECT_EQ(mapped.Error, "");
   EXPECT_EQ(mapped.Triangles, (Ids{ -1, -1 }));
 }

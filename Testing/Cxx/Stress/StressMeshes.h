@@ -7,13 +7,10 @@
 #ifndef StressMeshes_h
 #define StressMeshes_h
 
+#include "Fixtures/Meshes.h"
 #include "Fixtures/Triangles.h"
 
 #include "Kernel/CoordinateSystem.h"
-
-#include <array>
-#include <cmath>
-#include <vector>
 
 namespace homeomorphism_stress
 {
@@ -75,7 +72,7 @@ constexpr std::array<Family, 7> Families{ {
   { "far", "any of these, up to 1e12 times their size away from the origin" },
 } };
 
-using Triangles = std::vector<std::array<int, 3>>;
+using Triangles = std::vector<fixtures::Triangle>;
 
 /// Triangles, and two sets of points for them.
 struct PlanePair
@@ -245,19 +242,8 @@ inline void Put(Random& random, int family, bool turn, std::vector<Vector2>& poi
 /// rounded.
 inline PlanePair AnyPair(Random& random, int family, const TestedSystem& system)
 {
-  Shape shape = Shape::Fair;
-  if (family == RATIOS)
-  {
-    shape = Shape::Ratio;
-  }
-  else if (family == NEEDLES)
-  {
-    shape = Shape::Thin;
-  }
-  else if (family != FAIR)
-  {
-    shape = static_cast<Shape>(random.Below(3));
-  }
+  constexpr std::array<Shape, 3> shapes{ Shape::Fair, Shape::Ratio, Shape::Thin };
+  const Shape shape = family <= NEEDLES ? shapes[family] : shapes[random.Below(3)];
   PlanePair pair;
   const bool concordant = system.IsChoosy();
   const double malice = system.Malice;

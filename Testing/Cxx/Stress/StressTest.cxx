@@ -10,24 +10,18 @@
 
 #include "StressMeshes.h"
 
-#include "Fixtures/Meshes.h"
-
 #include "Kernel/CubicElement.h"
 #include "Kernel/ExactSign.h"
 #include "Mesh/Homeomorphism.h"
 
 #include "vtkSMPTools.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <iostream>
 #include <map>
 #include <memory>
-#include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 namespace
 {
@@ -62,9 +56,8 @@ struct WorstCase
 {
   double Value = 0.0;
   std::int64_t Case = -1;
-  int Point = -1;
 
-  void Take(double value, std::int64_t number, int point)
+  void Take(double value, std::int64_t number)
   {
     // NaN is the worst value.
     if (std::isnan(value))
@@ -73,14 +66,14 @@ struct WorstCase
     }
     if (this->Case < 0 || value > this->Value || (value == this->Value && number < this->Case))
     {
-      *this = { value, number, point };
+      *this = { value, number };
     }
   }
   void Take(const WorstCase& other)
   {
     if (other.Case >= 0)
     {
-      this->Take(other.Value, other.Case, other.Point);
+      this->Take(other.Value, other.Case);
     }
   }
 };
@@ -115,22 +108,20 @@ vtkSmartPointer<vtkPolyData> MakeMesh(const std::vector<Vector2>& points, const 
   {
     inSpace.push_back({ p.x, p.y, 0.0 });
   }
-  std::vector<fixtures::Triangle> triangles;
-  for (const auto& cell : cells)
-  {
-    triangles.push_back({ cell[0], cell[1], cell[2] });
-  }
-  return fixtures::MakeMesh(inSpace, triangles);
+  return fixtures::MakeMesh(inSpace, cells);
 }
 
 /// One pair of meshes, its map, and test points.
 class Case
 {
 public:
-  Case(const TestedSystem& system, int family, std::uint64_t seed, std::int64_t number)
+  /// With a log, the meshes and what is measured at each point are printed.
+  Case(const TestedSystem& system, int family, std::uint64_t seed, std::int64_t number,
+    bool log = false)
     : System(system)
     , Numbers(Mixed(seed, system, family, number))
     , Number(number)
+    , Log(log)
   {
     // Half of the pairs of some families overlap or lose a triangle to rounding.
     for (int i = 0; i < 64 && !this->Map; ++i)
@@ -147,26 +138,25 @@ public:
     }
   }
 
-  /// Measures all points. Prints point number @a told, if any.
-  const Report& Run(int told = -1)
+  /// Measures all points.
+  const Report& Run()
   {
-    if (!this->Map)
+    if (this->Log)
     {
-      return this->Result;
+      this->PrintMeshes();
     }
-    this->Result.Pairs = 1;
-    for (int i = 0; i < PointsPerCase; ++i)
+    this->Result.Pairs = this->Map ? 1 : 0;
+    for (int i = 0; i < PointsPerCase && this->Map; ++i)
     {
       const Domain from = this->Numbers.Chance(0.5) ? Domain::Source : Domain::Target;
       const auto triangle =
         static_cast<TriangleIndex>(this->Numbers.Below(static_cast<int>(this->Pair.Cells.size())));
-      const Vector3 point = this->AnyPoint(from, triangle);
-      this->Log = i == told;
-      this->Measure(i, from, triangle, point);
+      this->Measure(from, triangle, this->AnyPoint(from, triangle));
     }
     return this->Result;
   }
 
+private:
   void PrintMeshes() const
   {
     for (int domain = 0; domain < 2; ++domain)
@@ -185,7 +175,6 @@ public:
     std::cout << "\n";
   }
 
-private:
   static std::uint64_t Mixed(
     std::uint64_t seed, const TestedSystem& system, int family, std::int64_t number)
   {
@@ -211,19 +200,15 @@ private:
   /// The corners of a triangle in normalized coordinates.
   Corners CornersOf(Domain domain, TriangleIndex triangle) const
   {
-    Corners corners;
-    for (int k = 0; k < 3; ++k)
-    {
-      corners[k] = this->GeometryOf(domain).GetPlanePoint(
-        this->Map->GetPair().GetTriangulation().GetCorners(triangle)[k]);
-    }
-    return corners;
+    const auto& ids = this->Map->GetPair().GetTriangulation().GetCorners(triangle);
+    const MeshGeometry& geometry = this->GeometryOf(domain);
+    return { geometry.GetPlanePoint(ids[0]), geometry.GetPlanePoint(ids[1]),
+      geometry.GetPlanePoint(ids[2]) };
   }
 
   static Vector2 Combined(const Corners& corners, const Barycentric& l)
   {
-    return { l[0] * corners[0].x + l[1] * corners[1].x + l[2] * corners[2].x,
-      l[0] * corners[0].y + l[1] * corners[1].y + l[2] * corners[2].y };
+    return l[0] * corners[0] + l[1] * corners[1] + l[2] * corners[2];
   }
 
   /// A point in coordinates of the input: anywhere, on and within a few ulp of the lines where
@@ -233,49 +218,40 @@ private:
     Random& random = this->Numbers;
     const MeshGeometry& geometry = this->GeometryOf(domain);
     const Corners corners = this->CornersOf(domain, triangle);
-    Vector2 normalized;
     const int kind = random.Below(10);
     const int k = random.Below(3);
     const double proportion = random.Proportion();
+    Barycentric l{};
     switch (kind)
     {
       case 0:
       case 1:
-        normalized = Combined(corners, random.Weights());
+        l = random.Weights();
         break;
       case 2:
         // Close to an edge or a vertex by any power of ten.
-        normalized = Combined(corners,
-          LinearChart(geometry.GetShape(triangle))
-            .FromCoordinates({ k + 1, proportion, 1.0 - random.PowerOfTen(-18.0, 0.0) }));
+        l = LinearChart(geometry.GetShape(triangle))
+              .FromCoordinates({ k + 1, proportion, 1.0 - random.PowerOfTen(-18.0, 0.0) });
         break;
       case 3:
-        normalized = corners[k];
+        l[k] = 1.0;
         break;
       case 4:
       case 5:
-      {
-        Barycentric l{};
         l[NextCorner(k)] = 1.0 - proportion;
         l[PreviousCorner(k)] = proportion;
-        normalized = Combined(corners, l);
         break;
-      }
       case 6:
-        normalized = Combined(corners, { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 });
+        l.fill(1.0 / 3.0);
         break;
-      case 7:
-      {
+      default:
         // Between the centroid and a vertex.
-        Barycentric l;
         l.fill((1.0 - proportion) / 3.0);
         l[k] += proportion;
-        normalized = Combined(corners, l);
-        break;
-      }
-      default:
-        normalized = this->OnLineOfTheSystem(domain, triangle, corners, k, proportion);
     }
+    const Vector2 normalized = kind < 8
+      ? Combined(corners, l)
+      : this->OnLineOfTheSystem(domain, triangle, corners, k, proportion);
     Vector3 point;
     geometry.FromNormalized({ normalized.x, normalized.y, 0.0 }, point.data());
     if (random.Chance(0.5))
@@ -320,14 +296,11 @@ private:
       domain, point.data(), this->Map->GetAbsoluteTolerance(domain, 0.0, HalfUlp), hint);
   }
 
-  /// The derivative in normalized coordinates, and its determinant.
+  /// Of the derivative in normalized coordinates.
   struct Derivative
   {
-    Matrix2 Matrix;
+    double Norm;
     double Determinant;
-
-    double Norm() const { return homeomorphism_test::Norm(this->Matrix); }
-    double InverseNorm() const { return this->Norm() / std::abs(this->Determinant); }
   };
 
   Derivative DerivativeAt(Domain from, const SurfacePoint& surfacePoint) const
@@ -336,7 +309,8 @@ private:
     const double rescale =
       this->GeometryOf(Opposite(from)).GetScale() / this->GeometryOf(from).GetScale();
     const auto& m = jacobian.Matrix;
-    return { { { rescale * m[0], rescale * m[3] }, { rescale * m[1], rescale * m[4] } },
+    return { Norm(
+               Matrix2{ { rescale * m[0], rescale * m[3] }, { rescale * m[1], rescale * m[4] } }),
       jacobian.Determinant * rescale * rescale };
   }
 
@@ -386,22 +360,22 @@ private:
     return { w[0], w[1] };
   }
 
-  void Take(Quantity quantity, double value, int i)
+  void Take(Quantity quantity, double value)
   {
-    this->Result.Worsts[quantity].Take(value, this->Number, i);
+    this->Result.Worsts[quantity].Take(value, this->Number);
     if (this->Log)
     {
       std::cout << QuantityNames[quantity] << ": " << value << " of its limit\n";
     }
   }
 
-  void Lose(int i)
+  void Lose()
   {
     ++this->Result.Lost;
-    this->Take(LOST, Infinity, i);
+    this->Take(LOST, Infinity);
   }
 
-  void Measure(int i, Domain from, TriangleIndex triangle, const Vector3& point)
+  void Measure(Domain from, TriangleIndex triangle, const Vector3& point)
   {
     const Domain to = Opposite(from);
     const MeshGeometry& source = this->GeometryOf(from);
@@ -410,8 +384,8 @@ private:
     const SurfacePoint surfacePoint = this->Locate(from, point, triangle);
     if (this->Log)
     {
-      std::cout << "point " << i << " of the " << (from == Domain::Source ? "source" : "target")
-                << ": " << point[0] << ", " << point[1] << ", in triangle " << surfacePoint.Triangle
+      std::cout << "point of the " << (from == Domain::Source ? "source" : "target") << ": "
+                << point[0] << ", " << point[1] << ", in triangle " << surfacePoint.Triangle
                 << "\n";
     }
     if (surfacePoint.Triangle < 0)
@@ -421,7 +395,7 @@ private:
       if (!(this->DistanceFromDomain(from, point) >
             0.25 * this->Map->GetAbsoluteTolerance(from, 0.0, HalfUlp)))
       {
-        this->Lose(i);
+        this->Lose();
       }
       return;
     }
@@ -432,8 +406,7 @@ private:
     const Vector2 start{ p[0], p[1] };
     this->Take(LOCATION,
       Norm(start - Vector2{ w[0], w[1] }) /
-        (LocationLimit * HalfUlp * source.GetLargestCoordinate()),
-      i);
+        (LocationLimit * HalfUlp * source.GetLargestCoordinate()));
 
     // The image lies in the counterpart of the triangle.
     const Vector3 image = this->Image(from, surfacePoint);
@@ -441,7 +414,7 @@ private:
     const Vector2 y{ imageWorking[0], imageWorking[1] };
     const Corners imageCorners = this->CornersOf(to, surfacePoint.Triangle);
     const double targetSize = this->SizeOf(to, surfacePoint.Triangle);
-    this->Take(INSIDE, DistanceOutside(imageCorners, y) / (InsideLimit * HalfUlp * targetSize), i);
+    this->Take(INSIDE, DistanceOutside(imageCorners, y) / (InsideLimit * HalfUlp * targetSize));
 
     // The determinant is positive, or negative in a mirrored pair, which rounding to millimeters
     // can produce.
@@ -451,23 +424,22 @@ private:
       Orientation(imageCorners[0], imageCorners[1], imageCorners[2]);
     this->Take(DETERMINANT,
       sense * derivative.Determinant > 0.0 &&
-          std::isfinite(derivative.Determinant + derivative.Norm())
+          std::isfinite(derivative.Determinant + derivative.Norm)
         ? 0.0
-        : Infinity,
-      i);
+        : Infinity);
 
-    this->MeasureRoundTrip(i, from, surfacePoint, start, image, derivative);
-    this->MeasureOrientation(i, from, surfacePoint, targetSize);
+    this->MeasureRoundTrip(from, surfacePoint, start, image, derivative);
+    this->MeasureOrientation(from, surfacePoint, targetSize);
   }
 
-  void MeasureRoundTrip(int i, Domain from, const SurfacePoint& surfacePoint, const Vector2& start,
+  void MeasureRoundTrip(Domain from, const SurfacePoint& surfacePoint, const Vector2& start,
     const Vector3& image, const Derivative& derivative)
   {
     const Domain to = Opposite(from);
     const SurfacePoint there = this->Locate(to, image, -1);
     if (there.Triangle < 0)
     {
-      this->Lose(i);
+      this->Lose();
       return;
     }
     const Vector2 back = this->WorkingImage(to, there);
@@ -489,7 +461,7 @@ private:
     };
     const double sourceSize = sizeOf(from) * sourceStretch;
     const double stretchedSize = sizeOf(to) * targetStretch;
-    const double inverseNorm = derivative.InverseNorm();
+    const double inverseNorm = derivative.Norm / std::abs(derivative.Determinant);
     double limit = RoundTripLimit * HalfUlp * (sourceSize + inverseNorm * stretchedSize);
     if (!(error <= limit))
     {
@@ -497,7 +469,7 @@ private:
       // the preimage under that rounding.
       limit += 4.0 * this->LargestShiftNear(to, image, 32.0 * HalfUlp * stretchedSize, back);
     }
-    this->Take(ROUND_TRIP, error / limit, i);
+    this->Take(ROUND_TRIP, error / limit);
   }
 
   /// The greatest distance from a position of the images of points within some distance of a point:
@@ -549,7 +521,7 @@ private:
 
   /// Maps a triangle around the point, so small that the map is almost affine on it and so large
   /// that rounding does not matter, and checks its orientation.
-  void MeasureOrientation(int i, Domain from, const SurfacePoint& surfacePoint, double targetSize)
+  void MeasureOrientation(Domain from, const SurfacePoint& surfacePoint, double targetSize)
   {
     const TriangleShape& shape = this->GeometryOf(from).GetShape(surfacePoint.Triangle);
     const Barycentric l = shape.ToBarycentric(surfacePoint.Point.InPlane);
@@ -631,7 +603,7 @@ private:
       }
       ++this->Result.Oriented;
       this->Take(ORIENTATION,
-        handedness * Orientation(images[0], images[1], images[2]) > 0.0 ? 0.0 : Infinity, i);
+        handedness * Orientation(images[0], images[1], images[2]) > 0.0 ? 0.0 : Infinity);
       return;
     }
   }
@@ -642,7 +614,7 @@ private:
   PlanePair Pair;
   std::shared_ptr<const Homeomorphism> Map;
   Report Result;
-  bool Log = false;
+  const bool Log;
 };
 
 /// The options of the command line with their defaults. Empty names are those of all.
@@ -730,25 +702,6 @@ int Usage()
   return EXIT_FAILURE;
 }
 
-/// Prints the meshes of a case, and the points that are lost or the worst.
-Report Reproduce(const TestedSystem& system, int family, std::int64_t number)
-{
-  std::cout.precision(17);
-  const auto make = [&]() { return Case(system, family, Seed(), number); };
-  const Report report = make().Run();
-  std::set<int> points;
-  for (const WorstCase& worst : report.Worsts)
-  {
-    points.insert(worst.Point);
-  }
-  make().PrintMeshes();
-  for (const int point : points)
-  {
-    make().Run(point);
-  }
-  return report;
-}
-
 } // namespace
 
 int main(int argc, char* argv[])
@@ -787,7 +740,9 @@ int main(int argc, char* argv[])
   if (number >= 0)
   {
     const auto [system, family] = chosen.front();
-    return Print(*system, family, Reproduce(*system, family, number)) ? EXIT_SUCCESS : EXIT_FAILURE;
+    std::cout.precision(17);
+    const Report report = Case(*system, family, Seed(), number, true).Run();
+    return Print(*system, family, report) ? EXIT_SUCCESS : EXIT_FAILURE;
   }
 
   std::cout.precision(3);
