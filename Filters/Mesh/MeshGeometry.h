@@ -174,9 +174,22 @@ public:
   void FromNormalized(
     const double* x, const double* y, const double* z, int count, double (*points)[3]) const
   {
+    if (!this->IsHorizontal())
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        this->FromNormalized({ x[i], y[i], z[i] }, points[i]);
+      }
+      return;
+    }
+    const double distance = this->PlaneDistance;
+    const double inverseScale = this->InverseScale;
+    HOMEOMORPHISM_SIMD
     for (int i = 0; i < count; ++i)
     {
-      this->FromNormalized({ x[i], y[i], z[i] }, points[i]);
+      points[i][0] = x[i] * inverseScale;
+      points[i][1] = y[i] * inverseScale;
+      points[i][2] = (z[i] + distance) * inverseScale;
     }
   }
 
