@@ -70,6 +70,10 @@ def main():
         message, status = f"{error.format_message().rstrip('.')}. See {command} --help.", USAGE
     except click.ClickException as failure:
         message, status = str(failure), failure.exit_code
+    except ImportError as error:
+        name = (error.name or str(error)).partition(".")[0]
+        message, status = (f"{name} is needed: install Debian's package python3-{name.lower()}, or run pip install "
+                           f"{'pillow' if name == 'PIL' else name}."), FILE
     except MemoryError:
         message, status = "There is not enough memory.", FILE
     except OSError as error:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import itertools
 import math
@@ -137,9 +138,9 @@ def rename(text, options) -> str:
     return re.sub("|".join(options), lambda name: options[name[0]], text)
 
 
-def update(algorithm, options=OPTIONS):
-    """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them, and passes
-    its warnings to Python's module warnings, with these names of options."""
+def update(algorithm, options=OPTIONS, warn=functools.partial(warnings.warn, stacklevel=2)):
+    """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them, and calls
+    `warn` with its warnings, with these names of options."""
     own, others, warned = [], [], []
 
     def collect(caller, event, text):
@@ -157,7 +158,7 @@ def update(algorithm, options=OPTIONS):
         # The executive also says that the algorithm failed.
         raise ValueError("\n".join(own or others))
     for text in warned:
-        warnings.warn(text, stacklevel=2)
+        warn(text)
     return algorithm.GetOutputDataObject(0)
 
 
@@ -248,11 +249,9 @@ class Homeomorphism:
     def triangles(self) -> numpy.ndarray:
         return triangles_of(self._meshes[0])
 
-    def __getstate__(self):
-        return (self.source, self.target, self.triangles, self._system), self._options
-
-    def __setstate__(self, state):
-        self.__init__(*state[0], **state[1])
+    def __reduce__(self):
+        make = functools.partial(Homeomorphism, system=self._system, **self._options)
+        return make, (self.source, self.target, self.triangles)
 
     def _run(self, points, inverse: bool):
         """The filter's output, and the dimensions of points and images."""

@@ -3,8 +3,6 @@
 """Input and output files, including standard input and output. Outputs are written completely or not at all."""
 
 import contextlib
-import functools
-import importlib
 import os
 import shutil
 import subprocess
@@ -63,8 +61,8 @@ def quote_message(message, file):
     return quote(str(message).replace(file.path, file.name), 300)
 
 
-def count(number, noun, plural=None):
-    return f"{number} {noun if number == 1 else plural or noun + 's'}"
+def count(number, noun):
+    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def join(items):
@@ -79,16 +77,6 @@ def format_of(name):
 
 def dotted(formats):
     return ", ".join("." + name for name in formats)
-
-
-def import_extra(module, purpose):
-    """Imports an optional library. Raises Failure with the name of its package."""
-    try:
-        return importlib.import_module(module)
-    except ImportError:
-        name = module.partition(".")[0]
-        raise Failure(f"{purpose} needs {name}: install Debian's package python3-{name}, or run pip install {name}.",
-                      FILE) from None
 
 
 @contextlib.contextmanager
@@ -179,7 +167,7 @@ class Output:
             self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
             yield
             # Files beside the output come first, so that it exists only if it is complete.
-            paths = sorted(map(functools.partial(os.path.join, folder), os.listdir(folder)), key=self.path.__eq__)
+            paths = sorted((entry.path for entry in os.scandir(folder)), key=self.path.__eq__)
             for path in paths:
                 # Some libraries do not tell that a disk is full: then there is no room for more.
                 with open(path, "r+b") as file:
@@ -188,8 +176,8 @@ class Output:
                     file.flush()
                     file.truncate(size)
             if self.special:
-                with open(self.path, "rb") as file, contextlib.ExitStack() as stack:
-                    goal = sys.stdout.buffer if self.standard else stack.enter_context(open(self.target, "wb"))
+                goal = contextlib.nullcontext(sys.stdout.buffer) if self.standard else open(self.target, "wb")
+                with open(self.path, "rb") as file, goal as goal:
                     shutil.copyfileobj(file, goal)
                     goal.flush()
                 return

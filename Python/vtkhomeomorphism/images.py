@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import report
 from .arrays import MASK, add_array, arrays_of, points_of, triangles_of
-from .files import FILE, PICTURES, USAGE, Failure, dotted, import_extra, inform, progress, quote
+from .files import FILE, PICTURES, USAGE, Failure, Input, dotted, inform, progress, quote
 from .mapping import PointMap, run, set_up
 from .vtkFiltersHomeomorphism import vtkResampleThroughHomeomorphism
 
@@ -48,8 +48,8 @@ class Grid:
         return (points - self.first) @ numpy.linalg.inv(self.steps).T
 
     def outline(self):
-        """The points of the pixels along the border, all around."""
-        x, y = numpy.arange(self.width), numpy.arange(self.height)
+        """Points of pixels along the border, all around: all of them up to 4000 on a side."""
+        x, y = (numpy.linspace(0, n - 1, min(n, 4000)) for n in self.size)
         sides = (x, 0), (self.width - 1, y), (x[::-1], self.height - 1), (0, y[::-1])
         return self.at(numpy.vstack([numpy.column_stack(numpy.broadcast_arrays(*side)) for side in sides]))
 
@@ -105,17 +105,19 @@ class Raster:
     def window(self, columns, rows):
         return self.pixels[slice(*rows), slice(*columns)]
 
-    def means(self, columns, rows, factor):
-        """Means of squares of `factor` by `factor` pixels, of shape (rows, columns, bands)."""
-        pixels = self.window((0, columns * factor), (0, rows * factor))
-        squares = pixels.reshape(rows, factor, columns, factor, self.bands).mean(axis=(1, 3))
-        return (numpy.rint(squares) if self.dtype.kind in "iu" else squares).astype(self.dtype)
-
     def reduce(self, factor):
-        """The raster of these means. Less than a square at the end repeats the last one."""
-        whole, rest = numpy.divmod(self.grid.size, factor)
-        more = [(0, int(n > 0)) for n in (*rest[::-1], 0)]
-        result = Raster(numpy.pad(self.means(*whole.tolist(), factor), more, "edge"))
+        """The raster of the means of squares of `factor` by `factor` pixels; no data where one of them is none. Less
+        than a square at the end repeats the last one."""
+        (columns, rows), rest = (n.tolist() for n in numpy.divmod(self.grid.size, factor))
+        means = numpy.empty((rows, columns, self.bands), self.dtype)
+        for row in range(rows):
+            pixels = self.window((0, columns * factor), (row * factor, (row + 1) * factor))
+            sums = pixels.sum(axis=0, dtype=float).reshape(columns, factor, self.bands).sum(axis=1)
+            means[row] = round_to(self.dtype, sums / factor**2)
+            if self.nodata is not None:
+                unknown = (pixels == self.nodata).any(axis=0).reshape(columns, factor, self.bands).any(axis=1)
+                means[row, unknown] = self.nodata
+        result = Raster(numpy.pad(means, [(0, int(n > 0)) for n in (*rest[::-1], 0)], "edge"))
         result.nodata, result.has_alpha = self.nodata, self.has_alpha
         width, height = result.grid.size
         result.grid = replace(self.grid, width=width, height=height, steps=factor * self.grid.steps,
@@ -130,7 +132,8 @@ class GdalRaster(Raster):
     """A raster that rasterio reads piece by piece."""
 
     def __init__(self, input):
-        rasterio = import_extra("rasterio", f"Reading {input.name}")
+        import rasterio
+
         logging.getLogger("rasterio").setLevel(logging.CRITICAL)
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         self.file = rasterio.open(input.path)
@@ -150,30 +153,24 @@ class GdalRaster(Raster):
         pixels = self.file.read(window=(rows, columns))
         return numpy.moveaxis(pixels, 0, 2) if self.palette is None else self.palette[pixels[0]]
 
-    def means(self, columns, rows, factor):
-        if self.palette is not None:
-            return super().means(columns, rows, factor)
-        average = import_extra("rasterio", "Reading a raster").enums.Resampling.average
-        window, shape = ((0, rows * factor), (0, columns * factor)), (self.bands, rows, columns)
-        return numpy.moveaxis(self.file.read(window=window, out_shape=shape, resampling=average), 0, 2)
 
-
-def read(input):
+def read(name, standard_format="png"):
     """The image in a file. Raises Failure."""
+    input = Input(name, standard_format)
     if input.format not in PICTURES:
         raise Failure(f"Cannot read {input.name} as an image: the formats are {dotted(PICTURES)}.", USAGE)
-    try:
-        if input.format not in ("tif", "tiff"):
-            return _read_picture(input)
-        raster = GdalRaster(input)
-        # Read the end, to detect truncated files.
-        width, height = raster.grid.size
-        raster.window((width - 1, width), (height - 1, height))
-        return raster
-    except (Failure, MemoryError):
-        raise
-    except Exception as error:
-        input.fail_by(error)
+    with input:
+        try:
+            raster = GdalRaster(input) if input.format in ("tif", "tiff") else _read_picture(input)
+            # Read the end, to detect truncated files.
+            width, height = raster.grid.size
+            raster.window((width - 1, width), (height - 1, height))
+        except (ImportError, MemoryError):
+            raise
+        except Exception as error:
+            input.fail_by(error)
+    raster.name = input.name
+    return raster
 
 
 def _read_picture(input):
@@ -263,10 +260,7 @@ class Warp:
 
     def fit_grid(self, raster, size=None, resolution=0.0, crs=None):
         """A grid over the image of a placed raster, with square pixels of its size unless that changes by 1 %."""
-        grid = raster.grid
-        reduced = numpy.minimum(grid.size, 4000)
-        factors = (numpy.array(grid.size) - 1) / numpy.maximum(reduced - 1, 1)
-        found = self.image_of(replace(grid, width=reduced[0], height=reduced[1], steps=grid.steps * factors), True)
+        found = self.image_of(raster.grid, True)
         if found is None:
             raise Failure("No pixel of the image is within the mesh.")
         low, high = found[0].min(axis=0), found[0].max(axis=0)
@@ -274,7 +268,7 @@ class Warp:
             spacing = (high - low) / numpy.maximum(numpy.array(size) - 1, 1)
         else:
             factor = self.scale if abs(self.scale - 1) >= 0.01 else 1.0
-            spacing = numpy.full(2, resolution or factor * grid.pixel)
+            spacing = numpy.full(2, resolution or factor * raster.grid.pixel)
             numbers = [length / step for length, step in zip((high - low).tolist(), spacing.tolist())]
             if math.prod(numbers) > LARGEST:
                 raise Failure("The result would have {:.6g} x {:.6g} pixels, more than 2^32: use a larger "
@@ -339,6 +333,10 @@ class Warp:
         return pixels, mask
 
 
+def round_to(dtype, values):
+    return (numpy.rint(values) if dtype.kind in "iu" else values).astype(dtype)
+
+
 def brightest(dtype):
     return numpy.iinfo(dtype).max if dtype.kind in "iu" else 1.0
 
@@ -356,8 +354,7 @@ def finish(pixels, mask, has_alpha, background, nodata=None):
     if nodata is None and background is not None:
         fill[:colors] = numpy.multiply(background if colors == 3 else numpy.mean(background), full)
         fill[colors:] = full
-    fill = (numpy.rint(fill) if pixels.dtype.kind in "iu" else fill).astype(pixels.dtype)
-    pixels = pixels if mask.all() else numpy.where(mask[:, :, None], pixels, fill)
+    pixels = pixels if mask.all() else numpy.where(mask[:, :, None], pixels, round_to(pixels.dtype, fill))
     if background is None and nodata is None and not has_alpha and colors <= 3:
         pixels = add_alpha(pixels, mask)
     return pixels
@@ -380,7 +377,8 @@ def write(pixels, output, grid):
 
 def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
     """Writes tiles (column, row, pixels) to a TIFF, a GeoTIFF on a georeferenced grid."""
-    rasterio = import_extra("rasterio", f"Writing {output.name}")
+    import rasterio
+
     warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
     x, y = grid.at(numpy.array([-0.5, -0.5]))
     place = {"crs": grid.crs, "transform": rasterio.Affine(*grid.steps[0], x, *grid.steps[1], y)} if grid.placed else {}

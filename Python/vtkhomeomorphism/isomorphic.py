@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from typing import NamedTuple, Optional, Sequence, Tuple
 
@@ -100,10 +101,8 @@ def _with_frame(source, target, frame, make):
     trusted = numpy.flatnonzero(first.residuals <= first.usual_residual())
     for smooth in (True, False):
         frames = _smooth_frame(source, target, numpy.asarray(frame, float), trusted, smooth)
-        try:
+        with contextlib.suppress(ValueError):
             return within(source, target, frames, make)._replace(residuals=first.residuals)
-        except ValueError:
-            continue
     return first
 
 

@@ -16,6 +16,7 @@ Formats, recognized by their content:
 from __future__ import annotations
 
 import collections
+import contextlib
 import csv
 import functools
 import json
@@ -26,7 +27,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy
 
-from .files import FILE, USAGE, Failure, count, import_extra, inform, join, quote, quote_message
+from .files import FILE, Failure, count, inform, join, quote, quote_message
 from .isomorphic import isomorphic_triangulation, rectangle, within
 from .tables import number_of, records
 
@@ -93,8 +94,8 @@ def _read_table(lines: List[str], path: str, columns: Sequence[str], header: Seq
                 name = columns[values.index(None)]
                 hint = " (write 0.5, not 0,5)" if "," in fields[name] else ""
                 raise LandmarkFileError(f"{where}: {name} is {fields[name][:40]!r}, not a number{hint}")
-            is_used = fields.get("enable", "1").lower() in ("1", "true")
-            result.append((fields.get("id", str(line)), values, None if is_used else "disabled"))
+            reason = None if fields.get("enable", "1").lower() in ("1", "true") else "disabled"
+            result.append((fields.get("id", str(line)), values, reason))
     except csv.Error as error:
         raise LandmarkFileError(f"{path}: {error}") from None
     return result
@@ -110,17 +111,16 @@ def _read_qgis(lines: List[str], path: str) -> Landmarks:
     return _collect(rows, path, image_coordinates=True, crs=crs[0] if crs and crs[0] else None)
 
 
-def _annotations(document) -> list:
-    document = document if isinstance(document, dict) else {}
-    if document.get("type") == "AnnotationPage":
-        return [a for item in document.get("items", []) for a in _annotations(item)]
-    body = document.get("body")
-    return [body] if isinstance(body, dict) and body.get("type") == "FeatureCollection" else []
-
-
 def _read_iiif(text: str, path: str) -> Landmarks:
+    def find(document):
+        document = document if isinstance(document, dict) else {}
+        if document.get("type") == "AnnotationPage":
+            return [found for item in document.get("items", []) for found in find(item)]
+        body = document.get("body")
+        return [body] if isinstance(body, dict) and body.get("type") == "FeatureCollection" else []
+
     try:
-        maps = _annotations(json.loads(text))
+        maps = find(json.loads(text))
     except (ValueError, RecursionError) as error:
         raise LandmarkFileError(f"{path}: not valid JSON ({str(error)[:80]})") from None
     if len(maps) != 1:
@@ -156,7 +156,6 @@ def _read_csv(lines: List[str], path: str) -> Landmarks:
 def read_landmarks(path) -> Landmarks:
     """Reads a file of landmark pairs. Raises LandmarkFileError if the file is not one of the formats above or has fewer
     than three usable landmarks, and OSError if it cannot be read."""
-    path = os.fspath(path)
     try:
         with open(path, encoding="utf-8-sig") as file:
             text = file.read()
@@ -167,8 +166,8 @@ def read_landmarks(path) -> Landmarks:
         raise LandmarkFileError(f"{path}: no landmarks")
     if content.lstrip().startswith(("{", "[")):
         return _read_iiif(text, path)
-    lines = text.splitlines(keepends=True)
-    return (_read_qgis if "mapX" in content and "mapY" in content else _read_csv)(lines, path)
+    reader = _read_qgis if "mapX" in content and "mapY" in content else _read_csv
+    return reader(text.splitlines(keepends=True), path)
 
 
 def read_lines(path, names: Sequence[str]) -> List[List[int]]:
@@ -183,7 +182,7 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
             unknown = [i for i in ids if i not in index]
             if unknown or len(ids) < 2:
                 what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs two landmarks"
-                raise LandmarkFileError(f"{os.fspath(path)}, line {number}: {what}")
+                raise LandmarkFileError(f"{path}, line {number}: {what}")
             lines.append([index[i] for i in ids])
     return lines
 
@@ -191,7 +190,6 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
 def is_landmark_file(path) -> bool:
     """Whether a file name and content are those of landmarks: `.points`, `.csv` with at least four columns, or JSON
     with a georeference annotation."""
-    path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in (".csv", ".json", ".geojson") or not os.path.isfile(path):
         return suffix == ".points"
@@ -216,7 +214,8 @@ def read(file, options) -> Landmarks:
         names = join([f"{name} ({reason})" for name, reason in marks.left_out])
         inform(f"{file.name}: {count(len(marks.left_out), 'landmark')} left out: {names}.")
     if options.crs and marks.crs and options.crs != marks.crs:
-        rasterio = import_extra("rasterio.warp", f"Taking landmarks from {marks.crs} to {options.crs}")
+        import rasterio.warp
+
         try:
             known = rasterio.CRS.from_user_input(marks.crs)
         except ValueError:
@@ -224,10 +223,10 @@ def read(file, options) -> Landmarks:
                    f"{options.crs} (--crs) is used instead.")
             return replace(marks, crs=options.crs)
         try:
-            target = numpy.column_stack(rasterio.transform(known, options.crs, *marks.target.T))
+            target = rasterio.warp.transform(known, options.crs, *marks.target.T)
         except Exception as error:
             raise Failure(f"Cannot take the landmarks from {marks.crs} to {options.crs}: {error}", FILE) from None
-        marks = replace(marks, target=target)
+        marks = replace(marks, target=numpy.column_stack(target))
     return replace(marks, crs=options.crs or marks.crs)
 
 
@@ -252,11 +251,9 @@ def _between_images(points, grids, more):
     close = (gaps[0] < 0.1 * spacings[0]) | (gaps[1] < 0.1 * spacings[1])
     wider = [(low - 0.5 * s, high + 0.5 * s) for s, (low, high) in zip(spacings, frames)]
     if not close[(gaps[0] != 0) | (gaps[1] != 0)].any():
-        try:
+        # Landmarks can be on different borders.
+        with contextlib.suppress(ValueError):
             return isomorphic_triangulation(*snapped, frame=[numpy.column_stack(f).ravel() for f in frames], **more)
-        except ValueError:
-            # On different borders.
-            pass
     make = functools.partial(isomorphic_triangulation, **more)
     residuals = make(*points, frame=[numpy.column_stack(f).ravel() for f in wider]).residuals
     rims = [rectangle(*frame, 1 + int(0.5 * len(points[0]) ** 0.5)) for frame in wider]

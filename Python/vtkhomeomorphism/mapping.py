@@ -3,7 +3,6 @@
 """Use of the filters by the commands: settings, errors, and the additions of PROJ's triangulation files to the map
 (heights, points outside, the distance from the piecewise linear map on the ground)."""
 
-import warnings
 from dataclasses import replace
 
 import numpy
@@ -39,13 +38,12 @@ def set_up(algorithm, settings, pair=None):
 def run(algorithm, name):
     """Updates a filter. Raises Failure with its errors, and passes its warnings on."""
     take_messages()
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            result = update(algorithm, report.OPTIONS)
-        except ValueError as error:
-            raise Failure(f"{name}: {error}") from None
-    for text in filter(None, (*(str(warning.message) for warning in caught), take_messages())):
+    warned = []
+    try:
+        result = update(algorithm, report.OPTIONS, warned.append)
+    except ValueError as error:
+        raise Failure(f"{name}: {error}") from None
+    for text in filter(None, (*warned, take_messages())):
         inform(f"{name}: {text}")
     return result
 
@@ -66,7 +64,7 @@ class PointMap:
 
     def __init__(self, pair, settings, inverse=False):
         self.pair, self.settings, self.inverse, self.outside = pair, settings, inverse, 0
-        self.domain, self.name = pair.meshes[inverse], pair.names[inverse]
+        self.domain, self.name, self.shift = pair.meshes[inverse], pair.names[inverse], pair.shift
         self.filter = set_up(vtkDifferentiableHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
         self.filter.SetOutputPointsPrecision(self.filter.DOUBLE_PRECISION)
@@ -78,7 +76,7 @@ class PointMap:
         kept = find_inactive_vectors(data)
         if kept and self.filter.GetTransformActiveAttributes() and not self.filter.GetTransformAllInputVectors():
             inform(f"Arrays that are not active remain as they are: {', '.join(kept)} (--vectors all transforms them).")
-        shift = self.pair.shift if isinstance(data, vtkPointSet) else None
+        shift = self.shift if isinstance(data, vtkPointSet) else None
         requested = self.filter.GetComputeTriangleId()
         if shift:
             points = points_of(data)
@@ -104,9 +102,9 @@ class PointMap:
     def _complete(self, result, points):
         """Adds what a triangulation file has besides, and informs of the largest distance from Linear, its official
         meaning, in meters if the coordinate reference system is known."""
-        shift, images = self.pair.shift, points_of(result).copy()
+        images = points_of(result).copy()
         cells = arrays_of(result.GetPointData())["TriangleId"].astype(numpy.int64)
-        fallback = shift.complete(points, images, cells, self.inverse)
+        fallback = self.shift.complete(points, images, cells, self.inverse)
         result.SetPoints(as_points(images)[0])
         if fallback is not None:
             add_array(result, "Fallback", fallback)

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 
 from . import vtkfiles
 from .arrays import MASK, arrays_of, make_mesh, points_of
-from .files import USAGE, Failure, dotted, import_extra, inform, quote
+from .files import USAGE, Failure, dotted, inform, quote
 
 MESHIO = ("off", "ply", "msh", "inp", "nas", "bdf", "xdmf", "med")
 READ = ("vtp", "vtk", "vtu", "obj", "stl") + MESHIO
@@ -51,9 +51,11 @@ def _read_obj(input):
 
 
 @contextlib.contextmanager
-def _quiet_meshio(purpose):
+def _quiet_meshio():
     """meshio, whose messages are kept from the terminal."""
-    meshio, said = import_extra("meshio", purpose), io.StringIO()
+    import meshio
+
+    said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:
             yield meshio
@@ -64,7 +66,7 @@ def _quiet_meshio(purpose):
 def _read_meshio(input):
     """Points and polygons."""
     try:
-        with _quiet_meshio(f"Reading {input.name}") as meshio, open(input.path, "rb") as file:
+        with _quiet_meshio() as meshio, open(input.path, "rb") as file:
             if input.format != "ply":
                 mesh = meshio.read(input.path)
             else:
@@ -76,7 +78,7 @@ def _read_meshio(input):
                     raise ValueError("points or faces are missing")
             if mesh.points.shape[1:] != (3,) and (input.format == "ply" or mesh.points.shape[1:] != (2,)):
                 raise ValueError("its points do not have the coordinates x, y and z one after the other")
-    except Failure:
+    except ImportError:
         raise
     except Exception as error:
         input.fail_by(error)
@@ -131,5 +133,5 @@ def write(mesh, output):
     blocks = [({3: "triangle", 4: "quad"}.get(size, "polygon"), numpy.array(list(group))) for size, group in groups]
     if output.format == "off" and any(kind != "triangle" for kind, _ in blocks):
         raise Failure("A .off file holds triangles only: write a .obj.")
-    with _quiet_meshio(f"Writing {output.name}") as meshio:
+    with _quiet_meshio() as meshio:
         meshio.write_points_cells(output.path, points_of(mesh), blocks)

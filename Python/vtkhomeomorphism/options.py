@@ -11,7 +11,7 @@ import click
 
 from . import pair
 from .arrays import BENDINGS, SYSTEMS
-from .files import PICTURES, USAGE, VECTORS, Failure, Input, Output, format_of, set_quiet
+from .files import PICTURES, USAGE, VECTORS, Failure, Output, format_of, set_quiet
 from .images import LARGEST, read
 from .landmarks import is_landmark_file
 
@@ -27,17 +27,15 @@ class Number(click.FloatRange):
 
 
 class Size(click.ParamType):
-    """A size in pixels, or None."""
+    """A size in pixels."""
 
     name = "size"
 
     def convert(self, value, param, context):
-        if not re.fullmatch(r"[1-9]\d{0,4}x[1-9]\d{0,4}", value):
-            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, each from 1 to 99999, such as 640x480", param, context)
-        width, height = map(int, value.split("x"))
-        if width * height > LARGEST:
-            self.fail(f"{value} are more than 2^32 pixels", param, context)
-        return width, height
+        size = re.fullmatch(r"([1-9]\d{0,4})x([1-9]\d{0,4})", value)
+        if not size or int(size[1]) * int(size[2]) > LARGEST:
+            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, such as 640x480, 2^32 at most", param, context)
+        return int(size[1]), int(size[2])
 
 
 POSITIVE = Number(min=0, min_open=True)
@@ -99,12 +97,9 @@ def pair_files(names):
         if files.count("-") > 1:
             raise Failure("Only one of the files can come from standard input.", USAGE)
         end = len(files) - others
-        inputs = SimpleNamespace(pair=files[:end], other="".join(files[end:]), names=names, crs=None,
-                                 grids=[None, None], format=given.pop("input_format"), **given)
-        for side, name in enumerate(scan[:2]):
-            with Input(name) as file:
-                inputs.grids[side] = read(file).grid
-        return inputs
+        grids = ([read(name).grid for name in scan] + [None, None])[:2]
+        return SimpleNamespace(pair=files[:end], other="".join(files[end:]), names=names, crs=None, grids=grids,
+                               format=given.pop("input_format"), **given)
 
     return replacing(
         "inputs", read_inputs,
@@ -133,9 +128,8 @@ def read_pair(inputs):
 
 
 def map_settings(default):
-    """Options of the map; the command takes `settings`, those of arrays.configure."""
-    return replacing(
-        "settings", dict,
+    """Options of the map, those of arrays.configure."""
+    return add(
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
                      help="Coordinate system: linear (piecewise), contour (as published), smooth (differentiable "
                           f"except at vertices) or cubic (at vertices too; planar meshes). Default: {default}."),

@@ -49,9 +49,9 @@ class Pair:
             if numpy.ptp(points_of(mesh)[:, 2]) != 0:
                 raise Failure(f"{name} is not in a plane parallel to x and y.")
 
-    def fit(self, grids, rasters, names):
+    def fit(self, grids, rasters):
         """Scales xmorph meshes to the pixel grids of source and target, and hangs rasters that landmarks were set on.
-        Rasters and their names are by the side of their domain. Raises Failure if they are beside their meshes."""
+        Rasters are by the side of their domain. Raises Failure if they are beside their meshes."""
         for side, (grid, end) in enumerate(zip(grids, self.extents or ())):
             if end is None or not (numpy.asarray(end) > 0).all():
                 raise Failure(f"{self.names[side]} does not fill its picture, and does not say how large that is: give "
@@ -61,7 +61,7 @@ class Pair:
             self.meshes[side] = make_mesh(points, self.meshes[side].GetPolys())
         for side, raster in rasters.items():
             raster.grid = raster.grid.hanging() if self.landmarks else raster.grid
-            images.require_overlap(raster.grid, names[side], self.meshes[side], self.name_of(side))
+            images.require_overlap(raster.grid, raster.name, self.meshes[side], self.name_of(side))
 
 
 def read(files, options):
@@ -83,7 +83,7 @@ def _read_one(name, options):
         if landmarks.is_landmark_file(file.path):
             return from_landmarks(landmarks.read(file, options), file.name, options)[0]
         if file.format == "json":
-            shift = _read_by(tinshift.read, file)
+            shift = tinshift.read(file)
             both = [make_mesh(points, shift.triangles) for points in (shift.source, shift.target)]
             return Pair(both, names, shift=shift, metadata=shift.metadata)
         source = meshes.read(file)
@@ -111,22 +111,18 @@ def read_mesh(name, format=""):
     with Input(name, format or "json") as file:
         if file.format != "json":
             return meshes.read(file)
-        shift = _read_by(tinshift.read, file)
+        shift = tinshift.read(file)
         return make_mesh(shift.source, shift.triangles)
-
-
-def _read_by(reader, file):
-    try:
-        return reader(file.path)
-    except ValueError as error:
-        file.fail(str(error))
 
 
 def _read_xmorph(files, options):
     grids, extents = [], []
     for name in files:
         with Input(name, options.format) as file:
-            grid = _read_by(xmorph.read, file)
+            try:
+                grid = xmorph.read(file.path)
+            except ValueError as error:
+                file.fail(str(error))
         end = xmorph.extent(grid) if xmorph.fills_picture(grid) else None
         if options.working_size:
             # Tenths of pixels.

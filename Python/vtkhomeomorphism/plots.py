@@ -8,7 +8,6 @@ import numpy
 
 from . import meshes
 from .arrays import points_of
-from .files import import_extra
 
 FORMATS = ("png", "svg", "pdf")
 DPI = 100
@@ -18,7 +17,6 @@ INVALID, DISCORDANT, DUPLICATE, EDGE = "#d91a1a", "#fabf4d", "#990099", "#33496f
 def new_figure(width, titles, points, rows=1):
     """A figure, and axes of shape (rows, titles) of about a width in pixels each: the first row for points, of shape
     (n, 2), further rows square."""
-    import_extra("matplotlib", "Drawing")
     import matplotlib.figure
 
     matplotlib.rcParams.update({"svg.fonttype": "none", "pdf.fonttype": 42})
@@ -74,7 +72,7 @@ def draw_pair(pair, invalid, discordant):
 def save(figure, output):
     with output.writing():
         metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(output.format)
-        # Matplotlib prints tracebacks on full disks.
+        # Matplotlib fails in many ways on full disks.
         buffer = io.BytesIO()
         figure.savefig(buffer, format=output.format, dpi=DPI, metadata=metadata, bbox_inches="tight")
         output.write_bytes(buffer.getbuffer())

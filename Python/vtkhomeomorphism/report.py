@@ -67,16 +67,16 @@ class Report:
         """The filter's statistics for JSON: a dict, with one each of the source, the target and the systems in it.
         Values that occur in a cell are dicts with value and cell; what was not measured is left out."""
         table, groups = self.filter.GetStatistics(), ("source", "target", *SYSTEMS)
+        columns = {table.GetColumnName(k): table.GetColumn(k) for k in range(table.GetNumberOfColumns())}
         result = {name: {} for name in groups}
         kinds = {"vtkIntArray": bool, "vtkIdTypeArray": int}
-        for column in map(table.GetColumn, range(table.GetNumberOfColumns())):
-            name, kind = column.GetName(), kinds.get(column.GetClassName(), float)
-            cell, value = table.GetColumnByName(name + "Cell"), column.GetTuple1(0)
-            if not numpy.isfinite(value) or (kind, value) == (int, -1):
-                continue
-            if name.endswith("Cell") and table.GetColumnByName(name[:-4]):
+        for name, column in columns.items():
+            kind, value = kinds.get(column.GetClassName(), float), column.GetTuple1(0)
+            is_cell_of_another = name.endswith("Cell") and name[:-4] in columns
+            if is_cell_of_another or not numpy.isfinite(value) or (kind, value) == (int, -1):
                 continue
             group = next((g for g in groups if name.lower().startswith(g) and name.lower() != g), "")
+            cell = columns.get(name + "Cell")
             value = {"value": kind(value), "cell": int(cell.GetTuple1(0))} if cell else kind(value)
             (result[group] if group else result)[in_words(name[len(group) :])] = value
         return {name: value for name, value in result.items()

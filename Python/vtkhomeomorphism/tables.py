@@ -86,12 +86,11 @@ class Table:
         self.coordinates = numpy.column_stack([self._numbers(column) for column in self.columns])
 
     def _find(self, name):
-        """The column with a name. Names may differ in case only."""
-        simple = [field.strip().lower() for field in self.first]
-        for fields, wanted in ((self.first, name), (simple, name.strip().lower())):
-            if wanted in fields:
-                return fields.index(wanted)
-        return None
+        """The column with a name, or else with the same in another case, or None."""
+        if name in self.first:
+            return self.first.index(name)
+        simple, name = [field.strip().lower() for field in self.first], name.strip().lower()
+        return simple.index(name) if name in simple else None
 
     def _choose(self, with_height):
         for names in USUAL_NAMES:

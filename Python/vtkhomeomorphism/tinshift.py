@@ -4,15 +4,12 @@
 https://proj.org/en/stable/specifications/triangulation.html"""
 
 import json
-import re
 from dataclasses import dataclass, field
 from typing import Optional
 
 import numpy
 
 from .files import quote
-
-DEEPEST = 100  # the depth to which arrays and objects may be nested
 
 STRATEGIES = ("none", "nearest_side", "nearest_centroid")
 CORNERS = ["idx_vertex1", "idx_vertex2", "idx_vertex3"]
@@ -92,43 +89,35 @@ class Shift:
         return fallback
 
 
-def _expect(condition, message):
-    if not condition:
-        raise ValueError(message)
-
-
-def _take_columns(document, member, names):
+def _take_columns(file, document, member, names):
     """Columns of an array of rows, as a float array of shape (rows, names)."""
     rows, columns = (document.pop(name, None) for name in (member, member + "_columns"))
-    _expect(isinstance(rows, list) and isinstance(columns, list),
-            f'there are no arrays "{member}" and "{member}_columns": this is not a triangulation file.')
-    for name in names:
-        _expect(name in columns, f'"{member}_columns" has no column "{name}".')
+    if not (isinstance(rows, list) and isinstance(columns, list)):
+        file.fail(f'there are no arrays "{member}" and "{member}_columns": this is not a triangulation file.')
+    missing = [name for name in names if name not in columns]
+    if missing:
+        file.fail(f'"{member}_columns" has no column "{missing[0]}".')
     chosen = [columns.index(name) for name in names]
-    for i, row in enumerate(rows):
-        if not (isinstance(row, list) and len(row) == len(columns) and {type(row[k]) for k in chosen} <= {int, float}):
-            raise ValueError(f"{member}[{i}]: expected {len(columns)} values with numbers as {', '.join(names)}, "
-                             f"found {quote(row)}.")
     try:
+        for i, row in enumerate(rows):
+            if len(row) != len(columns) or not {type(row[k]) for k in chosen} <= {int, float}:
+                raise TypeError
         return numpy.array([[row[k] for k in chosen] for row in rows], float).reshape(-1, len(names))
-    except OverflowError:
-        raise ValueError(f'"{member}": a number is too large.') from None
+    except (TypeError, KeyError, OverflowError):
+        file.fail(f"{member}[{i}]: expected {len(columns)} values, numbers as {', '.join(names)}; found {quote(row)}.")
 
 
-def read(path):
-    """Reads a file of format 1.x. Raises ValueError, naming the line or the member."""
-    with open(path, encoding="utf-8-sig", errors="replace") as file:
-        text = file.read()
-    # Brackets outside of strings. What Python's parser accepts depends on its version.
-    signs = numpy.frombuffer(re.sub(r'"(?:[^"\\]|\\.)*"', "", text).encode(), numpy.uint8)
-    steps = numpy.isin(signs, list(b"[{")).astype(int) - numpy.isin(signs, list(b"]}"))
-    _expect(numpy.cumsum(steps).max(initial=0) <= DEEPEST, "its arrays are nested too deep for a triangulation file.")
+def read(file):
+    """The shift in an input of format 1.x. Raises Failure, naming the line or the member."""
     try:
-        document = json.loads(text)
+        with open(file.path, encoding="utf-8-sig", errors="replace") as text:
+            document = json.load(text)
     except json.JSONDecodeError as error:
-        raise ValueError(f"line {error.lineno}, column {error.colno}: {error.msg}.") from None
+        file.fail(f"line {error.lineno}, column {error.colno}: {error.msg}.")
+    except RecursionError:
+        file.fail("its arrays are nested too deep.")
     except ValueError as error:
-        raise ValueError(f"{quote(error)}.") from None
+        file.fail(f"{quote(error)}.")
     document = document if isinstance(document, dict) else {}
     fallback = document.get("fallback_strategy", "none")
     components = document.get("transformed_components")
@@ -139,21 +128,22 @@ def read(path):
                                                   ["vertical", "horizontal"]), '"horizontal", "vertical" or both'),
         ("fallback_strategy", fallback in STRATEGIES, f"one of {', '.join(STRATEGIES)}"),
     ):
-        found = quote(json.dumps(document.get(member)))
-        _expect(is_right, f'this is not a triangulation file: expected {expected} as "{member}", found {found}.')
+        if not is_right:
+            file.fail(f'this is not a triangulation file: expected {expected} as "{member}", found '
+                      f"{quote(json.dumps(document.get(member)))}.")
     horizontal, vertical = (name in components for name in ("horizontal", "vertical"))
     names = ["source_x", "source_y"] + ["target_x", "target_y"] * horizontal
     if vertical:
         has_offset = '"offset_z"' in json.dumps(document.get("vertices_columns"))
         names += ["offset_z"] if has_offset else ["source_z", "target_z"]
-    rows = document.get("triangles")
-    values = _take_columns(document, "vertices", names)
-    triangles = _take_columns(document, "triangles", CORNERS)
+    values = _take_columns(file, document, "vertices", names)
+    triangles = _take_columns(file, document, "triangles", CORNERS)
+    if not len(triangles):
+        file.fail("it has no triangles.")
     wrong = ((triangles != numpy.floor(triangles)) | (triangles < 0) | (triangles >= len(values))).any(axis=1)
-    _expect(len(triangles), "it has no triangles.")
-    first = wrong.argmax()
-    _expect(not wrong.any(), f"triangles[{first}]: expected vertex numbers from 0 to {len(values) - 1}, "
-            f"found {quote(rows[first])}.")
+    if wrong.any():
+        file.fail(f"triangles[{wrong.argmax()}]: expected vertex numbers from 0 to {len(values) - 1}, found "
+                  f"{triangles[wrong.argmax()].tolist()}.")
     end = 4 if horizontal else 2
     return Shift(values[:, :2], values[:, end - 2 : end], triangles.astype(numpy.int64),
                  dict(zip(names[end:], values[:, end:].T)), horizontal, fallback, document)

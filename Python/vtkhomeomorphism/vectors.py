@@ -4,12 +4,11 @@
 attributes and layers are kept."""
 
 import contextlib
-import importlib
 import io
 
 import numpy
 
-from .files import FILE, USAGE, Failure, import_extra, inform, quote, quote_message
+from .files import FILE, USAGE, Failure, inform, quote, quote_message
 
 DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "shp": "ESRI Shapefile", "fgb": "FlatGeobuf"}
 MARK = "outside"  # the column of features that are not within the domain; their geometries are empty
@@ -17,13 +16,16 @@ MARK = "outside"  # the column of features that are not within the domain; their
 
 def read(input):
     """The layers of a file by name, GeoDataFrames."""
-    geopandas = import_extra("geopandas", f"Reading {input.name}")
+    import geopandas
+
     try:
         if hasattr(geopandas, "list_layers"):
             names = geopandas.list_layers(input.path)["name"]
         else:
             # Before geopandas 1.0.
-            names = importlib.import_module("fiona").listlayers(input.path)
+            import fiona
+
+            names = fiona.listlayers(input.path)
         return {name: geopandas.read_file(input.path, layer=name) for name in names}
     except Exception as error:
         input.fail_by(error)
@@ -58,7 +60,10 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
     none. Returns the layers, and the number of features that are not entirely inside the domain."""
     from shapely.ops import transform
 
-    collected, begin = [], 0
+    collected, lost = [], []
+
+    def change(function, shape):
+        return shape if shape is None or shape.is_empty else transform(function, shape)
 
     def collect(*coordinates):
         points = numpy.column_stack(coordinates)
@@ -66,22 +71,20 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
         collected.append(numpy.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
         return tuple(points.T)
 
-    def replace(*coordinates):
-        nonlocal begin
-        begin, end = begin + len(coordinates[0]), begin
-        return tuple(images[end:begin, : len(coordinates)].T)
+    def place(*coordinates):
+        part = next(parts)
+        lost.append(numpy.isnan(part[:, :2]).any())
+        return tuple((numpy.zeros_like(part) if lost[-1] else part).T[: len(coordinates)])
 
     def map_shape(shape):
         """The mapped shape, and whether a part of it is outside; it is empty then."""
-        first, mapped = begin, shape if shape is None or shape.is_empty else transform(replace, shape)
-        is_lost = bool(lost[first:begin].any())
-        return (type(shape)() if is_lost else mapped), is_lost
+        lost.clear()
+        mapped = change(place, shape)
+        return (type(shape)() if any(lost) else mapped), any(lost)
 
-    divided = {name: [s if s is None or s.is_empty else transform(collect, s) for s in layer.geometry]
-               for name, layer in layers.items()}
+    divided = {name: [change(collect, shape) for shape in layer.geometry] for name, layer in layers.items()}
     images = map_points(numpy.vstack([numpy.empty((0, 3)), *collected]))
-    lost = numpy.isnan(images[:, :2]).any(axis=1)
-    images[lost] = 0.0
+    parts = iter(numpy.split(images, numpy.cumsum([len(points) for points in collected])))
     result, outside = {}, 0
     for name, layer in layers.items():
         if source_crs and layer.crs and layer.crs != source_crs:

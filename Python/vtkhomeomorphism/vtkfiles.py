@@ -16,7 +16,7 @@ import vtkmodules.vtkIOXML as xml
 from vtkmodules.numpy_interface.dataset_adapter import CompositeDataSet
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 from .files import FILE, USAGE, Failure, quote
@@ -46,10 +46,8 @@ def _read(path, format):
         reader = legacy.vtkGenericDataObjectReader()
         for kind in ("Scalars", "Vectors", "Normals", "Tensors", "ColorScalars", "TCoords", "Fields"):
             getattr(reader, f"ReadAll{kind}On")()
-    elif format == "stl":
-        reader = vtkSTLReader()
     else:
-        reader = xml.vtkXMLGenericDataObjectReader()
+        reader = vtkSTLReader() if format == "stl" else xml.vtkXMLGenericDataObjectReader()
     reader.SetFileName(path)
     reader.Update()
     data = reader.GetOutputDataObject(0)
@@ -66,11 +64,10 @@ def leaves_of(data):
 
 def _find_bad_cell(data):
     """A defect of the point ids of cells, which VTK's readers do not check. They would be read out of bounds."""
-    kinds = {vtkPolyData: ("Verts", "Lines", "Polys", "Strips"), vtkUnstructuredGrid: ("Cells",)}
     for leaf in leaves_of(data):
-        first, last = 0, leaf.GetNumberOfPoints() - 1
-        for name in kinds.get(type(leaf), ()):
-            cells = getattr(leaf, "Get" + name)()
+        last = leaf.GetNumberOfPoints() - 1
+        for name in ("Verts", "Lines", "Polys", "Strips", "Cells"):
+            cells = getattr(leaf, "Get" + name, lambda: None)()
             if cells is None or cells.GetNumberOfCells() == 0:
                 continue
             if not cells.IsValid():
@@ -78,11 +75,10 @@ def _find_bad_cell(data):
             ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
             sizes, bad = numpy.diff(offsets), numpy.flatnonzero((ids < 0) | (ids > last))
             if len(bad):
-                cell = first + int(numpy.searchsorted(offsets, bad[0], "right")) - 1
-                return f"cell {cell} has the point {ids[bad[0]]}, but points go from 0 to {last}."
+                cell = numpy.searchsorted(offsets, bad[0], "right") - 1
+                return f"cell {cell} of its {name.lower()} has the point {ids[bad[0]]}, but points go from 0 to {last}."
             if name in ("Polys", "Strips") and sizes.min() < 3:
-                return f"cell {first + sizes.argmin()} is a polygon of {sizes.min()} points."
-            first += len(sizes)
+                return f"cell {sizes.argmin()} of its {name.lower()} has {sizes.min()} points."
     return ""
 
 
@@ -92,10 +88,9 @@ def read(input):
     command = [sys.executable, "-m", __spec__.name, input.path, input.format, str(limit)]
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
     child = subprocess.run(command, env=environment, capture_output=True)
-    if child.returncode == -signal.SIGXCPU:
-        input.fail(f"reading takes longer than {limit} seconds: the file is damaged.")
     if child.returncode not in (0, 1):
-        input.fail("VTK's reader crashes: the file is damaged or has been cut off.")
+        what = f"takes longer than {limit} seconds" if child.returncode == -signal.SIGXCPU else "crashes"
+        input.fail(f"VTK's reader {what}: the file is damaged or has been cut off.")
     if child.returncode == 1:
         input.fail_by(child.stdout.decode("utf-8", "replace"))
     return _read(input.path, input.format)[0]
@@ -113,13 +108,13 @@ def write(data, output):
         writer = legacy.vtkGenericDataObjectWriter()
         writer.SetFileTypeToBinary()
     else:
-        names = [attributes.GetAbstractArray(i).GetName() or "" for leaf in leaves_of(data)
+        names = {attributes.GetArrayName(i) or "" for leaf in leaves_of(data)
                  for attributes in (leaf.GetPointData(), leaf.GetCellData(), leaf.GetFieldData())
-                 for i in range(attributes.GetNumberOfArrays())]
-        for name in names:
-            if set(name) & set("&<>\"'"):
-                raise Failure(f"The name of the array {quote(name)} has a character that VTK's XML files cannot hold "
-                              "(& < > \" '): rename it, or write a .vtk.")
+                 for i in range(attributes.GetNumberOfArrays())}
+        wrong = [name for name in names if set(name) & set("&<>\"'")]
+        if wrong:
+            raise Failure(f"The name of the array {quote(wrong[0])} has a character that VTK's XML files cannot hold "
+                          "(& < > \" '): rename it, or write a .vtk.")
         # VTK before 9.4 cannot read appended data with every version of expat.
         writer.SetDataModeToBinary()
     writer.WriteToOutputStringOn()

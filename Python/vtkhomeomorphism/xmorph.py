@@ -10,20 +10,19 @@ import numpy
 
 def read(path):
     """The grid's points, of shape (rows, columns, 2). Raises ValueError, naming the line."""
-    with open(path, encoding="utf-8", errors="replace") as file:
-        header = re.fullmatch(r"M2\s*\n\s*([1-9]\d{0,3})\s+([1-9]\d{0,3})\b.*\n?", file.readline() + file.readline())
+    with open(path, encoding="utf-8", errors="replace") as text:
+        header = re.fullmatch(r"M2\s*\n\s*([1-9]\d{0,3})\s+([1-9]\d{0,3})\b.*\n?", text.readline() + text.readline())
         if not header or "1" in header.groups():
             raise ValueError("expected M2 in line 1, and in line 2 the numbers of columns and rows, 2 to 9999.")
         columns, rows = map(int, header.groups())
-        points = []
-        for number, line in zip(range(3, 3 + columns * rows), file):
-            try:
-                x, y = map(float, line.split()[:2])
-            except ValueError:
-                raise ValueError(f"line {number}: expected x and y of point {number - 3}.") from None
+        lines = text.readlines()[: columns * rows]
+    points = []
+    try:
+        for line in lines + [""] * (columns * rows - len(lines)):
+            x, y = map(float, line.split()[:2])
             points.append((x, y))
-    if len(points) < columns * rows:
-        raise ValueError(f"line {3 + len(points)}: expected {columns * rows} points, found the end.")
+    except ValueError:
+        raise ValueError(f"line {3 + len(points)}: expected x and y of {columns * rows} points.") from None
     return numpy.array(points).reshape(rows, columns, 2)
 
 

@@ -148,7 +148,7 @@ def test_missing_libraries_are_named(dhm, shift, parcels):
     blocked = dhm.path("blocked")
     for name in ("geopandas", "rasterio"):
         (blocked / name).mkdir(parents=True)
-        (blocked / name / "__init__.py").write_text(f'raise ImportError("no {name}")')
+        (blocked / name / "__init__.py").write_text(f'raise ModuleNotFoundError("", name="{name}")')
     dhm.environment["PYTHONPATH"] = f"{blocked}:{dhm.environment.get('PYTHONPATH', '')}"
     parcels.to_file(dhm.path("in.gpkg"), driver="GPKG")
     dhm.refuse(FILE, "map", "shift.json", "in.gpkg", "-o", "new.gpkg", says=("geopandas", "python3-geopandas", "pip"))

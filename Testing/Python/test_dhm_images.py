@@ -379,9 +379,11 @@ def test_geotiff_alpha_nodata_and_palette(dhm, shift):
     heights = numpy.full((60, 80, 1), 100, "i2")
     heights[20:25, 30:40] = -9999
     write_geotiff(dhm.path("nodata.tif"), heights, 3384100, 6673300, 10, nodata=-9999)
-    dhm("warp", "shift.json", "nodata.tif", "-o", "nodata-out.tif")
-    with rasterio.open(dhm.path("nodata-out.tif")) as file:
-        assert file.nodata == -9999 and set(numpy.unique(file.read(1))) == {-9999, 100}
+    # Means of several pixels are known if all of them are.
+    for options in ((), ("--resolution", "30")):
+        dhm("warp", "shift.json", "nodata.tif", "-o", "nodata-out.tif", "--force", *options)
+        with rasterio.open(dhm.path("nodata-out.tif")) as file:
+            assert file.nodata == -9999 and set(numpy.unique(file.read(1))) == {-9999, 100}
     index = (numpy.arange(4800).reshape(60, 80, 1) % 2).astype("u1")
     write_geotiff(dhm.path("palette.tif"), index, 3384100, 6673300, 10, photometric="palette")
     with rasterio.open(dhm.path("palette.tif"), "r+") as file:

@@ -13,19 +13,6 @@ from ..files import Failure, Output, count, inform
 from ..report import Report
 
 
-def describe(report, pair):
-    """The report as a dict, for JSON."""
-    found = report.statistics()
-    found["valid"], found["problems"] = report.valid, report.problems()
-    found["invalid_triangles"] = report.cells_where(0, "Invalid")
-    for side, name in enumerate(("source", "target")):
-        found[name]["file"] = pair.names[side]
-        if report.measured:
-            wrong = set(report.cells_where(side, "Concordant", 0)) - set(found["invalid_triangles"])
-            found[name]["discordant_triangles"] = sorted(wrong)
-    return found
-
-
 def show(value):
     """A value of the report as text."""
     if isinstance(value, dict):
@@ -61,7 +48,13 @@ def command(inputs, as_json, quick, plot, force):
     output = Output(plot, "", force, plots.FORMATS, "a plot") if plot else None
     pair = options.read_pair(inputs)
     report = Report(pair, not quick)
-    found = describe(report, pair)
+    found = {**report.statistics(), "valid": report.valid, "problems": report.problems(),
+             "invalid_triangles": report.cells_where(0, "Invalid")}
+    for side, name in enumerate(("source", "target")):
+        found[name]["file"] = pair.names[side]
+        if report.measured:
+            wrong = set(report.cells_where(side, "Concordant", 0)) - set(found["invalid_triangles"])
+            found[name]["discordant_triangles"] = sorted(wrong)
     if as_json:
         click.echo(json.dumps(found, indent=2, ensure_ascii=False))
     else:

@@ -5,15 +5,15 @@
 import click
 
 from .. import options, pair
-from ..data import Data, data_options
 from ..mapping import PointMap, run, set_up
 from ..vtkFiltersHomeomorphism import vtkTriangularCoordinates
+from .map import data_options, process
 
 
 class Coordinates(PointMap):
     """Attaches triangular coordinates to points."""
 
-    moves = False
+    moves, shift = False, None
 
     def __init__(self, mesh, settings, name):
         self.domain, self.name = mesh, name
@@ -33,11 +33,11 @@ class Coordinates(PointMap):
 @options.format_option
 @data_options
 @options.map_settings("smooth")
-def command(files, input_format, output, columns, require_inside, settings):
+def command(files, input_format, output, columns, require_inside, **settings):
     """Attach triangular coordinates in a mesh to points.
 
     MESH is the triangulation (the source of a pair in one file). DATA is the same as for dhm map. The arrays are
     TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1
     on the edge) and vtkValidPointMask."""
     work = Coordinates(pair.read_mesh(files[0], input_format), settings, files[0])
-    Data(work, output, columns, require_inside).process(files[1], input_format)
+    process(work, output, columns, require_inside, files[1], input_format)

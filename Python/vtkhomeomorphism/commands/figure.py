@@ -9,7 +9,7 @@ import numpy
 
 from .. import images, options, plots, report
 from ..arrays import SYSTEMS, points_of
-from ..files import Failure, Input
+from ..files import Failure
 from ..mapping import PointMap, choose_system
 
 PIECES = 2000  # points along a grid line
@@ -40,16 +40,14 @@ def grid_lines(points, count):
 @click.option("--close-up", type=(options.Number(), options.Number(), options.POSITIVE), metavar="X Y R",
               help="Add close-ups of a square in the target: its center and half its side.")
 @options.pair_files("SOURCE [TARGET]")
-def command(inputs, output, settings, all_systems, grid, image, close_up):
+def command(inputs, output, all_systems, grid, image, close_up, **settings):
     """Draw a grid over the source and its image over the target. Meshes must be planar."""
-    raster = None
-    if image:
-        with Input(image) as file:
-            raster = images.read(file)
+    raster = images.read(image) if image else None
+    if raster:
         inputs.grids = [raster.grid, inputs.grids[1] or raster.grid]
     both = report.require_map(options.read_pair(inputs), settings["mask_invalid"])
     if raster:
-        both.fit((raster.grid, raster.grid), {0: raster}, {0: image})
+        both.fit((raster.grid, raster.grid), {0: raster})
     both.require_flat()
     settings = {**settings, "discordant_by_linear": True} if all_systems else choose_system(settings, both)
     # Heights and fallback are not drawn.

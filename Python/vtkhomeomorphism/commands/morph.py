@@ -9,7 +9,7 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .. import images, meshes, options, vtkfiles
-from ..files import PICTURES, USAGE, Failure, Input, Output, count, format_of, inform, progress
+from ..files import PICTURES, USAGE, Failure, Output, format_of, inform, progress
 from ..mapping import choose_system, run
 from ..vtkFiltersHomeomorphism import vtkInBetweenTriangulation
 
@@ -35,13 +35,12 @@ def make_meshes(both, mask_invalid, path, times):
         folded += [f"frame {frame} (at {time:.4g})"] * (filter.GetNumberOfFoldedTriangles() > 0)
     if filter.GetMirrored():
         raise Failure(f"{both.name}: the target is a mirror image of the source: all triangles fold on the way.")
-    number = filter.GetNumberOfFoldingTriangles()
-    where = (f"{both.name}: {count(number, 'triangle folds', 'triangles fold')} on the way (cell "
-             f"{filter.GetFirstFoldingTriangle()} first, from {filter.GetFirstFoldTime():.4g} on; the last until "
-             f"{filter.GetLastFoldTime():.4g})")
-    if folded:
-        raise Failure(f"{where}, and {folded[0]} has folded triangles. Put a mesh in between and morph in two steps.")
-    if number:
+    if filter.GetNumberOfFoldingTriangles():
+        where = (f"{both.name}: triangle {filter.GetFirstFoldingTriangle()} folds first, at "
+                 f"{filter.GetFirstFoldTime():.4g} of the way; {filter.GetNumberOfFoldingTriangles()} fold before "
+                 f"{filter.GetLastFoldTime():.4g}")
+        if folded:
+            raise Failure(f"{where}: {folded[0]} has folded triangles. Put a mesh in between and morph in two steps.")
         inform(where + ", but in none of the frames.")
     return result
 
@@ -62,7 +61,7 @@ def blend(first, second, masks, t):
     total = (1 - t) * masks[0] + t * masks[1]
     weight = (t * masks[1] / numpy.where(total > 0, total, 1))[:, :, None]
     mixed = (1 - weight) * first.astype(float) + weight * second.astype(float)
-    return (numpy.rint(mixed) if first.dtype.kind in "iu" else mixed).astype(first.dtype), total > 0
+    return images.round_to(first.dtype, mixed), total > 0
 
 
 @click.command("morph")
@@ -78,7 +77,7 @@ def blend(first, second, masks, t):
 @options.background
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.pair_files("SOURCE [TARGET]")
-def command(inputs, output, force, source_image, target_image, frames, path, size, background, settings):
+def command(inputs, output, force, source_image, target_image, frames, path, size, background, **settings):
     """Morph images or the mesh from the source to the target, in frames.
 
     If a triangle is folded in a frame, nothing is written (status 1)."""
@@ -91,18 +90,14 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
     except (TypeError, ValueError):
         raise Failure(f"{output} must have one place for the frame's number, such as frame-%03d.png.", USAGE) from None
     color = images.read_background(background, format) if any(names) else None
-    rasters = {}
-    for side, name in enumerate(names):
-        if name:
-            with Input(name) as file:
-                rasters[side] = images.read(file)
+    rasters = {side: images.read(name) for side, name in enumerate(names) if name}
     if rasters:
         first = rasters.get(0, rasters.get(1))
         inputs.grids = [rasters.get(side, first).grid for side in (0, 1)]
     both = options.read_pair(inputs)
     if rasters:
         settings = choose_system(settings, both, "cubic")
-        both.fit(inputs.grids, rasters, names)
+        both.fit(inputs.grids, rasters)
         ends = [images.Grid(*size) if size and not both.extents else grid for grid in inputs.grids]
         ends = [grid.hanging() if both.landmarks else grid for grid in ends]
     times = [k / (frames - 1) for k in range(frames)]

@@ -25,7 +25,7 @@ PROJ_LIMIT = 10 * 1024 * 1024  # the largest file that PROJ reads, in bytes
               help="Greatest number of triangles.")
 @options.map_settings("smooth")
 @options.pair_files("SOURCE [TARGET]")
-def command(inputs, output, max_error, max_triangles, settings):
+def command(inputs, output, max_error, max_triangles, **settings):
     """Refine a pair until its piecewise linear map is close to the map.
 
     PROJ can then use the refined pair instead of the map. The pair must be planar. Heights of a triangulation file

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from .. import landmarks, options, pair, vtkfiles
 from ..files import FILE, USAGE, Failure, Input, inform
 from ..isomorphic import DOMAINS, QUALITIES
-from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lines
+from ..landmarks import LandmarkFileError, Landmarks, read_lines
 
 
 def read_figure(name):
@@ -17,13 +17,13 @@ def read_figure(name):
         if file.format not in ("vtp", "vtk"):
             raise Failure(f"{name} is not a figure: landmarks are one file, figures two of .vtp or .vtk.", USAGE)
         data = vtkfiles.read(file)
-        if not isinstance(data, vtkPolyData):
-            file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
-    return data
+        if isinstance(data, vtkPolyData):
+            return data
+        file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
 
 
 def print_report(made, marks):
-    found = made.report
+    found, suspicious = made.report, set(made.suspicious().tolist())
     below = found["shares_of_angles_below_10_15_20"]
     for name, value in (
             ("landmarks", len(marks.names)), ("added points", made.added_points), ("triangles", len(made.triangles)),
@@ -34,7 +34,6 @@ def print_report(made, marks):
             ("largest distortion", f"{found['largest_distortion']:.4g} (cell {found['largest_distortion_triangle']})"),
             ("median residual", f"{numpy.median(made.residuals):.4g}")):
         click.echo(f"{name:33}{value}")
-    suspicious = set(made.suspicious().tolist())
     click.echo("largest residuals, target's units")
     for i in numpy.argsort(-made.residuals, kind="stable")[:10].tolist():
         click.echo(f"  {marks.names[i]:31}{made.residuals[i]:.4g}{'  suspicious' if i in suspicious else ''}")
@@ -72,9 +71,6 @@ def command(inputs, output, lines, outlines, report, **settings):
         inputs.grids = [None, None]
     else:
         with Input(inputs.pair[0], inputs.format or "csv") as file:
-            if not is_landmark_file(file.path):
-                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv (source_x, source_y, "
-                              "target_x, target_y), .points and IIIF's .json.", USAGE)
             marks = landmarks.read(file, inputs)
         try:
             figure = {name: read_lines(file, marks.names)

@@ -7,8 +7,9 @@ from dataclasses import replace
 import click
 
 from .. import images, options
-from ..files import PICTURES, USAGE, Failure, Input
+from ..files import PICTURES, USAGE, Failure
 from ..mapping import choose_system
+
 
 @click.command("warp")
 @options.output("The warped image: .png .jpg .tif .ppm, or - for standard output.", "png", PICTURES, "an image")
@@ -20,7 +21,7 @@ from ..mapping import choose_system
 @options.crs
 @options.background
 @options.pair_files("SOURCE [TARGET] IMAGE")
-def command(inputs, output, settings, inverse, size, resolution, like, crs, background):
+def command(inputs, output, inverse, size, resolution, like, crs, background, **settings):
     """Warp an image from the source's domain to the target's.
 
     IMAGE is a .png .jpg .tif or .ppm file. Meshes are in pixel coordinates (the center of the lower left pixel is
@@ -33,42 +34,39 @@ def command(inputs, output, settings, inverse, size, resolution, like, crs, back
     color = images.read_background(background, output.format)
     inputs.crs = None if inverse else crs
     order = slice(None, None, -1 if inverse else 1)
-    with Input(inputs.other, inputs.format or "png") as file:
-        raster = images.read(file)
-        own, sized = raster.grid, images.Grid(*size) if size else None
-        if own.placed:
-            # On the ground there are no pixels of landmarks, but a scan has them.
-            inputs.grids = [inputs.grids[0] or (sized if inverse else None), None]
-        else:
-            inputs.grids = [own, sized or own][order]
-        both = options.read_pair(inputs)
-        settings, marks = choose_system(settings, both, "cubic"), both.landmarks
-        if marks and marks.image_coordinates and not (marks.crs or own.placed or inverse):
-            raise Failure(f"{both.name} does not name the coordinate reference system of its target: give --crs.",
-                          USAGE)
-        # A layer that goes back onto a scan becomes an image without georeference.
-        scan = marks and inverse and own.placed and inputs.grids[0]
-        placed = not scan and (own.placed or bool(marks and marks.crs and not inverse))
-        for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
-            if value and not placed:
-                raise Failure(f"{name} is for georeferenced rasters, which {file.name} is not.", USAGE)
-        if placed and output.format not in ("tif", "tiff"):
-            raise Failure(f"A georeferenced raster becomes a .tif, not a .{output.format}.", USAGE)
-        grid = scan or (own if placed else sized or own)
-        expected = both.crs(inverse)[0]
-        if own.crs and expected and own.crs != expected:
-            raise Failure(f"{file.name} is in the coordinate reference system {own.crs.to_string()}, but the map is "
-                          f"from {expected}: reproject it first.")
-        if like:
-            with Input(like) as model:
-                grid = images.read(model).grid
-        both.fit((own, grid)[order], {int(inverse): raster}, {inverse: file.name})
-        grid = grid.hanging() if marks and not placed else grid
-        warp = images.Warp(both, settings, inverse)
-        if placed:
-            known = both.crs(inverse)[1]
-            crs = crs or (own.crs if known is None else known or None)
-            grid = replace(grid, crs=crs) if like else warp.fit_grid(raster, size, resolution, crs)
-        images.require_overlap(grid, "the result", both.meshes[not inverse], both.name_of(not inverse))
-        with output.writing():
-            images.write_warped(warp, raster, grid, output, color)
+    raster = images.read(inputs.other, inputs.format or "png")
+    own, sized = raster.grid, images.Grid(*size) if size else None
+    if own.placed:
+        # On the ground there are no pixels of landmarks, but a scan has them.
+        inputs.grids = [inputs.grids[0] or (sized if inverse else None), None]
+    else:
+        inputs.grids = [own, sized or own][order]
+    both = options.read_pair(inputs)
+    settings, marks = choose_system(settings, both, "cubic"), both.landmarks
+    if marks and marks.image_coordinates and not (marks.crs or own.placed or inverse):
+        raise Failure(f"{both.name} does not name the coordinate reference system of its target: give --crs.", USAGE)
+    # A layer that goes back onto a scan becomes an image without georeference.
+    scan = marks and inverse and own.placed and inputs.grids[0]
+    placed = not scan and (own.placed or bool(marks and marks.crs and not inverse))
+    for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
+        if value and not placed:
+            raise Failure(f"{name} is for georeferenced rasters, which {raster.name} is not.", USAGE)
+    if placed and output.format not in ("tif", "tiff"):
+        raise Failure(f"A georeferenced raster becomes a .tif, not a .{output.format}.", USAGE)
+    grid = scan or (own if placed else sized or own)
+    expected = both.crs(inverse)[0]
+    if own.crs and expected and own.crs != expected:
+        raise Failure(f"{raster.name} is in the coordinate reference system {own.crs.to_string()}, but the map is "
+                      f"from {expected}: reproject it first.")
+    if like:
+        grid = images.read(like).grid
+    both.fit((own, grid)[order], {int(inverse): raster})
+    grid = grid.hanging() if marks and not placed else grid
+    warp = images.Warp(both, settings, inverse)
+    if placed:
+        known = both.crs(inverse)[1]
+        crs = crs or (own.crs if known is None else known or None)
+        grid = replace(grid, crs=crs) if like else warp.fit_grid(raster, size, resolution, crs)
+    images.require_overlap(grid, "the result", both.meshes[not inverse], both.name_of(not inverse))
+    with output.writing():
+        images.write_warped(warp, raster, grid, output, color)
