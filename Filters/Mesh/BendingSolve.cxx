@@ -129,6 +129,7 @@ public:
   }
 
   BendingSolution Run();
+  bool SolveWhole(BendingSolution& solution);
 
 private:
   enum NodeKind : std::int8_t
@@ -160,7 +161,6 @@ private:
   bool IsFreePoint(int point) const { return !this->IsFree.empty() && this->IsFree[point] != 0; }
 
   void FindBoundary();
-  bool SolveWhole(BendingSolution& solution);
   void Build();
   void MakeForms();
   NodeForms MakeEdgeForms(int number);
@@ -861,17 +861,19 @@ BendingSolution Solver::Extract() const
 }
 
 //------------------------------------------------------------------------------
-// All triangles whole, all values fixed: the derivatives at the points alone. Returns whether the
-// result is certified.
 bool Solver::SolveWhole(BendingSolution& solution)
 {
   const int triangles = this->Pair.GetNumberOfTriangles();
   const std::size_t count = this->Pair.Source.size();
-  if (std::find(this->Fans.Touching.begin(), this->Fans.Touching.end(), 1) !=
-    this->Fans.Touching.end())
+  for (int point = 0; point < static_cast<int>(count); ++point)
   {
-    return false;
+    // A point without triangles has no fan.
+    if (this->Fans.Touching[point] != 0 || (this->Fans.First[point] >= 0 && this->IsSpecial(point)))
+    {
+      return false;
+    }
   }
+  this->FindBoundary();
   double energy;
   {
     const LeastBendingDerivatives derivatives =
@@ -925,12 +927,7 @@ BendingSolution Solver::Run()
       }
     }
   }
-  const bool isCut = std::find(this->IsCut.begin(), this->IsCut.end(), 1) != this->IsCut.end();
   BendingSolution best;
-  if (!isCut && this->IsFree.empty() && this->SolveWhole(best))
-  {
-    return best;
-  }
   this->Build();
   double bestEnergy = std::numeric_limits<double>::infinity();
   for (int round = 0; round < MaximumRounds; ++round)
@@ -1067,6 +1064,13 @@ CubicElement BendingSolution::GetElement(const PlanarPair& pair, const TriangleC
   }
   cut.SetRightAngle(element, result);
   return result;
+}
+
+//------------------------------------------------------------------------------
+bool SolveWithWholeTriangles(const CubicTemplate& cubicTemplate, const BendingOptions& options,
+  BendingSolution& solution, const ParallelFor& parallelFor)
+{
+  return Solver(cubicTemplate, options, {}, parallelFor).SolveWhole(solution);
 }
 
 //------------------------------------------------------------------------------

@@ -58,8 +58,8 @@ struct BendingSolution
   LargeVector<std::int32_t> Cuts;
   /// Of whole triangles, relative to corner 0; empty if all triangles are cut.
   LargeArray<CubicNet> Nets;
-  /// Of each triangle, a lower bound of the determinant over the affine one, if all triangles are
-  /// whole and their first solution is certified; empty otherwise.
+  /// Of each triangle, a lower bound of the determinant over the affine one, from
+  /// SolveWithWholeTriangles; empty otherwise.
   LargeVector<double> Certificates;
   /// Nodes 3 to 14 of a TriangleCut.
   std::vector<std::array<BendingNode, 12>> CutNodes;
@@ -78,6 +78,12 @@ struct BendingSolution
   CubicElement GetElement(const PlanarPair& pair, const TriangleCut& cut, const Matrix2& affine,
     int triangle, int element) const;
 };
+
+/// Minimizes the integral of the squared second derivatives over the gradients at the points, every
+/// triangle being one element. Returns whether the solution is certified: then it is the result of
+/// SolveForLeastBending, in a fraction of the time. Of the template, only the boundary is needed.
+bool SolveWithWholeTriangles(const CubicTemplate& cubicTemplate, const BendingOptions& options,
+  BendingSolution& solution, const ParallelFor& parallelFor = SerialFor);
 
 /// Minimizes the integral of the squared second derivatives over all gradients and over the values
 /// of all nodes but the points'. Where the determinant is not certified, the solution is pulled

@@ -239,20 +239,37 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
   }
   CubicTemplateOptions templateOptions;
   templateOptions.MaximumDeviation = options.MaximumDeviation;
-  this->Template = std::make_unique<CubicTemplate>(this->GetFine(), templateOptions, parallelFor);
+  const auto makeTemplate = [&](bool onlyBoundary) {
+    templateOptions.OnlyBoundary = onlyBoundary;
+    this->Template = std::make_unique<CubicTemplate>(this->GetFine(), templateOptions, parallelFor);
+  };
   if (options.Bending == CubicBending::Least)
   {
     BendingOptions bending;
     bending.MaximumDeviation = options.MaximumDeviation;
     bending.CertificateMargin = options.CertificateMargin;
-    this->Bending = std::make_unique<BendingSolution>(
-      SolveForLeastBending(*this->Template, bending, isFree, parallelFor));
+    this->Bending = std::make_unique<BendingSolution>();
+    bool isCertified = false;
+    if (isFree.empty())
+    {
+      makeTemplate(true);
+      isCertified = SolveWithWholeTriangles(*this->Template, bending, *this->Bending, parallelFor);
+    }
+    if (!isCertified)
+    {
+      makeTemplate(false);
+      *this->Bending = SolveForLeastBending(*this->Template, bending, isFree, parallelFor);
+    }
     this->Statistics.Bending = this->Bending->Statistics;
     if (this->Statistics.Bending.TookTemplate)
     {
       // In closed form it is more accurate than through its nodes.
       this->Bending.reset();
     }
+  }
+  else
+  {
+    makeTemplate(false);
   }
   if (!this->Bending)
   {

@@ -261,35 +261,61 @@ CubicTemplate::CubicTemplate(
 {
   const PointFans fans(pair);
   const std::int64_t points = pair.GetNumberOfPoints();
-  parallelFor(points, [&](std::int64_t begin, std::int64_t end) {
-    for (int point = static_cast<int>(begin); point < end; ++point)
-    {
-      double shortest = std::numeric_limits<double>::infinity();
-      const bool closed = fans.ForEach(pair, point, [&](int t, int c) {
-        const Vector2 here = pair.Source[point];
-        const Vector2 next = pair.Source[pair.Triangles[t][NextCorner(c)]] - here;
-        const Vector2 previous = pair.Source[pair.Triangles[t][PreviousCorner(c)]] - here;
-        shortest = std::min({ shortest, Dot(next, next), Dot(previous, previous) });
-      });
-      this->Radii[point] = EdgeShare * std::sqrt(shortest);
-      this->Boundary[point] = closed ? 0 : 1;
-    }
-  });
   LargeArray<Bounds> bounds(pair.Triangles.size());
   parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
     for (int t = static_cast<int>(begin); t < end; ++t)
     {
       this->Affines[t] = pair.GetAffine(t);
-      bounds[t] = {};
-      bounds[t].Determinant = this->Affines[t].Determinant();
+      if (!options.OnlyBoundary)
+      {
+        bounds[t] = {};
+      }
+    }
+  });
+  parallelFor(points, [&](std::int64_t begin, std::int64_t end) {
+    for (int point = static_cast<int>(begin); point < end; ++point)
+    {
+      double shortest = std::numeric_limits<double>::infinity();
+      // The mean of the triangles' derivatives, weighted by area.
+      Matrix2 mean{};
+      double total = 0.0;
+      const bool closed = fans.ForEach(pair, point, [&](int t, int c) {
+        const std::array<Vector2, 3> corners = pair.GetSourceCorners(t, c);
+        const Vector2& next = corners[NextCorner(c)];
+        const Vector2& previous = corners[PreviousCorner(c)];
+        shortest = std::min({ shortest, Dot(next, next), Dot(previous, previous) });
+        const double area = Cross(next, previous);
+        mean = mean + area * this->Affines[t];
+        total += area;
+      });
+      this->Radii[point] = EdgeShare * std::sqrt(shortest);
+      this->Boundary[point] = closed ? 0 : 1;
+      this->Derivatives[point] = total > 0.0 ? (1.0 / total) * mean : Matrix2{};
     }
   });
   // Of the points, those that are not differentiable.
   LargeVector<std::unique_ptr<Exception>> exceptions(static_cast<std::size_t>(points));
-  LargeVector<std::int32_t> changed(static_cast<std::size_t>(points));
-  std::iota(changed.begin(), changed.end(), 0);
-  LargeVector<std::int32_t> triangles(pair.Triangles.size());
-  std::iota(triangles.begin(), triangles.end(), 0);
+  LargeVector<std::int32_t> changed;
+  LargeVector<std::int32_t> triangles;
+  if (options.OnlyBoundary)
+  {
+    for (std::int32_t point = 0; point < points; ++point)
+    {
+      if (this->Boundary[point] != 0 && fans.First[point] >= 0)
+      {
+        changed.push_back(point);
+        fans.ForEach(pair, point, [&triangles](int t, int) { triangles.push_back(t); });
+      }
+    }
+    SortUnique(triangles);
+  }
+  else
+  {
+    changed.resize(static_cast<std::size_t>(points));
+    std::iota(changed.begin(), changed.end(), 0);
+    triangles.resize(pair.Triangles.size());
+    std::iota(triangles.begin(), triangles.end(), 0);
+  }
   LargeVector<double> factors(static_cast<std::size_t>(points), 1.0);
   // Corners that stray too far are made smaller, until none does.
   while (!changed.empty())
@@ -316,7 +342,8 @@ CubicTemplate::CubicTemplate(
             exceptions[point] = this->FindDerivative(point, fans);
           }
           factors[point] = 1.0;
-          if (options.MaximumDeviation < std::numeric_limits<double>::max())
+          if (options.MaximumDeviation < std::numeric_limits<double>::max() &&
+            !options.OnlyBoundary)
           {
             const double strays =
               this->GetDeviation(fans.Get(pair, point), point, exceptions[point].get());
@@ -347,13 +374,16 @@ CubicTemplate::CubicTemplate(
     SortUnique(next);
     changed = std::move(next);
   }
-  parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
-    for (int t = static_cast<int>(begin); t < end; ++t)
-    {
-      const std::array<float, 3>& corners = bounds[t].Corners;
-      this->Certificates[t] = std::min({ corners[0], corners[1], corners[2] });
-    }
-  });
+  if (!options.OnlyBoundary)
+  {
+    parallelFor(pair.GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+      for (int t = static_cast<int>(begin); t < end; ++t)
+      {
+        const std::array<float, 3>& corners = bounds[t].Corners;
+        this->Certificates[t] = std::min({ corners[0], corners[1], corners[2] });
+      }
+    });
+  }
   for (std::unique_ptr<Exception>& exception : exceptions)
   {
     if (exception)
@@ -382,7 +412,7 @@ void CubicTemplate::SetHeights(int triangle, double maximumDeviation, LargeArray
   const std::array<std::int32_t, 3>& points = this->Pair.Triangles[triangle];
   Bounds& own = bounds[triangle];
   const Matrix2& affine = this->Affines[triangle];
-  const double d = own.Determinant;
+  const double d = affine.Determinant();
   std::array<double, 3> lengths;
   double share = 1.0;
   for (int k = 0; k < 3; ++k)
@@ -408,7 +438,7 @@ void CubicTemplate::SetHeights(int triangle, double maximumDeviation, LargeArray
     if (neighbor >= 0)
     {
       const Matrix2& across = this->Affines[neighbor];
-      const double e = bounds[neighbor].Determinant;
+      const double e = across.Determinant();
       const Vector2 normal = (1.0 / length) * Normal(edge);
       const Vector2 turn = (across - affine) * normal;
       const double start = this->Radii[points[NextCorner(k)]];
@@ -462,22 +492,16 @@ bool CubicTemplate::TakeMean(int point, const PointFans& fans, LargeArray<Bounds
   constexpr double enough = 0.3;
   constexpr double greatestCondition = 1e4;
   constexpr double rounding = 1e-6;
-  Matrix2 mean{};
-  double total = 0.0;
-  bool close = fans.Touching[point] == 0;
-  const bool closed = fans.ForEach(this->Pair, point, [&](int t, int c) {
-    const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(t, c);
-    const double area = Cross(corners[NextCorner(c)], corners[PreviousCorner(c)]);
-    mean = mean + area * this->Affines[t];
-    total += area;
+  bool close = this->Boundary[point] == 0 && fans.Touching[point] == 0;
+  fans.ForEach(this->Pair, point, [&](int t, int c) {
     close = close && bounds[t].Fall < 1.0 - enough;
     bounds[t].Corners[c] = 0.0F;
   });
-  if (!closed || !close)
+  if (!close)
   {
     return false;
   }
-  mean = (1.0 / total) * mean;
+  const Matrix2& mean = this->Derivatives[point];
   const double radius = this->Radii[point];
   fans.ForEach(this->Pair, point, [&](int t, int c) {
     if (!close)
@@ -486,7 +510,8 @@ bool CubicTemplate::TakeMean(int point, const PointFans& fans, LargeArray<Bounds
     }
     Bounds& own = bounds[t];
     const double squares = SquaredNorm(this->Affines[t]);
-    const double condition = squares / own.Determinant;
+    const double determinant = this->Affines[t].Determinant();
+    const double condition = squares / determinant;
     // The sine of the angle between the inner points beside the corner.
     const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(t, c);
     const Vector2& out = corners[NextCorner(c)];
@@ -497,8 +522,8 @@ bool CubicTemplate::TakeMean(int point, const PointFans& fans, LargeArray<Bounds
       (1.0 / Length(in)) * (radius * in - this->Heights[t][NextCorner(c)] * Normal(in));
     const double sine = Cross(first, last) / std::sqrt(Dot(first, first) * Dot(last, last));
     // See "Vertices without a linear program" in Documentation/cubic.md.
-    const double turn = std::sqrt(SquaredNorm(mean - this->Affines[t]) * squares) /
-      own.Determinant * (1.0 + 2.8 / sine);
+    const double turn =
+      std::sqrt(SquaredNorm(mean - this->Affines[t]) * squares) / determinant * (1.0 + 2.8 / sine);
     const double bound = 1.0 - own.Fall - turn * (2.0 + 2.0 * own.Slope + turn) - rounding;
     close = sine > 0.0 && condition < greatestCondition && bound > enough;
     own.Corners[c] = static_cast<float>(bound);
@@ -508,7 +533,6 @@ bool CubicTemplate::TakeMean(int point, const PointFans& fans, LargeArray<Bounds
     fans.ForEach(this->Pair, point, [&](int t, int c) { bounds[t].Corners[c] = 0.0F; });
     return false;
   }
-  this->Derivatives[point] = mean;
   this->Kinds[point] = VertexKind::Differentiable;
   return true;
 }

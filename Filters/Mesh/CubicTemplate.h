@@ -87,6 +87,10 @@ struct CubicTemplateOptions
 {
   /// The greatest distance from the piecewise linear map, in the units of the target.
   double MaximumDeviation = std::numeric_limits<double>::infinity();
+  /// Whether to make only what a map of whole triangles needs: kinds and derivatives at boundary
+  /// points. Inner points are then differentiable, with the mean of the triangles' derivatives, and
+  /// triangles without boundary points have no heights.
+  bool OnlyBoundary = false;
 };
 
 /// The map. Of a point, a radius and a derivative are stored, of a triangle three heights; elements
@@ -168,7 +172,6 @@ private:
   /// Of a triangle while the template is made.
   struct Bounds
   {
-    double Determinant = 0.0;
     /// How far, at most, the determinant falls below the affine one beside the edges, over the
     /// affine one, with L at the corners; and |D'| there over the least stretch of L.
     double Fall = 0.0;

@@ -441,8 +441,7 @@ struct StarWay
 
 // The star and the map's derivatives at an outline. @a rate is the share's derivative by the
 // logarithm of the radius.
-VertexRings::Outline GetOutline(
-  const VertexFan& fan, const StarWay& way, double share, double rate)
+VertexRings::Outline GetOutline(const VertexFan& fan, const StarWay& way, double share, double rate)
 {
   const std::size_t n = fan.Sectors.size();
   std::vector<Vector2> images(n + 1);
