@@ -874,10 +874,12 @@ bool Solver::SolveWhole(BendingSolution& solution)
     }
   }
   this->FindBoundary();
+  solution.Nets = LargeArray<CubicNet>(static_cast<std::size_t>(triangles));
   double energy;
   {
-    const LeastBendingDerivatives derivatives =
-      FindLeastBendingDerivatives(this->Template, this->Fans, this->Boundary, this->Parallel);
+    const LeastBendingDerivatives derivatives = FindLeastBendingDerivatives(this->Template,
+      this->Fans, this->Boundary,
+      LargeScratch(solution.Nets.begin(), solution.Nets.size() * sizeof(CubicNet)), this->Parallel);
     energy = derivatives.Energy;
     solution.Points.resize(count);
     for (std::size_t point = 0; point < count; ++point)
@@ -886,7 +888,6 @@ bool Solver::SolveWhole(BendingSolution& solution)
     }
   }
   solution.Cuts.assign(static_cast<std::size_t>(triangles), -1);
-  solution.Nets = LargeArray<CubicNet>(static_cast<std::size_t>(triangles));
   solution.Certificates.resize(static_cast<std::size_t>(triangles));
   std::atomic<bool> isCertified{ true };
   this->Parallel(triangles, [&](std::int64_t begin, std::int64_t end) {
@@ -908,9 +909,14 @@ bool Solver::SolveWhole(BendingSolution& solution)
       solution.Certificates[t] = least / determinant;
     }
   });
+  if (!isCertified)
+  {
+    solution = {};
+    return false;
+  }
   solution.Statistics.Rounds = 1;
   solution.Statistics.Energy = energy;
-  return isCertified;
+  return true;
 }
 
 //------------------------------------------------------------------------------

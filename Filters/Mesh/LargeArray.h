@@ -57,6 +57,36 @@ struct LargeAllocator
 template <typename T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
 
+/// Memory that is lent to arrays, part after part, before it is needed for something else: the
+/// system need not clear pages again.
+class LargeScratch
+{
+public:
+  LargeScratch(void* memory, std::size_t bytes)
+    : Next(static_cast<char*>(memory))
+    , End(Next + bytes)
+  {
+  }
+
+  /// Returns null if too little is left.
+  void* Take(std::size_t bytes)
+  {
+    constexpr std::size_t cacheLine = 64;
+    if (bytes > static_cast<std::size_t>(this->End - this->Next))
+    {
+      return nullptr;
+    }
+    void* const memory = this->Next;
+    this->Next += std::min((bytes + cacheLine - 1) / cacheLine * cacheLine,
+      static_cast<std::size_t>(this->End - this->Next));
+    return memory;
+  }
+
+private:
+  char* Next;
+  char* End;
+};
+
 /// An array of fixed size. Its elements are uninitialized until they are assigned, so memory is
 /// written only once.
 template <typename T>
@@ -73,6 +103,17 @@ public:
     : Memory(size > 0 ? static_cast<T*>(AllocateLarge(size * sizeof(T))) : nullptr)
     , Count(size)
   {
+  }
+
+  /// In memory that is lent, if it is enough; it must outlive the array.
+  LargeArray(std::size_t size, LargeScratch& scratch)
+    : Count(size)
+  {
+    this->Memory = { static_cast<T*>(scratch.Take(size * sizeof(T))), Release{ false } };
+    if (!this->Memory)
+    {
+      *this = LargeArray(size);
+    }
   }
 
   LargeArray(std::size_t size, const T& value)
@@ -119,7 +160,14 @@ public:
 private:
   struct Release
   {
-    void operator()(T* memory) const { ReleaseLarge(memory); }
+    bool IsOwned = true;
+    void operator()(T* memory) const
+    {
+      if (this->IsOwned)
+      {
+        ReleaseLarge(memory);
+      }
+    }
   };
 
   std::unique_ptr<T, Release> Memory;

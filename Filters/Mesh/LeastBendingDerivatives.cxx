@@ -90,11 +90,13 @@ class Solver
 {
 public:
   Solver(const CubicTemplate& cubicTemplate, const PointFans& fans,
-    const std::map<int, BoundaryPoint>& boundary, const ParallelFor& parallelFor)
+    const std::map<int, BoundaryPoint>& boundary, LargeScratch scratch,
+    const ParallelFor& parallelFor)
     : Template(cubicTemplate)
     , Pair(cubicTemplate.GetPair())
     , Fans(fans)
     , Boundary(boundary)
+    , Scratch(scratch)
     , Parallel(parallelFor)
     , Count(this->Pair.Source.size())
   {
@@ -167,6 +169,7 @@ private:
   const PlanarPair& Pair;
   const PointFans& Fans;
   const std::map<int, BoundaryPoint>& Boundary;
+  LargeScratch Scratch;
   const ParallelFor& Parallel;
   const std::size_t Count;
   LeastBendingDerivatives Result;
@@ -218,15 +221,18 @@ void Solver::FindRows()
     this->First[point + 1] += this->First[point] + (isOpen ? 1 : 0);
   }
   const auto entries = static_cast<std::size_t>(this->First[this->Count]);
-  this->Columns = LargeArray<std::int32_t>(entries, none);
-  this->Blocks = LargeArray<Block>(entries);
+  this->Blocks = LargeArray<Block>(entries, this->Scratch);
+  this->Columns = LargeArray<std::int32_t>(entries, this->Scratch);
+  std::fill(this->Columns.begin(), this->Columns.end(), none);
 }
 
 //------------------------------------------------------------------------------
 void Solver::Assemble()
 {
-  this->Own = LargeArray<Block>(this->Count, Block{});
-  this->Residual = LargeArray<Matrix2>(this->Count, Matrix2{});
+  this->Own = LargeArray<Block>(this->Count, this->Scratch);
+  std::fill(this->Own.begin(), this->Own.end(), Block{});
+  this->Residual = LargeArray<Matrix2>(this->Count, this->Scratch);
+  std::fill(this->Residual.begin(), this->Residual.end(), Matrix2{});
   const auto add = [this](int row, int column, const Block& block) {
     int at = this->First[row];
     while (this->Columns[at] != column && this->Columns[at] >= 0)
@@ -337,10 +343,11 @@ void Solver::Normalize()
 // Both components at once, each with its own steps.
 void Solver::Iterate()
 {
-  LargeArray<Matrix2> solution(this->Count, Matrix2{});
-  LargeArray<Matrix2> step(this->Count);
-  LargeArray<Matrix2> image(this->Count);
+  LargeArray<Matrix2> step(this->Count, this->Scratch);
+  LargeArray<Matrix2> image(this->Count, this->Scratch);
+  LargeArray<Matrix2> solution(this->Count, this->Scratch);
   Vector2 product = this->SumForAll([&](int point, Vector2& sum) {
+    solution[point] = {};
     step[point] = this->Residual[point];
     AddProduct(sum, step[point], step[point]);
   });
@@ -379,10 +386,10 @@ void Solver::Iterate()
 
 //------------------------------------------------------------------------------
 LeastBendingDerivatives FindLeastBendingDerivatives(const CubicTemplate& cubicTemplate,
-  const PointFans& fans, const std::map<int, BoundaryPoint>& boundary,
+  const PointFans& fans, const std::map<int, BoundaryPoint>& boundary, LargeScratch scratch,
   const ParallelFor& parallelFor)
 {
-  return Solver(cubicTemplate, fans, boundary, parallelFor).Run();
+  return Solver(cubicTemplate, fans, boundary, scratch, parallelFor).Run();
 }
 
 } // namespace homeomorphism

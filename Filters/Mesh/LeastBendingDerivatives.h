@@ -37,8 +37,9 @@ struct LeastBendingDerivatives
 /// Minimizes the integral of the squared second derivatives over the derivatives at all points that
 /// @a boundary leaves free, by conjugate gradients from those of the template. All points are where
 /// the piecewise linear map has them. The system is well conditioned for any number of triangles.
+/// @a scratch is memory that may be used, for as long as this runs.
 LeastBendingDerivatives FindLeastBendingDerivatives(const CubicTemplate& cubicTemplate,
-  const PointFans& fans, const std::map<int, BoundaryPoint>& boundary,
+  const PointFans& fans, const std::map<int, BoundaryPoint>& boundary, LargeScratch scratch,
   const ParallelFor& parallelFor);
 
 } // namespace homeomorphism
