@@ -26,8 +26,11 @@ constexpr int MaximumProximalRounds = 8;
 constexpr double CutAllShare = 0.05;
 /// Failures after which a whole triangle, or the whole neighbors of a cut one, are cut.
 constexpr int PatientRounds = 3;
-/// Above this number of unknowns systems are solved by conjugate gradients.
-constexpr int DirectUnknowns = 200000;
+/// Steps of conjugate gradients, and the residual over the right-hand side that ends them.
+constexpr int MaximumSteps = 1000;
+constexpr double EnoughResidual = 1e-12;
+/// A residual that is still taken where rounding does not let it fall further.
+constexpr double TolerableResidual = 1e-6;
 
 Vector2 Normal(const Vector2& along)
 {
@@ -165,7 +168,7 @@ private:
   void MakeForms();
   NodeForms MakeEdgeForms(int number);
   void Assemble();
-  void SolveSystem();
+  bool SolveSystem();
   int Check(bool rigorous);
   void Aim();
   double GetEnergy() const;
@@ -707,7 +710,8 @@ void Solver::Assemble()
 }
 
 //------------------------------------------------------------------------------
-void Solver::SolveSystem()
+// Returns false if there is no solution that numbers represent.
+bool Solver::SolveSystem()
 {
   this->MakeForms();
   if (this->NumberOfUnknowns > 0)
@@ -715,13 +719,17 @@ void Solver::SolveSystem()
     const bool isNew = !this->PatternIsKnown;
     this->Assemble();
     this->PatternIsKnown = true;
-    if (this->NumberOfUnknowns <= DirectUnknowns)
+    if (this->NumberOfUnknowns <= this->Options.DirectUnknowns)
     {
       if (isNew)
       {
         this->Cholesky.analyzePattern(this->Matrix);
       }
       this->Cholesky.factorize(this->Matrix);
+      if (this->Cholesky.info() != Eigen::Success)
+      {
+        return false;
+      }
       this->Solution = this->Cholesky.solve(this->Right);
     }
     else
@@ -729,7 +737,8 @@ void Solver::SolveSystem()
       Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower,
         Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>>>
         gradients;
-      gradients.setTolerance(1e-12);
+      gradients.setTolerance(EnoughResidual);
+      gradients.setMaxIterations(MaximumSteps);
       gradients.compute(this->Matrix);
       if (this->Solution.rows() != this->NumberOfUnknowns)
       {
@@ -739,8 +748,17 @@ void Solver::SolveSystem()
       {
         const Eigen::VectorXd guess = this->Solution.col(component);
         this->Solution.col(component) = gradients.solveWithGuess(this->Right.col(component), guess);
+        if (!(gradients.error() <= TolerableResidual))
+        {
+          return false;
+        }
       }
     }
+  }
+  if (!this->Solution.allFinite())
+  {
+    // Triangles are so thin that the system's numbers overflow.
+    return false;
   }
   ++this->Statistics.Rounds;
   const auto evaluate = [this](const LinearForm& form) {
@@ -761,6 +779,7 @@ void Solver::SolveSystem()
     this->Nodes[n].Now = { evaluate(this->Forms[n].Value),
       { evaluate(this->Forms[n].ByX), evaluate(this->Forms[n].ByY) } };
   }
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -938,10 +957,8 @@ BendingSolution Solver::Run()
   double bestEnergy = std::numeric_limits<double>::infinity();
   for (int round = 0; round < MaximumRounds; ++round)
   {
-    this->SolveSystem();
-    if (!this->Solution.allFinite())
+    if (!this->SolveSystem())
     {
-      // Triangles are so thin that the system's numbers overflow.
       break;
     }
     int failed = this->Check(false);
@@ -1023,7 +1040,7 @@ BendingSolution Solver::Run()
   }
   if (!std::isfinite(bestEnergy))
   {
-    // The limit of the rounds, taken at once.
+    // The limit of the rounds, taken at once, where they ran out or a system has no solution.
     std::fill(this->IsCut.begin(), this->IsCut.end(), std::uint8_t(1));
     this->Nodes.clear();
     this->Elements.clear();

@@ -32,6 +32,8 @@ struct BendingOptions
   /// A determinant's least Bernstein coefficient, over the affine determinant in a whole triangle
   /// and over the template's own least coefficient in an element of a cut one.
   double CertificateMargin = 0.02;
+  /// Above this number of unknowns systems are solved by conjugate gradients.
+  int DirectUnknowns = 200000;
 };
 
 struct BendingStatistics
@@ -45,7 +47,8 @@ struct BendingStatistics
   int TemplateTriangles = 0;
   /// The integral of the squared second derivatives, in the units of the target, squared.
   double Energy = 0.0;
-  /// Whether the rounds ran out, so that the template itself had to be taken.
+  /// Whether the rounds ran out or a system could not be solved, so that the template itself had to
+  /// be taken.
   bool TookTemplate = false;
 };
 

@@ -147,6 +147,23 @@ PlanarPair SmoothPair(int cells, double jitter, double size)
   return pair;
 }
 
+/// A grid, and its image by a smooth map that keeps the square: all vertices of the boundary but
+/// the corners are straight.
+PlanarPair DisplacedGrid(int cells)
+{
+  std::mt19937_64 random(32);
+  PlanarPair pair = JitteredGrid(random, cells, 0.2);
+  for (Vector2& p : pair.Target)
+  {
+    const bool isInside = p.x > 0.0 && p.x < 1.0 && p.y > 0.0 && p.y < 1.0;
+    const double x = 3.141592653589793 * p.x;
+    const double y = 3.141592653589793 * p.y;
+    const Vector2 move{ std::sin(x) * std::sin(2.0 * y), std::sin(2.0 * x) * std::sin(y) };
+    p = p + (isInside ? 0.03 : 0.0) * move;
+  }
+  return pair;
+}
+
 /// A polygon with a vertex in its middle.
 PlanarPair Wheel(const LargeVector<Vector2>& source, const LargeVector<Vector2>& target)
 {
@@ -359,21 +376,23 @@ TEST(CubicMap, RingsLeadToADerivativeWhereSectorsAreAlmostHalfTurns)
 
 TEST(CubicMap, DoesNotDependOnThreads)
 {
-  const PlanarPair pair = RandomPair(81, 1.0, 6);
   const ParallelFor pieces = [](std::int64_t count, const auto& body) {
     for (std::int64_t begin = count - 1; begin >= 0; --begin)
     {
       body(begin, begin + 1);
     }
   };
-  const CubicMap first(pair, CubicMapOptions());
-  const CubicMap second(pair, CubicMapOptions(), pieces);
-  for (const Sample& sample : RandomSamples(pair, 1, 500))
+  for (const PlanarPair& pair : { RandomPair(81, 1.0, 6), DisplacedGrid(40) })
   {
-    const Vector2 point = sample.In(pair, pair.Source);
-    const Vector2 image = Value(first, sample.Triangle, point).Image;
-    const Vector2 again = Value(second, sample.Triangle, point).Image;
-    EXPECT_TRUE(image.x == again.x && image.y == again.y);
+    const CubicMap first(pair, CubicMapOptions());
+    const CubicMap second(pair, CubicMapOptions(), pieces);
+    for (const Sample& sample : RandomSamples(pair, 1, 500))
+    {
+      const Vector2 point = sample.In(pair, pair.Source);
+      const Vector2 image = Value(first, sample.Triangle, point).Image;
+      const Vector2 again = Value(second, sample.Triangle, point).Image;
+      EXPECT_TRUE(image.x == again.x && image.y == again.y);
+    }
   }
 }
 
@@ -407,15 +426,7 @@ TEST(CubicMap, BoundsOfSmoothPairsAreBelowAllCoefficients)
 
 TEST(CubicMap, ConjugateGradientsFindWhatEliminationFinds)
 {
-  // The boundary stays where it is, so that all of its vertices but the corners are straight.
-  std::mt19937_64 random(32);
-  PlanarPair pair = JitteredGrid(random, 12, 0.2);
-  for (Vector2& p : pair.Target)
-  {
-    const double x = 3.141592653589793 * p.x;
-    const double y = 3.141592653589793 * p.y;
-    p = p + 0.03 * Vector2{ std::sin(x) * std::sin(2.0 * y), std::sin(2.0 * x) * std::sin(y) };
-  }
+  const PlanarPair pair = DisplacedGrid(12);
   const CubicTemplate cubicTemplate(pair, {});
   BendingSolution gradients;
   ASSERT_TRUE(SolveWithWholeTriangles(cubicTemplate, {}, gradients));
@@ -432,6 +443,32 @@ TEST(CubicMap, ConjugateGradientsFindWhatEliminationFinds)
     difference = std::max(difference, Norm(gradients.Points[n].Gradient - exact));
   }
   EXPECT_LT(difference, 1e-4 * greatest);
+}
+
+TEST(CubicMap, SystemsThatAreNotSolvedLeaveTheTemplate)
+{
+  BendingOptions iterative;
+  iterative.DirectUnknowns = 0;
+  const PlanarPair even = RandomPair(5, 0.3, 6);
+  const CubicTemplate templateOfEven(even, {});
+  const double energy = SolveForLeastBending(templateOfEven, {}, {}).Statistics.Energy;
+  EXPECT_NEAR(
+    SolveForLeastBending(templateOfEven, iterative, {}).Statistics.Energy, energy, 1e-9 * energy);
+
+  const auto expectTemplate = [](const PlanarPair& pair, const BendingOptions& options) {
+    const CubicTemplate cubicTemplate(pair, {});
+    const BendingSolution solution = SolveForLeastBending(cubicTemplate, options, {});
+    EXPECT_TRUE(solution.Statistics.TookTemplate);
+    EXPECT_EQ(solution.Statistics.CutTriangles, pair.GetNumberOfTriangles());
+    EXPECT_EQ(solution.Statistics.TemplateTriangles, pair.GetNumberOfTriangles());
+  };
+  // Conjugate gradients do not converge where elements are thin.
+  PlanarPair uneven = RandomPair(5, 1.2, 6);
+  expectTemplate(uneven, iterative);
+  // Nothing determines the derivative at a point without triangles: the matrix is singular.
+  uneven.Source.push_back({});
+  uneven.Target.push_back({});
+  expectTemplate(uneven, {});
 }
 
 TEST(CubicMap, ClosedFormsAgreeWithTheElements)
