@@ -159,8 +159,8 @@ def write(folder, width=4000, height=3000):
 
 
 def errors(sheet, rectified):
-    """Distances in pixels of the scan between where the pixels of a rectified positions.tif came from and the truth, for
-    all pixels whose true position is on the scan; infinite where the result is empty."""
+    """Distances in pixels of the scan between where the pixels of a rectified positions.tif came from and the truth,
+    for all pixels whose true position is on the scan; infinite where the result is empty."""
     import rasterio
 
     with rasterio.open(rectified) as file:

@@ -75,7 +75,8 @@ def main(count):
             for limit in limits:
                 strays = measure(pair, map_name, limit, count)[1].max()
                 failed |= not strays <= limit + rounding(pair)
-                print(f"| {name} | {len(pair.triangles)} | {map_name} | {free:.3g} | {limit} | {strays:.3g} |", flush=True)
+                print(f"| {name} | {len(pair.triangles)} | {map_name} | {free:.3g} | {limit} | {strays:.3g} |",
+                      flush=True)
     return failed
 
 

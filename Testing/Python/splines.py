@@ -106,10 +106,12 @@ def main(names):
     if FACES.is_dir():
         pairs["faces"] = faces
     if (SHARED_DATA / "landmarks").is_dir():
-        pairs |= {name: lambda name=name: historical(name) for name in ("fushimi-castle", "tatebayashi-town", "nobeoka")}
+        maps = ("fushimi-castle", "tatebayashi-town", "nobeoka")
+        pairs |= {name: lambda name=name: historical(name) for name in maps}
     pairs |= {f"random, {s}": lambda s=s: random_pair(s) for s in (0.5, 1.2, 2.0, 3.0)}
-    print("| pair | triangles | Linear | Smooth | spline | LEAST | LEAST, refined once | spline folds | LEAST / spline | "
-          "refined / Linear | cut, of refined | seconds: spline, LEAST, refined |\n" + "|---" * 12 + "|")
+    print("| pair | triangles | Linear | Smooth | spline | LEAST | LEAST, refined once | spline folds "
+          "| LEAST / spline | refined / Linear | cut, of refined | seconds: spline, LEAST, refined |")
+    print("|---" * 12 + "|")
     failed = False
     for name, make in pairs.items():
         if names and name.split(",")[0] not in names:

@@ -152,7 +152,8 @@ def test_interrupts_end_long_computations_at_once(dhm, pair):
 
 def test_missing_files_and_folders(dhm, pair):
     dhm.path("folder.off").mkdir()
-    for command in (["check", "{}"], ["map", "pair.json", "{}", "-o", "new.csv"], ["warp", "pair.json", "{}", "-o", "n.png"],
+    for command in (["check", "{}"], ["map", "pair.json", "{}", "-o", "new.csv"],
+                    ["warp", "pair.json", "{}", "-o", "n.png"],
                     ["morph", "pair.json", "--source-image", "{}", "-o", "new%d.png"],
                     ["figure", "pair.json", "--image", "{}", "-o", "new.png"],
                     ["coordinates", "{}", "points.csv", "-o", "new.csv"],

@@ -39,7 +39,8 @@ def parcels(shift):
         None,
     ]
     return geopandas.GeoDataFrame(
-        {"name": ["Österby", "b", "c", None, "e", "f"], "number": [1, 2, 3, 4, 5, 6], "area": [0.1, 0.25, 1 / 3, 4.0, 5.5, 6.5]},
+        {"name": ["Österby", "b", "c", None, "e", "f"], "number": [1, 2, 3, 4, 5, 6],
+         "area": [0.1, 0.25, 1 / 3, 4.0, 5.5, 6.5]},
         geometry=shapes, crs="EPSG:2393",
     )
 

@@ -102,7 +102,8 @@ def test_pixels_own_their_area(dhm, image):
         # Pixel (column, row) of the result shows the image at (column - shift, row - shift), y upwards.
         rgba = read(warp(dhm, Pair(corners - 5, corners - 5 + shift, triangles), "--size", f"{WIDTH + 2}x{HEIGHT + 2}"))
         x, y = numpy.arange(WIDTH + 2) - shift, numpy.arange(HEIGHT + 2)[::-1] - shift
-        inside = numpy.logical_and(*numpy.meshgrid(*(((-0.5 < v) & (v < n - 0.5)) for v, n in ((x, WIDTH), (y, HEIGHT)))))
+        inside = numpy.logical_and(*numpy.meshgrid(*((-0.5 < v) & (v < n - 0.5)
+                                                     for v, n in ((x, WIDTH), (y, HEIGHT)))))
         numpy.testing.assert_array_equal(rgba[:, :, 3] > 0, inside)
         assert inside[-1, 0] == (shift == 0.4) and inside.sum() == WIDTH * HEIGHT
         real = numpy.pad(image.astype(float), ((1, 2), (1, 2), (0, 0)), "edge")
@@ -120,7 +121,8 @@ def test_smaller_images_have_means(dhm, pair, image, name):
     out = read(warp(dhm, smaller, "--size", "8x6", image=name, output="out.ppm"))
     numpy.testing.assert_allclose(out, image.reshape(6, 3, 8, 3, 3).mean(axis=(1, 3)), rtol=0, atol=1)
     # Parts of squares at the end.
-    out = read(warp(dhm, pair._replace(target=(pair.source - [2, 0]) / 5), "--size", "5x4", image=name, output="out.png"))
+    smaller = pair._replace(target=(pair.source - [2, 0]) / 5)
+    out = read(warp(dhm, smaller, "--size", "5x4", image=name, output="out.png"))
     assert out.shape == (4, 5, 4)
     numpy.testing.assert_allclose(out[:3, :4, :3].astype(float),
                                   image[:15, :20].reshape(3, 5, 4, 5, 3).mean(axis=(1, 3)), rtol=0, atol=1)
@@ -152,7 +154,8 @@ def test_tiles_are_seamless(dhm, monkeypatch):
         assert max((c[1] - c[0]) * (r[1] - r[0]) for c, r in read) < 0.2 * pixels[:, :, 0].size
 
 
-@pytest.mark.parametrize("mode, dtype", [("L", "u1"), ("LA", "u1"), ("RGBA", "u1"), ("I;16", "u2"), ("P", "u1"), ("1", "u1")])
+@pytest.mark.parametrize("mode, dtype", [("L", "u1"), ("LA", "u1"), ("RGBA", "u1"), ("I;16", "u2"), ("P", "u1"),
+                                         ("1", "u1")])
 def test_kinds_of_pixels(dhm, pair, mode, dtype):
     same = pair._replace(target=pair.source)
     bands = {"LA": 2, "RGBA": 4}.get(mode, 1)
@@ -216,7 +219,8 @@ def test_meshes_beside_the_image(dhm, pair, image):
 
 
 def write_xmorph(path, columns, points):
-    path.write_text(f"M2\n{columns} {len(points) // columns}\n" + "".join(f"{x!r} {y!r} 0\n" for x, y in points.tolist()))
+    lines = [f"{x!r} {y!r} 0\n" for x, y in points.tolist()]
+    path.write_text(f"M2\n{columns} {len(points) // columns}\n" + "".join(lines))
 
 
 def test_xmorph_meshes(dhm, image):
@@ -230,7 +234,8 @@ def test_xmorph_meshes(dhm, image):
     rim[1, 1] += 1
     write_xmorph(dhm.path("rim.mesh"), 4, rim)
     Image.fromarray(image[:-4, :-3]).save(dhm.path("small.png"))
-    dhm("morph", "rim.mesh", "a.mesh", "--source-image", "image.png", "--target-image", "small.png", "-n", "3", "-o", "f%d.png")
+    dhm("morph", "rim.mesh", "a.mesh", "--source-image", "image.png", "--target-image", "small.png", "-n", "3",
+        "-o", "f%d.png")
     assert all((read(dhm.path(f"f{k}.png"))[:, :, 3] == 255).all() for k in range(3))
     inner = points.copy()
     inner[:4, 1] += 30

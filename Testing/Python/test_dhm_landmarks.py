@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""dhm on landmark pairs: pairs made of them, and the georeferencing of a generated scan whose truth is known, with GDAL's
-programs as independent readers."""
+"""dhm on landmark pairs: pairs made of them, and the georeferencing of a generated scan whose truth is known, with
+GDAL's programs as independent readers."""
 
 import json
 import os
@@ -186,8 +186,8 @@ def test_morphs_between_landmarks_on_corners_have_no_gaps(dhm, gap):
     source, target = landmarks(12, (80, 60), 3)
     corners = numpy.array([[gap, gap], [79 - gap, gap], [gap, 59 - gap], [79 - gap, 59 - gap]])
     write_landmarks(dhm.path("marks.csv"), numpy.vstack((source, corners)), numpy.vstack((target, corners)))
-    dhm("morph", "marks.csv", "--scan", "0.png", "--scan", "1.png", "--source-image", "0.png", "--target-image", "1.png",
-        "-n", "3", "-o", "f%d.png")
+    dhm("morph", "marks.csv", "--scan", "0.png", "--scan", "1.png", "--source-image", "0.png",
+        "--target-image", "1.png", "-n", "3", "-o", "f%d.png")
     frames = [numpy.asarray(Image.open(dhm.path(f"f{k}.png"))) for k in range(3)]
     for side in (0, 1):
         numpy.testing.assert_array_equal(frames[2 * side][:, :, :3], pixels[side])
@@ -238,7 +238,8 @@ def test_conflicts_and_necessary_points_are_named(dhm):
     dhm.refuse(USAGE, "triangulate", "twice.csv", "--domain", "outline", "-o", "new.json", says="no outlines")
     dhm.refuse(USAGE, "triangulate", "twice.csv", "--target-angle", "61", "-o", "new.json", says="--target-angle")
     write_landmarks(dhm.path("narrow.csv"), *2 * [[[0, 0], [1, 0], [1, 0.01], [0, 1]]])
-    narrow = dhm("triangulate", "narrow.csv", "--target-angle", "50", "--maximum-added-points", "1", "-o", "narrow.json")
+    narrow = dhm("triangulate", "narrow.csv", "--target-angle", "50", "--maximum-added-points", "1",
+                 "-o", "narrow.json")
     assert "misses --target-angle 50" in narrow.err
     assert "line 1 is left out" in dhm(*words, "--leave-out-conflicts").err
     # Landmarks that change places on a line, between others: not without a point.
@@ -284,7 +285,8 @@ def test_mistyped_control_points_are_the_first_of_the_list(dhm, scan, points):
     # By their lines in the file, like errors.
     lines = dhm.path(points).read_text().splitlines()
     disabled = re.search(r"4 landmarks left out: (.*)\.", said)[1].split(", ")
-    assert all(name.endswith(" (disabled)") and lines[int(name.split()[0]) - 1].split(",")[4] == "0" for name in disabled)
+    assert all(name.endswith(" (disabled)") and lines[int(name.split()[0]) - 1].split(",")[4] == "0"
+               for name in disabled)
     listed = re.findall(r"(\d+) \([0-9.e+]+\)", said.split("put them:")[1])
     assert sorted(listed[:2]) == sorted(wrong)
 

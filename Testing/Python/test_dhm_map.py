@@ -315,8 +315,9 @@ def test_meshes_with_points_outside_are_not_written_where_they_cannot_be_marked(
 
 def test_kinds_that_do_not_fit(dhm, pair):
     write_csv(dhm.path("p.csv"), [[0.5, 0.5]])
-    for data, output, says in (("a.off", "new.csv", ".vtp"), ("p.csv", "new.vtu", ".csv"), ("p.csv", "new.xyzzy", ".csv"),
-                               ("p.csv", "new", "no extension"), ("p.csv", "", "no extension"), ("p.csv", "new.gpkg", ".gpkg")):
+    for data, output, says in (
+            ("a.off", "new.csv", ".vtp"), ("p.csv", "new.vtu", ".csv"), ("p.csv", "new.xyzzy", ".csv"),
+            ("p.csv", "new", "no extension"), ("p.csv", "", "no extension"), ("p.csv", "new.gpkg", ".gpkg")):
         dhm.refuse(USAGE, "map", "pair.json", data, "-o", output, says=says)
     dhm.refuse(USAGE, "coordinates", "pair.json", "a.off", "-o", "new.obj", says=".vtp")
 
@@ -332,7 +333,8 @@ def test_defaults_are_said(dhm, pair):
     write_mesh(dhm.path("bent.off"), bent, pair.triangles)
     for arguments, system in (
             (["map", *MESHES, "p.csv", "-o", "-"], "smooth"), (["map", "pair.json", "p.csv", "-o", "-"], "linear"),
-            (["warp", *MESHES, "i.png", "-o", "w.png"], "cubic"), (["warp", "pair.json", "i.png", "-o", "l.png"], "linear"),
+            (["warp", *MESHES, "i.png", "-o", "w.png"], "cubic"),
+            (["warp", "pair.json", "i.png", "-o", "l.png"], "linear"),
             (["morph", *MESHES, "--source-image", "i.png", "-n", "2", "-o", "m%d.png"], "cubic"),
             (["map", "bent.off", "bent.off", "p.csv", "-o", "-"], "smooth")):
         assert f"coordinate system is {system}" in dhm(*arguments).err

@@ -10,8 +10,8 @@ import xml.etree.ElementTree
 import numpy
 import pytest
 from conftest import REFUSED, USAGE
-from pairs import Pair, doubled_areas, edges_of, inside_points, make_grid, make_pair, map_points, read_json, write_csv, \
-    write_json, write_mesh, xy
+from pairs import Pair, doubled_areas, edges_of, inside_points, make_grid, make_pair, map_points, read_json, \
+    write_csv, write_json, write_mesh, xy
 
 Image = pytest.importorskip("PIL.Image")
 meshio = pytest.importorskip("meshio")
@@ -31,11 +31,12 @@ def test_a_valid_pair(dhm):
     assert (report["components"], report["boundary_loops"], report["mirrored"]) == (1, 1, False)
     corners = pair.target[pair.triangles]
     u, v = (numpy.roll(corners, -k, axis=1) - corners for k in (1, 2))
-    angles = numpy.degrees(numpy.arccos((u * v).sum(axis=2) / numpy.linalg.norm(u, axis=2) / numpy.linalg.norm(v, axis=2)))
+    lengths = [numpy.linalg.norm(sides, axis=2) for sides in (u, v)]
+    angles = numpy.degrees(numpy.arccos((u * v).sum(axis=2) / lengths[0] / lengths[1]))
     assert report["target"]["smallest_angle"]["value"] == pytest.approx(angles.min())
     assert report["target"]["smallest_angle"]["cell"] == angles.min(axis=1).argmin()
-    edges = [numpy.stack((p[pair.triangles[:, 1]] - p[pair.triangles[:, 0]], p[pair.triangles[:, 2]] - p[pair.triangles[:, 0]]),
-                         axis=2) for p in pair[:2]]
+    edges = [numpy.stack([p[pair.triangles[:, k]] - p[pair.triangles[:, 0]] for k in (1, 2)], axis=2)
+             for p in pair[:2]]
     maps = edges[1] @ numpy.linalg.inv(edges[0])
     values = numpy.linalg.svd(maps, compute_uv=False)
     assert report["largest_stretch"]["value"] == pytest.approx(values[:, 0].max())
@@ -62,7 +63,8 @@ def test_defects_of_every_kind_are_named_by_all_refusals(dhm):
     assert "Flipped" in kinds and all(problem["message"] for problem in report["problems"])
     write_csv(dhm.path("p.csv"), [[0.5, 0.1]])
     for command in (["map", "bad.json", "p.csv", "-o", "new.csv"], ["figure", "bad.json", "-o", "new.png"],
-                    ["refine", "bad.json", "--max-error", "1", "-o", "new.json"], ["convert", "bad.json", "-o", "new.json"]):
+                    ["refine", "bad.json", "--max-error", "1", "-o", "new.json"],
+                    ["convert", "bad.json", "-o", "new.json"]):
         write_json(dhm.path("bad.json"), bad)
         result = dhm.refuse(REFUSED, *command, says=("bad.json", "flipped", "--mask-invalid"))
         for problem in report["problems"]:
@@ -80,7 +82,8 @@ def test_meshes_that_do_not_match(dhm):
     other = pair.triangles.copy()
     other[4] = other[5]
     write_mesh(dhm.path("other.off"), pair.target, other)
-    for name, kinds in (("fewer.off", {"PointCountsDiffer", "CellCountsDiffer"}), ("other.off", {"ConnectivityDiffers"})):
+    for name, kinds in (("fewer.off", {"PointCountsDiffer", "CellCountsDiffer"}),
+                        ("other.off", {"ConnectivityDiffers"})):
         report = json.loads(dhm("check", "--json", "a.off", name, status=REFUSED).out)
         assert kinds & {problem["kind"] for problem in report["problems"]}
         for command in (["refine", "--max-error", "0.1", "a.off", name, "-o", "new.json"],
@@ -207,8 +210,8 @@ def test_morph_refusals(dhm, faces):
             ((), "new%d-%d.vtp", "one place"), ((*images, "--frames", "1"), "new%d.png", "--frames")):
         dhm.refuse(USAGE, "morph", "pair.json", *options, "-o", output, says=says)
     Image.fromarray(numpy.zeros((18, 24), "u1")).save(dhm.path("gray.pgm"))
-    dhm.refuse(REFUSED, "morph", "pair.json", "--source-image", "0.ppm", "--target-image", "gray.pgm", "-o", "new%d.png",
-               says="same kind")
+    dhm.refuse(REFUSED, "morph", "pair.json", "--source-image", "0.ppm", "--target-image", "gray.pgm",
+               "-o", "new%d.png", says="same kind")
     dhm.path("new1.png").write_text("mine")
     dhm.refuse(3, "morph", "pair.json", *images, "-n", "2", "-o", "new%d.png", says=("new1.png", "--force"))
 

@@ -131,6 +131,6 @@ def test_photographs(dhm, name, options):
     assert report["valid"] and report["source"]["points"] == columns * rows
     dhm("warp", *options, *meshes, images[0], "-o", "warped.png")
     assert Image.open(dhm.path("warped.png")).size == Image.open(images[0]).size
-    dhm("morph", *options, *meshes, "--source-image", images[0], "--target-image", images[1], "-n", "3", "--size", "60x80",
-        "-o", "m-%02d.png")
+    dhm("morph", *options, *meshes, "--source-image", images[0], "--target-image", images[1], "-n", "3",
+        "--size", "60x80", "-o", "m-%02d.png")
     assert [Image.open(path).size for path in sorted(dhm.folder.glob("m-*.png"))] == 3 * [(60, 80)]

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Examples/Interactive/landmarks.py, driven by events of a mouse in a process of its own, under a virtual display where there
-is none. As a script this file is that process:
+"""Examples/Interactive/landmarks.py, driven by events of a mouse in a process of its own, under a virtual display where
+there is none. As a script this file is that process:
 
     test_interactive.py [PICTURE.png]     prints frames a second, of the clock and of the processor
 """
