@@ -211,6 +211,23 @@ TEST(IsomorphicTriangulationFilter, FramesOfImages)
   EXPECT_EQ(11, bounds[3]);
 }
 
+TEST(IsomorphicTriangulationFilter, PositionsThatHaveNothingInCommon)
+{
+  Random random(41);
+  std::array<std::vector<Point>, 2> points;
+  for (int i = 0; i < 300; ++i)
+  {
+    points[i % 2].push_back(Flat(random.Uniform(1.0, 9.0), random.Uniform(1.0, 9.0)));
+  }
+  PairRun run(points[0], points[1]);
+  run.Pair->SetSourceFrame(0, 10, 0, 10);
+  run.Pair->SetTargetFrame(0, 10, 0, 10);
+  vtkPolyData* mesh = run.Mesh();
+  const auto map = MakeFilter(Linear, { mesh, run.Pair->GetTargetOutput() }, run.Source);
+  EXPECT_LT(LargestDistance(Output(map), run.Target), 1e-12);
+  EXPECT_EQ(map->GetNumberOfOutsidePoints(), 0);
+}
+
 /// The square with a point moved.
 std::vector<Point> With(std::size_t id, const Point& position)
 {

@@ -329,8 +329,8 @@ TEST(KindsOfData, WithoutDataTheMeshIsMapped)
 TEST(KindsOfData, PrecisionOfPoints)
 {
   // Points that are equal in both precisions.
-  const auto cloud = Moved(MakeCloud(ThePair().Source, RandomSamples(ThePair().Source, 5000, 30)),
-    [](const Point& p) { return RoundedToFloat(p); });
+  const auto any = MakeCloud(ThePair().Source, RandomSamples(ThePair().Source, 5000, 30));
+  const auto cloud = MakeCloud(PointsOf(MakeCloud(PointsOf(any), VTK_FLOAT)));
   const auto reference = MakeFilter(Smooth, ThePair(), cloud);
   for (const auto& [input, setting, result] :
     std::vector<std::array<int, 3>>{ { VTK_DOUBLE, vtkAlgorithm::DOUBLE_PRECISION, VTK_DOUBLE },

@@ -20,20 +20,6 @@ using namespace fixtures;
 constexpr double HiddenPoint = vtkDataSetAttributes::HIDDENPOINT;
 constexpr double HiddenCell = vtkDataSetAttributes::HIDDENCELL;
 
-/// Values that encode their position: component k of tuple i is 10 i + k + 1.
-vtkSmartPointer<vtkDoubleArray> MakeNumbers(const char* name, int components, vtkIdType tuples)
-{
-  auto numbers = vtkSmartPointer<vtkDoubleArray>::New();
-  numbers->SetName(name);
-  numbers->SetNumberOfComponents(components);
-  numbers->SetNumberOfTuples(tuples);
-  for (vtkIdType i = 0; i < tuples * components; ++i)
-  {
-    numbers->SetValue(i, static_cast<double>(10 * (i / components) + i % components + 1));
-  }
-  return numbers;
-}
-
 /// Two triangles, the second of them outside.
 vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
 {
@@ -42,8 +28,9 @@ vtkSmartPointer<vtkPolyData> MakeDataPartlyOutside()
     { { 0, 1, 2 }, { 3, 4, 5 } });
 }
 
-/// The square [0, 2] x [0, 2] is mapped to itself with doubled coordinates: J is twice the identity
-/// in the plane.
+/// The square [0, 2] x [0, 2] is mapped to itself with doubled coordinates.
+const Matrix Jacobian{ { { 2, 0, 0 }, { 0, 2, 0 }, { 0, 0, 1 } } };
+
 class MalformedData : public ::testing::Test
 {
 protected:
@@ -89,9 +76,9 @@ TEST_F(MalformedData, ArraysOfWrongLengthPassUnchanged)
   {
     SCOPED_TRACE(tuples);
     const auto data = MakeDataPartlyOutside();
-    const std::vector<vtkSmartPointer<vtkDoubleArray>> arrays{ MakeNumbers("Vectors", 3, tuples),
-      MakeNumbers("Normals", 3, tuples), MakeNumbers("Tensors", 9, tuples),
-      MakeNumbers("Gradients", 3, tuples) };
+    const std::vector<vtkSmartPointer<vtkDoubleArray>> arrays{ RandomArray("Vectors", 3, tuples, 1),
+      RandomArray("Normals", 3, tuples, 2), RandomArray("Tensors", 9, tuples, 3),
+      RandomArray("Gradients", 3, tuples, 4) };
     // 2 tuples match the number of cells, but not that of points.
     for (vtkDataSetAttributes* attributes :
       std::initializer_list<vtkDataSetAttributes*>{ data->GetPointData(), data->GetCellData() })
@@ -113,13 +100,13 @@ TEST_F(MalformedData, ArraysOfWrongLengthPassUnchanged)
       EXPECT_EQ(CellArray(output, array->GetName()) == array, tuples != 2);
     }
     // An array beside them is transformed nevertheless, of which one vector is not a number.
-    const auto others = MakeNumbers("Others", 3, 6);
+    const auto others = RandomArray("Others", 3, 6, 5);
     others->SetComponent(0, 0, NotANumber);
     data->GetPointData()->SetVectors(others);
     this->Filter->TransformAllInputVectorsOn();
     vtkDataArray* mapped = PointArray(this->Run(data), "Others");
     EXPECT_TRUE(std::isnan(mapped->GetComponent(0, 0)));
-    EXPECT_LT(Distance(VectorOf(mapped, 1), { 22.0, 24.0, 13.0 }), 1e-13);
+    EXPECT_LT(Distance(VectorOf(mapped, 1), Jacobian * VectorOf(others, 1)), 1e-12);
   }
 }
 
@@ -139,7 +126,8 @@ TEST_F(MalformedData, CellsWithInvalidPointIds)
     grid->SetCells(VTK_TRIANGLE, polygons->GetPolys());
     for (vtkDataSet* data : std::initializer_list<vtkDataSet*>{ polygons, grid })
     {
-      data->GetCellData()->SetVectors(MakeNumbers("Vectors", 3, 3));
+      const auto before = RandomArray("Vectors", 3, 3, 6);
+      data->GetCellData()->SetVectors(before);
       vtkPointSet* output = this->Run(data);
       ASSERT_EQ(output->GetNumberOfPoints(), 6);
       ASSERT_EQ(output->GetNumberOfCells(), 3);
@@ -148,7 +136,7 @@ TEST_F(MalformedData, CellsWithInvalidPointIds)
         (std::vector<double>{ 0, HiddenCell, HiddenCell }));
       // Cell vectors are transformed at the center of the cell, which does not exist.
       vtkDataArray* vectors = output->GetCellData()->GetVectors();
-      EXPECT_NEAR(vectors->GetComponent(0, 0), 2.0, 1e-13);
+      EXPECT_LT(Distance(VectorOf(vectors, 0), Jacobian * VectorOf(before, 0)), 1e-12);
       EXPECT_TRUE(std::isnan(vectors->GetComponent(1, 0)));
       EXPECT_TRUE(std::isnan(vectors->GetComponent(2, 0)));
     }
@@ -169,7 +157,7 @@ TEST_F(MalformedData, PolygonsAndLinesWithTooFewPoints)
   data->InsertNextCell(VTK_POLYGON, 1, ids);
   data->InsertNextCell(VTK_POLYGON, 3, ids);
   data->DeleteCells();
-  data->GetCellData()->SetVectors(MakeNumbers("Flux", 3, 4));
+  data->GetCellData()->SetVectors(RandomArray("Flux", 3, 4, 7));
   vtkPointSet* output = this->Run(data);
   ASSERT_EQ(output->GetNumberOfCells(), 4);
   EXPECT_EQ(
@@ -197,7 +185,7 @@ TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
       data->GetPolys()->SetData(RandomArray<vtkTypeInt64Array>("Offsets", 1, 3, 1),
         RandomArray<vtkTypeInt64Array>("Points", 1, 3, 2));
     },
-    [](vtkPolyData* data) { data->GetPointData()->AddArray(MakeNumbers("Velocity", 3, 2)); }
+    [](vtkPolyData* data) { data->GetPointData()->AddArray(RandomArray("Velocity", 3, 2, 8)); }
   };
   for (std::size_t i = 0; i < changes.size(); ++i)
   {
@@ -233,11 +221,13 @@ TEST_F(MalformedData, UnnamedAttributesAreReplaced)
     vtkDataSetAttributes* input = attributesOf(data);
     const vtkIdType tuples = onCells ? 2 : 6;
     // An unnamed array without a role is kept.
-    const auto plain = MakeNumbers(nullptr, 1, tuples);
+    const auto plain = RandomArray(nullptr, 1, tuples, 1);
+    const auto vectors = RandomArray(nullptr, 3, tuples, 2);
+    const auto tensors = RandomArray(nullptr, 9, tuples, 3);
     input->AddArray(plain);
-    input->SetVectors(MakeNumbers(nullptr, 3, tuples));
-    input->SetNormals(MakeNumbers(nullptr, 3, tuples));
-    input->SetTensors(MakeNumbers(nullptr, 9, tuples));
+    input->SetVectors(vectors);
+    input->SetNormals(RandomArray(nullptr, 3, tuples, 4));
+    input->SetTensors(tensors);
     vtkDataSetAttributes* result = attributesOf(this->Run(data));
     int unnamed = 0;
     for (int i = 0; i < result->GetNumberOfArrays(); ++i)
@@ -247,12 +237,15 @@ TEST_F(MalformedData, UnnamedAttributesAreReplaced)
     EXPECT_EQ(unnamed, 4);
     EXPECT_EQ(result->GetAbstractArray(0), plain);
     ASSERT_TRUE(result->GetVectors() && result->GetNormals() && result->GetTensors());
-    EXPECT_NEAR(result->GetVectors()->GetComponent(0, 0), 2.0, 1e-13);
-    EXPECT_NEAR(result->GetTensors()->GetComponent(0, 0), 4.0, 1e-13);
+    EXPECT_LT(Distance(VectorOf(result->GetVectors(), 0), Jacobian * VectorOf(vectors, 0)), 1e-12);
+    EXPECT_LT(Distance(MatrixOf(result->GetTensors(), 0),
+                Jacobian * MatrixOf(tensors, 0) * Transposed(Jacobian)),
+      1e-12);
     EXPECT_NEAR(Norm(VectorOf(result->GetNormals(), 0)), 1.0, 1e-13);
     // The arrays of the input are unchanged.
     EXPECT_EQ(input->GetNumberOfArrays(), 4);
-    EXPECT_EQ(input->GetVectors()->GetComponent(0, 0), 1.0);
+    EXPECT_EQ(input->GetVectors(), vectors);
+    EXPECT_TRUE(IsSame(vectors, RandomArray(nullptr, 3, tuples, 2)));
   }
 }
 
@@ -260,12 +253,12 @@ TEST_F(MalformedData, AnArrayKeepsAllItsRoles)
 {
   // Velocities are often both the active vectors and the active scalars, for coloring.
   const auto data = MakeDataPartlyOutside();
-  const auto velocities = MakeNumbers("Velocities", 3, 6);
+  const auto velocities = RandomArray("Velocities", 3, 6, 9);
   data->GetPointData()->SetScalars(velocities);
   data->GetPointData()->SetActiveVectors("Velocities");
   vtkPointData* result = this->Run(data)->GetPointData();
   ASSERT_TRUE(result->GetVectors());
-  EXPECT_NEAR(result->GetVectors()->GetComponent(1, 0), 22.0, 1e-13);
+  EXPECT_LT(Distance(VectorOf(result->GetVectors(), 1), Jacobian * VectorOf(velocities, 1)), 1e-12);
   EXPECT_EQ(result->GetScalars(), result->GetVectors());
 }
 

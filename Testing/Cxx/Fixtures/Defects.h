@@ -126,8 +126,6 @@ inline void ExpectMasked(const MeshPair& pair, const std::vector<Defect>& defect
   }
   const std::vector<Triangle> triangles = TrianglesOf(pair.Source);
   std::vector<Triangle> rest;
-  std::array<std::vector<Point>, 2> points;
-  std::array<Ids, 2> expectedTriangles;
   for (vtkIdType t = 0; t < static_cast<vtkIdType>(triangles.size()); ++t)
   {
     const bool isMasked = masked.count(t) > 0;
@@ -137,28 +135,30 @@ inline void ExpectMasked(const MeshPair& pair, const std::vector<Defect>& defect
     {
       rest.push_back(triangles[t]);
     }
-    for (const bool inverse : { false, true })
-    {
-      vtkPolyData* from = inverse ? pair.Target : pair.Source;
-      if (HasInterior(from, triangles[t]))
-      {
-        const std::vector<Point> inside = SamplePoints(from, { triangles[t] }, 4, t);
-        points[inverse].insert(points[inverse].end(), inside.begin(), inside.end());
-        expectedTriangles[inverse].insert(expectedTriangles[inverse].end(), 4, isMasked ? -1 : t);
-      }
-    }
   }
   const MeshPair pierced = WithTriangles(pair, rest);
   for (const bool inverse : { false, true })
   {
+    vtkPolyData* from = inverse ? pair.Target : pair.Source;
+    std::vector<Point> points;
+    Ids expectedTriangles;
+    for (vtkIdType t = 0; t < static_cast<vtkIdType>(triangles.size()); ++t)
+    {
+      if (HasInterior(from, triangles[t]))
+      {
+        const std::vector<Point> inside = SamplePoints(from, { triangles[t] }, 4, t);
+        points.insert(points.end(), inside.begin(), inside.end());
+        expectedTriangles.insert(expectedTriangles.end(), 4, masked.count(t) > 0 ? -1 : t);
+      }
+    }
     for (const System& system : { Linear, Contour, Smooth })
     {
-      const MappedPoints expected = MapPoints(pierced, points[inverse], { system, false, inverse });
-      const MappedPoints mapped = MapPoints(pair, points[inverse], { system, true, inverse });
+      const MappedPoints expected = MapPoints(pierced, points, { system, false, inverse });
+      const MappedPoints mapped = MapPoints(pair, points, { system, true, inverse });
       ASSERT_EQ(expected.Error + expected.Warning + mapped.Error, "");
       EXPECT_NE(mapped.Warning, "");
-      EXPECT_EQ(mapped.Triangles, expectedTriangles[inverse]);
-      for (std::size_t i = 0; i < points[inverse].size(); ++i)
+      EXPECT_EQ(mapped.Triangles, expectedTriangles);
+      for (std::size_t i = 0; i < points.size(); ++i)
       {
         EXPECT_EQ(expected.IsInside(i), mapped.IsInside(i));
         EXPECT_LE(Distance(expected.Images[i], mapped.Images[i]), 1e-14) << system.Name;

@@ -46,12 +46,6 @@ namespace fixtures
 
 // --- Access to VTK objects -----------------------------------------------------------------------
 
-inline Point PointOf(vtkPoints* points, vtkIdType i)
-{
-  Point p;
-  points->GetPoint(i, p.data());
-  return p;
-}
 inline Point VectorOf(vtkDataArray* array, vtkIdType i)
 {
   Point p;
@@ -86,15 +80,6 @@ inline bool IsValid(vtkDataSet* data, vtkIdType i)
 {
   return PointValue(data, "vtkValidPointMask", i) != 0.0;
 }
-inline vtkIdType CountOutside(vtkDataSet* data)
-{
-  vtkIdType count = 0;
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
-  {
-    count += !IsValid(data, i);
-  }
-  return count;
-}
 /// The first components.
 inline std::vector<double> ValuesOf(vtkDataArray* array)
 {
@@ -104,6 +89,11 @@ inline std::vector<double> ValuesOf(vtkDataArray* array)
     values.push_back(array->GetComponent(i, 0));
   }
   return values;
+}
+inline vtkIdType CountOutside(vtkDataSet* data)
+{
+  const std::vector<double> mask = ValuesOf(PointArray(data, "vtkValidPointMask"));
+  return std::count(mask.begin(), mask.end(), 0.0);
 }
 inline Matrix JacobianOf(vtkDataSet* data, vtkIdType i)
 {
@@ -126,10 +116,6 @@ inline double RoundedToFloat(double x)
 {
   const volatile float rounded = static_cast<float>(x);
   return rounded;
-}
-inline Point RoundedToFloat(const Point& p)
-{
-  return { RoundedToFloat(p[0]), RoundedToFloat(p[1]), RoundedToFloat(p[2]) };
 }
 
 /// Whether two numbers are the same double (NaN equals NaN, and 0 equals -0).

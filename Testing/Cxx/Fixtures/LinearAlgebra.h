@@ -54,25 +54,13 @@ inline Point operator*(const Matrix& m, const Point& a)
 }
 inline Matrix Transposed(const Matrix& m)
 {
-  Matrix t;
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int j = 0; j < 3; ++j)
-    {
-      t[i][j] = m[j][i];
-    }
-  }
-  return t;
+  return { { { m[0][0], m[1][0], m[2][0] }, { m[0][1], m[1][1], m[2][1] },
+    { m[0][2], m[1][2], m[2][2] } } };
 }
 inline Matrix operator*(const Matrix& a, const Matrix& b)
 {
   const Matrix columns = Transposed(b);
-  Matrix product;
-  for (int i = 0; i < 3; ++i)
-  {
-    product[i] = { Dot(a[i], columns[0]), Dot(a[i], columns[1]), Dot(a[i], columns[2]) };
-  }
-  return product;
+  return { { columns * a[0], columns * a[1], columns * a[2] } };
 }
 inline double Determinant(const Matrix& m)
 {
@@ -98,19 +86,11 @@ inline double Distance(const Matrix& a, const Matrix& b)
 inline Matrix Rotation(const Point& axis, double angle)
 {
   const Point n = Unit(axis);
-  Matrix m;
-  for (int column = 0; column < 3; ++column)
-  {
-    Point e{};
-    e[column] = 1.0;
-    const Point turned =
-      std::cos(angle) * e + std::sin(angle) * Cross(n, e) + (1.0 - std::cos(angle)) * Dot(n, e) * n;
-    for (int row = 0; row < 3; ++row)
-    {
-      m[row][column] = turned[row];
-    }
-  }
-  return m;
+  const auto turned = [&](const Point& e) {
+    return std::cos(angle) * e + std::sin(angle) * Cross(n, e) +
+      (1.0 - std::cos(angle)) * Dot(n, e) * n;
+  };
+  return Transposed({ { turned({ 1, 0, 0 }), turned({ 0, 1, 0 }), turned({ 0, 0, 1 }) } });
 }
 
 } // namespace fixtures

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -65,16 +67,9 @@ inline PlanarPair JitteredGrid(std::mt19937_64& random, int cells, double jitter
       const int c = b + cells + 1;
       const int d = a + cells + 1;
       // The corners of the square must not have a triangle with two edges on the boundary.
-      if ((i + j) % 2 == 0)
-      {
-        pair.Triangles.push_back({ a, b, c });
-        pair.Triangles.push_back({ a, c, d });
-      }
-      else
-      {
-        pair.Triangles.push_back({ a, b, d });
-        pair.Triangles.push_back({ b, c, d });
-      }
+      const bool isEven = (i + j) % 2 == 0;
+      pair.Triangles.push_back({ a, b, isEven ? c : d });
+      pair.Triangles.push_back({ isEven ? a : b, c, d });
     }
   }
   pair.Target = pair.Source;
@@ -251,23 +246,16 @@ inline std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
   while (true)
   {
     std::vector<double> angles{ turn * uniform(random) };
-    double sum = 0.0;
     std::vector<double> steps;
-    for (int i = 0; i < valence; ++i)
+    std::generate_n(
+      std::back_inserter(steps), valence, [&]() { return 0.02 + std::pow(uniform(random), 2.0); });
+    const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
+    for (int i = 1; i < valence; ++i)
     {
-      steps.push_back(0.02 + std::pow(uniform(random), 2.0));
-      sum += steps.back();
+      angles.push_back(angles.back() + steps[static_cast<std::size_t>(i - 1)] * turn / sum);
     }
-    double widest = 0.0;
-    for (int i = 0; i < valence; ++i)
+    if (*std::max_element(steps.begin(), steps.end()) * turn / sum < turn * 172.0 / 360.0)
     {
-      const double step = steps[static_cast<std::size_t>(i)] * turn / sum;
-      widest = std::max(widest, step);
-      angles.push_back(angles.back() + step);
-    }
-    if (widest < turn * 172.0 / 360.0)
-    {
-      angles.pop_back();
       return angles;
     }
   }

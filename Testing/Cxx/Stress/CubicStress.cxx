@@ -165,19 +165,13 @@ void RunStars()
     const CubicMapStatistics& statistics = map.GetStatistics();
     uncertified += statistics.UncertifiedTriangles;
     int* row = numbers[turn < 0.5 * 3.141592653589793 ? 0 : 1];
+    const bool isExceptional = !statistics.ExceptionalInteriorPoints.empty();
+    const int column = isExceptional ? 3 : statistics.Rings > 0 ? 2 : 1;
     ++row[0];
-    if (!statistics.ExceptionalInteriorPoints.empty())
+    ++row[column];
+    if (column == 2)
     {
-      ++row[3];
-    }
-    else if (statistics.Rings > 0)
-    {
-      ++row[2];
       rings.push_back(statistics.Rings);
-    }
-    else
-    {
-      ++row[1];
     }
   }
   std::sort(rings.begin(), rings.end());
