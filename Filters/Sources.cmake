@@ -112,23 +112,27 @@ set(construction_headers
 set(figure_sources
   Construction/CommonMap.cxx
   Construction/ConstrainedTriangulation.cxx
+  Construction/FaceDissection.cxx
   Construction/FaceFilling.cxx
   Construction/FigurePair.cxx
   Construction/IsomorphicTriangulation.cxx
   Construction/JointOptimization.cxx
   Construction/LandmarkResiduals.cxx
   Construction/PairMesh.cxx
-  Construction/PairQuality.cxx)
+  Construction/PairQuality.cxx
+  Construction/RegionRefilling.cxx)
 set(figure_headers
   Construction/CommonMap.h
   Construction/ConstrainedTriangulation.h
+  Construction/FaceDissection.h
   Construction/FaceFilling.h
   Construction/FigurePair.h
   Construction/IsomorphicTriangulation.h
   Construction/JointOptimization.h
   Construction/LandmarkResiduals.h
   Construction/PairMesh.h
-  Construction/PairQuality.h)
+  Construction/PairQuality.h
+  Construction/RegionRefilling.h)
 
 # What the VTK classes share.
 set(pipeline_sources

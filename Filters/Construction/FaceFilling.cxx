@@ -6,7 +6,9 @@
 #include "Kernel/ExactSign.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace homeomorphism
@@ -190,6 +192,79 @@ std::vector<std::vector<int>> Walks(const Rotations& rotations)
   return walks;
 }
 
+/// The centroid of the points of a polygon that its edges' ends see at this slope at least above
+/// the edge, which cutting a box by lines finds. False if there are none, or if not the whole
+/// polygon is visible from there.
+bool CenterAtSlope(const std::vector<Vector2>& polygon, double slope, Vector2& center)
+{
+  const std::size_t m = polygon.size();
+  const Vector2 origin = polygon[0];
+  Vector2 low;
+  Vector2 high;
+  for (const Vector2& p : polygon)
+  {
+    low = { std::min(low.x, p.x - origin.x), std::min(low.y, p.y - origin.y) };
+    high = { std::max(high.x, p.x - origin.x), std::max(high.y, p.y - origin.y) };
+  }
+  std::vector<Vector2> region{ low, { high.x, low.y }, high, { low.x, high.y } };
+  std::vector<Vector2> clipped;
+  const auto cut = [&](const Vector2& from, const Vector2& direction) {
+    clipped.clear();
+    for (std::size_t k = 0; k < region.size(); ++k)
+    {
+      const Vector2& p = region[k];
+      const Vector2& q = region[k + 1 < region.size() ? k + 1 : 0];
+      const double here = Cross(direction, p - from);
+      const double there = Cross(direction, q - from);
+      if (here >= 0.0)
+      {
+        clipped.push_back(p);
+      }
+      if ((here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0))
+      {
+        clipped.push_back(p + (here / (here - there)) * (q - p));
+      }
+    }
+    region.swap(clipped);
+  };
+  for (std::size_t i = 0; i < m && !region.empty(); ++i)
+  {
+    const Vector2 start = polygon[i] - origin;
+    const Vector2 end = polygon[i + 1 < m ? i + 1 : 0] - origin;
+    const Vector2 edge = end - start;
+    const Vector2 rise = slope * Vector2{ -edge.y, edge.x };
+    cut(start, edge + rise);
+    if (slope > 0.0)
+    {
+      cut(end, edge - rise);
+    }
+  }
+  double area = 0.0;
+  Vector2 sum;
+  for (std::size_t k = 1; k + 1 < region.size(); ++k)
+  {
+    const Vector2 u = region[k] - region[0];
+    const Vector2 v = region[k + 1] - region[0];
+    const double part = Cross(u, v);
+    area += part;
+    sum = sum + (part / 3.0) * (u + v);
+  }
+  if (!(area > 0.0))
+  {
+    return false;
+  }
+  const Vector2 centroid = origin + (region[0] + (1.0 / area) * sum);
+  for (std::size_t i = 0; i < m; ++i)
+  {
+    if (Orientation(centroid, polygon[i], polygon[i + 1 < m ? i + 1 : 0]) <= 0)
+    {
+      return false;
+    }
+  }
+  center = centroid;
+  return true;
+}
+
 } // namespace
 
 bool FillByDiagonals(
@@ -258,65 +333,159 @@ bool FillByDiagonals(
   return true;
 }
 
-bool FindStarCenter(const PolygonPair& polygons, std::array<Vector2, 2>& center)
+bool FillWithFewPoints(const PolygonPair& polygons, const QualityMeasure& quality, int most,
+  std::array<std::vector<Vector2>, 2>& added, CornerTriangles& triangles)
 {
-  for (int d = 0; d < 2; ++d)
+  const int m = static_cast<int>(polygons[0].size());
+  if (m < 3)
   {
-    const auto& points = polygons[d];
-    const std::size_t m = points.size();
-    Vector2 low = points[0];
-    Vector2 high = points[0];
-    for (const Vector2& p : points)
+    return false;
+  }
+  // The best filling of the part between two corners: the corners of the face at the chord between
+  // them, which is a triangle or a star.
+  struct Part
+  {
+    int Points = 0;
+    double Quality = std::numeric_limits<double>::infinity();
+    std::vector<int> Between;
+  };
+  const std::size_t size = static_cast<std::size_t>(m);
+  std::vector<Part> parts(size * size);
+  const auto part = [&](int i, int j) -> Part& {
+    return parts[static_cast<std::size_t>(i) * size + static_cast<std::size_t>(j)];
+  };
+  const auto isLeft = [&](int domain, int a, int b, int c) {
+    const auto& points = polygons[domain];
+    return Orientation(points[a], points[b], points[c]) > 0;
+  };
+  // A simple quadrangle has a diagonal.
+  const auto isSimple = [&](int d, int i, int k, int l, int j) {
+    return (isLeft(d, i, k, l) && isLeft(d, i, l, j)) || (isLeft(d, i, k, j) && isLeft(d, k, l, j));
+  };
+  std::array<Vector2, 2> center;
+  const auto findCenter = [&](int i, const std::vector<int>& between, int j) {
+    PolygonPair star;
+    for (int d = 0; d < 2; ++d)
     {
-      low = { std::min(low.x, p.x), std::min(low.y, p.y) };
-      high = { std::max(high.x, p.x), std::max(high.y, p.y) };
-    }
-    std::vector<Vector2> kernel{ low, { high.x, low.y }, high, { low.x, high.y } };
-    for (std::size_t i = 0; i < m && !kernel.empty(); ++i)
-    {
-      const Vector2 a = points[i];
-      const Vector2 edge = points[(i + 1) % m] - a;
-      std::vector<Vector2> clipped;
-      for (std::size_t k = 0; k < kernel.size(); ++k)
+      star[d].push_back(polygons[d][i]);
+      for (const int k : between)
       {
-        const Vector2& p = kernel[k];
-        const Vector2& q = kernel[(k + 1) % kernel.size()];
-        const double left = Cross(edge, p - a);
-        const double right = Cross(edge, q - a);
-        if (left >= 0.0)
+        star[d].push_back(polygons[d][k]);
+      }
+      star[d].push_back(polygons[d][j]);
+    }
+    return FindStarCenter(star, center);
+  };
+  for (int length = 2; length < m; ++length)
+  {
+    for (int i = 0; i + length < m; ++i)
+    {
+      const int j = i + length;
+      Part best{ most + 1, -1.0, {} };
+      for (int k = i + 1; k < j; ++k)
+      {
+        const int points = part(i, k).Points + part(k, j).Points;
+        const double least = std::min(part(i, k).Quality, part(k, j).Quality);
+        if (points < best.Points || (points == best.Points && least > best.Quality))
         {
-          clipped.push_back(p);
-        }
-        if ((left > 0.0 && right < 0.0) || (left < 0.0 && right > 0.0))
-        {
-          clipped.push_back(p + (left / (left - right)) * (q - p));
+          const double own = std::min(least,
+            QualityOf(quality, { polygons[0][i], polygons[0][k], polygons[0][j] },
+              { polygons[1][i], polygons[1][k], polygons[1][j] }));
+          if (own >= 0.0 && (points < best.Points || own > best.Quality))
+          {
+            best = { points, own, { k } };
+          }
         }
       }
-      kernel = std::move(clipped);
-    }
-    // The kernel's centroid, or nothing if it has no area.
-    double area = 0.0;
-    Vector2 sum;
-    for (std::size_t k = 1; k + 1 < kernel.size(); ++k)
-    {
-      const Vector2 u = kernel[k] - kernel[0];
-      const Vector2 v = kernel[k + 1] - kernel[0];
-      const double part = Cross(u, v);
-      area += part;
-      sum = sum + (part / 3.0) * (u + v);
-    }
-    if (!(area > 0.0))
-    {
-      return false;
-    }
-    center[d] = kernel[0] + (1.0 / area) * sum;
-    for (std::size_t i = 0; i < m; ++i)
-    {
-      if (Orientation(center[d], points[i], points[(i + 1) % m]) <= 0)
+      for (int k = i + 1; k < j && best.Points > 1; ++k)
       {
+        for (int l = k + 1; l < j; ++l)
+        {
+          const int points = 1 + part(i, k).Points + part(k, l).Points + part(l, j).Points;
+          if (points < best.Points && isSimple(0, i, k, l, j) && isSimple(1, i, k, l, j))
+          {
+            best = { points, 0.0, { k, l } };
+          }
+        }
+      }
+      if (best.Points > 1 && most > 0)
+      {
+        std::vector<int> between(static_cast<std::size_t>(length - 1));
+        std::iota(between.begin(), between.end(), i + 1);
+        if (findCenter(i, between, j))
+        {
+          best = { 1, 0.0, std::move(between) };
+        }
+      }
+      part(i, j) = std::move(best);
+    }
+  }
+  if (part(0, m - 1).Points > most)
+  {
+    return false;
+  }
+  std::vector<std::pair<int, int>> open{ { 0, m - 1 } };
+  while (!open.empty())
+  {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    if (j - i < 2)
+    {
+      continue;
+    }
+    const Part& found = part(i, j);
+    std::vector<int> corners{ i };
+    corners.insert(corners.end(), found.Between.begin(), found.Between.end());
+    corners.push_back(j);
+    if (corners.size() == 3)
+    {
+      triangles.push_back({ corners[0], corners[1], corners[2] });
+    }
+    else
+    {
+      if (!findCenter(i, found.Between, j))
+      {
+        // Too small for double precision.
         return false;
       }
+      const int point = m + static_cast<int>(added[0].size());
+      for (int d = 0; d < 2; ++d)
+      {
+        added[d].push_back(center[d]);
+      }
+      for (std::size_t k = 0; k < corners.size(); ++k)
+      {
+        triangles.push_back({ point, corners[k], corners[(k + 1) % corners.size()] });
+      }
     }
+    for (std::size_t k = 0; k + 1 < corners.size(); ++k)
+    {
+      open.emplace_back(corners[k], corners[k + 1]);
+    }
+  }
+  return true;
+}
+
+bool FindStarCenter(const PolygonPair& polygons, std::array<Vector2, 2>& center)
+{
+  return CenterAtSlope(polygons[0], 0.0, center[0]) && CenterAtSlope(polygons[1], 0.0, center[1]);
+}
+
+bool FindBestStarCenter(const std::vector<Vector2>& polygon, Vector2& center)
+{
+  if (!CenterAtSlope(polygon, 0.0, center))
+  {
+    return false;
+  }
+  // The largest slope that leaves anything, to within a few percent.
+  double slope = 1.0;
+  for (int i = 0; i < 60 && !CenterAtSlope(polygon, slope, center); ++i)
+  {
+    slope *= 0.5;
+  }
+  for (double share = 0.5; share > 0.02; share *= 0.5)
+  {
+    slope *= CenterAtSlope(polygon, slope * (1.0 + share), center) ? 1.0 + share : 1.0;
   }
   return true;
 }

@@ -29,8 +29,18 @@ using CornerTriangles = std::vector<std::array<int, 3>>;
 bool FillByDiagonals(
   const PolygonPair& polygons, const QualityMeasure& quality, CornerTriangles& triangles);
 
+/// The same with at most @a most added points, as few as this search finds: the polygons are
+/// divided into triangles and into quadrangles and parts along the boundary that have a point in
+/// the middle. The points are appended to @a added.
+bool FillWithFewPoints(const PolygonPair& polygons, const QualityMeasure& quality, int most,
+  std::array<std::vector<Vector2>, 2>& added, CornerTriangles& triangles);
+
 /// A point of each domain from which the whole polygon is visible; false if there is none.
 bool FindStarCenter(const PolygonPair& polygons, std::array<Vector2, 2>& center);
+
+/// A point from which a whole polygon is visible and whose triangles have large angles at the
+/// polygon's corners; false if there is none.
+bool FindBestStarCenter(const std::vector<Vector2>& polygon, Vector2& center);
 
 /// Triangulates by the overlay of triangulations of the two polygons: every crossing of their
 /// diagonals becomes a point (Aronov, Seidel, Souvaine 1993). Flips first lower the number of

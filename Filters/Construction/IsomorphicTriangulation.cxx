@@ -4,6 +4,7 @@
 #include "IsomorphicTriangulation.h"
 
 #include "CommonMap.h"
+#include "FaceDissection.h"
 #include "FaceFilling.h"
 #include "JointOptimization.h"
 #include "Kernel/ExactSign.h"
@@ -15,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace homeomorphism
@@ -24,6 +26,14 @@ namespace
 
 using Kind = FigureProblem::Kind;
 
+/// Corners of a face up to which all common diagonals are weighed against each other at once, and
+/// the share of points whose components the figure must have connected for that: otherwise the
+/// edges that connect them leave too little choice.
+constexpr std::size_t LargestDissection = 2500;
+constexpr std::size_t ConnectedShare = 10;
+/// Segments left out, and points, up to which others are left out instead if that is better.
+constexpr std::size_t ExchangedSegments = 20;
+constexpr std::size_t ExchangedPoints = 3000;
 /// Corners of a face up to which all diagonals are tried, and are weighed against each other.
 constexpr std::size_t AllPairs = 700;
 constexpr std::size_t ExactFill = 400;
@@ -218,6 +228,7 @@ public:
       return false;
     }
     this->ChooseOrder();
+    this->ChooseSegments();
     // Which edges are tried first can decide whether points have to be added.
     for (int order = 0; order < Orders; ++order)
     {
@@ -242,7 +253,7 @@ public:
       this->Result.Problems.clear();
       if (this->Options.OptimizeAddedPoints && this->CanImprove())
       {
-        JointOptimization(*this->Best, this->KeepGoing(0.6)).RemovePointsWithNeighbors();
+        JointOptimization(*this->Best, this->KeepGoing(0.6)).RefillRegions();
       }
     }
     return this->Best != nullptr;
@@ -288,6 +299,7 @@ public:
     }
     if (this->Options.OptimizeAddedPoints || this->Options.TargetQuality > 0.0)
     {
+      optimization.Settle();
       optimization.AddPoints(this->Options.TargetQuality, maximum);
     }
     if (this->Options.MaximumTriangleSize > 0.0)
@@ -852,21 +864,90 @@ private:
     return { problem };
   }
 
-  /// A pair with the points that are necessary; null if it had to be refused.
-  std::unique_ptr<PairMesh> Construct(int order)
+  /// Which of the segments that contradict each other are left out: as few as possible, and such
+  /// that few components lie on different sides of others, which would take many points. Segments
+  /// that had to be left out are drawn first, one after the other, as long as that is better.
+  void ChooseSegments()
+  {
+    using Cost = std::pair<std::size_t, std::size_t>;
+    std::vector<std::array<int, 2>> conflicting;
+    const auto draw = [&]() -> Cost {
+      this->StartMap();
+      this->DrawFigure();
+      conflicting = this->Conflicting;
+      this->ConnectComponents(this->Map->Candidates());
+      std::vector<std::array<int, 3>> closed;
+      std::vector<CommonMap::Face> faces;
+      this->Map->Faces(closed, faces);
+      std::size_t apart = 0;
+      for (const CommonMap::Face& face : faces)
+      {
+        apart += face.Walks.size() - 1;
+      }
+      return { conflicting.size(), apart };
+    };
+    if (!this->Options.LeaveOutConflictingSegments || this->Order.size() > ExchangedPoints)
+    {
+      return;
+    }
+    for (Cost best = draw(); best.first > 0 && best.first <= ExchangedSegments;)
+    {
+      const std::vector<std::array<int, 2>> first = this->FirstSegments;
+      std::vector<std::array<int, 2>> better = first;
+      for (const auto& segment : std::vector<std::array<int, 2>>(conflicting))
+      {
+        this->FirstSegments = first;
+        this->FirstSegments.push_back(segment);
+        const Cost cost = this->Proceed(0.05) ? draw() : best;
+        if (cost < best)
+        {
+          best = cost;
+          better = this->FirstSegments;
+        }
+      }
+      this->FirstSegments = better;
+      if (better == first)
+      {
+        break;
+      }
+      draw();
+    }
+    this->Result.Problems.clear();
+  }
+
+  void StartMap()
   {
     this->Map = std::make_unique<CommonMap>(this->Ordered);
     this->LoopEdges.clear();
     this->Segments.clear();
+    this->Conflicting.clear();
     this->Result.LeftOut.clear();
+  }
+
+  /// A pair with the points that are necessary; null if it had to be refused.
+  std::unique_ptr<PairMesh> Construct(int order)
+  {
+    this->StartMap();
     this->Refused = !this->DrawFigure() || !this->Proceed(0.1);
     if (this->Refused)
     {
       return nullptr;
     }
+    const bool isConnected =
+      ConnectedShare * static_cast<std::size_t>(this->Map->GetNumberOfComponents()) <
+      this->Order.size();
     this->Map->SetOrder(order);
     this->FillFaces();
-    this->AddCommonEdges();
+    const std::vector<std::array<int, 2>> candidates = this->Map->Candidates();
+    this->ConnectComponents(candidates);
+    if (order > 0 && isConnected && !this->DissectFaces())
+    {
+      return nullptr;
+    }
+    for (const auto& edge : candidates)
+    {
+      this->Map->Add(edge[0], edge[1]);
+    }
     if (this->FrameIsDivided && this->AreUnrelated())
     {
       // A grid needs a frame of four corners.
@@ -952,14 +1033,23 @@ private:
       return false;
     }
     // Short segments first: where some have to be left out, these are the more certain ones.
-    std::vector<std::pair<std::pair<double, std::array<int, 2>>, int>> segments;
+    struct Segment
+    {
+      std::ptrdiff_t Preference;
+      double Length;
+      std::array<int, 2> Ends;
+      int Line;
+    };
+    std::vector<Segment> segments;
     const auto collect = [&](const std::vector<int>& points, int line, bool closed) {
       for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k)
       {
-        const int a = this->Vertex[points[k]];
-        const int b = this->Vertex[points[(k + 1) % points.size()]];
-        segments.push_back(
-          { { this->Map->ScaledLength(a, b), { { std::min(a, b), std::max(a, b) } } }, line });
+        const auto [a, b] =
+          std::minmax(this->Vertex[points[k]], this->Vertex[points[(k + 1) % points.size()]]);
+        const std::array<int, 2> ends{ { a, b } };
+        const auto& first = this->FirstSegments;
+        segments.push_back({ std::find(first.begin(), first.end(), ends) - first.begin(),
+          this->Map->ScaledLength(a, b), ends, line });
       }
     };
     for (std::size_t i = 0; i < this->Figure.Lines.size(); ++i)
@@ -970,10 +1060,18 @@ private:
     {
       collect(line, -1, true);
     }
-    std::sort(segments.begin(), segments.end());
-    for (const auto& [key, line] : segments)
+    std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) {
+      return std::tie(a.Preference, a.Length, a.Ends, a.Line) <
+        std::tie(b.Preference, b.Length, b.Ends, b.Line);
+    });
+    for (const Segment& segment : segments)
     {
-      note(this->Draw(key.second[0], key.second[1], this->Segments), line, -1,
+      const FigureProblems found = this->Draw(segment.Ends[0], segment.Ends[1], this->Segments);
+      if (!found.empty())
+      {
+        this->Conflicting.push_back(segment.Ends);
+      }
+      note(found, segment.Line, -1,
         this->Options.LeaveOutConflictingSegments ? this->Result.LeftOut : this->Result.Problems);
     }
     return this->Result.Problems.empty();
@@ -1015,10 +1113,9 @@ private:
     return polygons;
   }
 
-  /// Connects components by the shortest edges, then adds all others that agree.
-  void AddCommonEdges()
+  /// Connects components by those of some edges that agree.
+  void ConnectComponents(const std::vector<std::array<int, 2>>& candidates)
   {
-    const std::vector<std::array<int, 2>> candidates = this->Map->Candidates();
     for (const auto& edge : candidates)
     {
       if (this->Map->Component(edge[0]) != this->Map->Component(edge[1]))
@@ -1026,10 +1123,31 @@ private:
         this->Map->Add(edge[0], edge[1]);
       }
     }
-    for (const auto& edge : candidates)
+  }
+
+  /// Draws the common diagonals that leave the fewest faces for added points.
+  bool DissectFaces()
+  {
+    if (!this->DrawBridges())
     {
-      this->Map->Add(edge[0], edge[1]);
+      return false;
     }
+    std::vector<std::array<int, 3>> closed;
+    std::vector<CommonMap::Face> faces;
+    this->Map->Faces(closed, faces);
+    for (const CommonMap::Face& face : faces)
+    {
+      const auto& walk = face.Walks[0];
+      if (walk.size() <= LargestDissection)
+      {
+        for (const auto& chord :
+          Dissect(this->Polygons(face), face.Triangles, this->Options.Quality))
+        {
+          this->Map->Add(walk[chord[0]], walk[chord[1]]);
+        }
+      }
+    }
+    return this->Proceed(0.45);
   }
 
   /// Tries all pairs of corners of the open faces.
@@ -1068,10 +1186,9 @@ private:
     }
   }
 
-  bool BridgeComponents()
+  /// Joins components by polygonal lines.
+  bool DrawBridges()
   {
-    this->FillFaces();
-    this->AddDiagonals();
     for (bool bridged = true; bridged;)
     {
       bridged = false;
@@ -1094,6 +1211,17 @@ private:
       {
         return false;
       }
+    }
+    return true;
+  }
+
+  bool BridgeComponents()
+  {
+    this->FillFaces();
+    this->AddDiagonals();
+    if (!this->DrawBridges())
+    {
+      return false;
     }
     this->FillFaces();
     this->AddDiagonals();
@@ -1443,6 +1571,9 @@ private:
   bool Stopped = false;
   std::vector<std::array<int, 2>> LoopEdges;
   std::vector<std::array<int, 2>> Segments;
+  // Segments that contradict others and could not be drawn, and those that are drawn first.
+  std::vector<std::array<int, 2>> Conflicting;
+  std::vector<std::array<int, 2>> FirstSegments;
 };
 
 } // namespace

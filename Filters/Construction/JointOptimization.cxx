@@ -4,13 +4,14 @@
 #include "JointOptimization.h"
 
 #include "Kernel/ExactSign.h"
+#include "RegionRefilling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <queue>
-#include <set>
 #include <utility>
 
 namespace homeomorphism
@@ -25,11 +26,15 @@ constexpr std::size_t MovedTogether = 40;
 /// More points than this are not moved, and not merged: it would take too long.
 constexpr int MovedAtAll = 5000;
 constexpr int MergedAtAll = 20000;
-/// Points up to which each is also taken out with triangles beside its star: how many triangles,
-/// and how many such regions of each size are tried.
-constexpr int RemovedWithNeighbors = 400;
-constexpr int TrianglesBeside = 5;
-constexpr std::size_t RegionsTried = 120;
+/// Points up to which regions are filled anew, the triangles of such regions, how many of each size
+/// are tried around a point, and how often.
+constexpr int RefilledAtAll = 100;
+constexpr std::array<int, 4> RegionSizes{ { 6, 10, 18, 32 } };
+constexpr int RegionTurns = 12;
+constexpr int RegionRounds = 8;
+/// Points up to which each is moved by itself, and how often.
+constexpr int SettledAtAll = 1000;
+constexpr int SettlingPasses = 4;
 /// Points without gain after which adding more is given up.
 constexpr int IdlePoints = 7;
 /// The same for each further triangle, after the worst one could not be improved.
@@ -486,62 +491,6 @@ bool JointOptimization::RefillWithout(
   return true;
 }
 
-bool JointOptimization::RemovePointWithNeighbors(int vertex)
-{
-  std::vector<int> star;
-  this->Mesh.Star(vertex, star);
-  std::sort(star.begin(), star.end());
-  std::set<std::vector<int>> regions{ star };
-  std::vector<int> outline;
-  std::vector<int> inner;
-  for (int more = 0; more < TrianglesBeside && this->KeepGoing(); ++more)
-  {
-    std::set<std::vector<int>> larger;
-    for (const std::vector<int>& region : regions)
-    {
-      for (const int t : region)
-      {
-        const auto& triangle = this->Mesh.GetTriangles()[t];
-        for (int k = 0; k < 3 && larger.size() < RegionsTried; ++k)
-        {
-          const int n = triangle.Neighbors[k];
-          if (n < 0 || triangle.Fixed[k] || std::binary_search(region.begin(), region.end(), n))
-          {
-            continue;
-          }
-          std::vector<int> next = region;
-          next.insert(std::upper_bound(next.begin(), next.end(), n), n);
-          if (larger.count(next) != 0 || !this->Mesh.Outline(next, outline))
-          {
-            continue;
-          }
-          larger.insert(next);
-          // Whatever is inside, and would go, has to be an added point.
-          inner.clear();
-          for (const int i : next)
-          {
-            for (const int v : this->Mesh.GetTriangles()[i].Vertices)
-            {
-              if (std::find(outline.begin(), outline.end(), v) == outline.end())
-              {
-                inner.push_back(v);
-              }
-            }
-          }
-          if (std::all_of(
-                inner.begin(), inner.end(), [this](int v) { return this->Mesh.IsFree(v); }) &&
-            this->RefillWithout(next, outline))
-          {
-            return true;
-          }
-        }
-      }
-    }
-    regions = std::move(larger);
-  }
-  return false;
-}
-
 bool JointOptimization::MergePoints(int vertex, int other)
 {
   std::vector<int> triangles;
@@ -676,24 +625,93 @@ void JointOptimization::RemovePoints(bool mergePoints)
   }
 }
 
-void JointOptimization::RemovePointsWithNeighbors()
+void JointOptimization::RefillRegions()
 {
-  if (this->Mesh.CountAdded() > RemovedWithNeighbors)
+  if (this->Mesh.CountAdded() > RefilledAtAll)
   {
     return;
   }
-  for (bool changed = true; changed;)
+  for (int round = 0, idle = 0; round < RegionRounds && idle < 2; ++round)
   {
-    changed = false;
-    for (const int vertex : this->Mesh.FreeVertices())
+    const int before = this->Mesh.CountAdded();
+    for (const int size : RegionSizes)
     {
-      if (this->KeepGoing() && this->Mesh.IsFree(vertex) && this->RemovePointWithNeighbors(vertex))
+      for (const int vertex : this->Mesh.FreeVertices())
       {
-        changed = true;
-        this->Mesh.Commit();
+        for (int turn = 0; turn < RegionTurns && this->Mesh.IsFree(vertex) && this->KeepGoing();
+             ++turn)
+        {
+          if (RefillRegion(this->Mesh, vertex, size, turn))
+          {
+            this->Mesh.Commit();
+          }
+        }
       }
     }
+    idle = this->Mesh.CountAdded() < before ? 0 : idle + 1;
+    // Other edges and positions may let more points go.
+    this->Settle();
   }
+}
+
+void JointOptimization::Settle()
+{
+  std::vector<int> star;
+  std::vector<int> outline;
+  std::vector<Vector2> polygon;
+  const std::vector<int> vertices = this->Mesh.FreeVertices();
+  if (static_cast<int>(vertices.size()) > SettledAtAll)
+  {
+    return;
+  }
+  const auto worst = [&]() {
+    double least = std::numeric_limits<double>::infinity();
+    for (const int t : star)
+    {
+      this->Mesh.Update(t);
+      least = std::min(least, this->Mesh.GetTriangles()[t].Quality);
+    }
+    return least;
+  };
+  for (int pass = 0; pass < SettlingPasses && this->KeepGoing(); ++pass)
+  {
+    this->Flip();
+    for (const int vertex : vertices)
+    {
+      this->Mesh.Star(vertex, star);
+      if (!this->Mesh.Outline(star, outline))
+      {
+        continue;
+      }
+      // In both domains, else in one of them.
+      const double before = worst();
+      bool moved = false;
+      for (const int which : { 3, 1, 2 })
+      {
+        const std::size_t mark = this->Mesh.Mark();
+        for (int d = 0; d < 2 && !moved; ++d)
+        {
+          Vector2 center;
+          polygon.clear();
+          for (const int v : outline)
+          {
+            polygon.push_back(this->Mesh.GetPoints(d)[v]);
+          }
+          if ((which & (1 << d)) != 0 && FindBestStarCenter(polygon, center))
+          {
+            this->Mesh.Move(vertex, d, center);
+          }
+        }
+        moved = moved || worst() > before;
+        if (!moved)
+        {
+          this->Mesh.RollBack(mark);
+        }
+      }
+      worst();
+    }
+  }
+  this->Mesh.Commit();
 }
 
 int JointOptimization::SplitTriangle(int t)

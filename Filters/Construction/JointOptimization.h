@@ -28,9 +28,13 @@ public:
   /// Takes out added points, and on request merges neighboring ones, as long as that is possible.
   void RemovePoints(bool mergePoints);
 
-  /// Takes out further added points together with a few edges around them, if there are at most a
-  /// few hundred.
-  void RemovePointsWithNeighbors();
+  /// Takes out further added points by filling larger and larger regions around them anew, if there
+  /// are at most a few hundred.
+  void RefillRegions();
+
+  /// Moves free points one by one to where the triangles around them are better, and flips: a few
+  /// times. Unlike Improve, also gets on where some triangles are too thin to be improved.
+  void Settle();
 
   /// Moves the free points of each domain, and flips: at most @a rounds times.
   void Improve(int rounds);
@@ -56,9 +60,6 @@ private:
 
   void FlipAround(std::vector<int> triangles);
   bool RemovePoint(int vertex);
-  /// Takes a point out that its star alone cannot do without, by filling the star and a few
-  /// triangles beside it; other added points that become inner ones go, too.
-  bool RemovePointWithNeighbors(int vertex);
   /// Fills an outline by diagonals in the place of triangles.
   bool RefillWithout(const std::vector<int>& triangles, const std::vector<int>& outline);
   bool MergePoints(int vertex, int other);

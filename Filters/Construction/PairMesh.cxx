@@ -294,10 +294,13 @@ std::vector<int> PairMesh::Replace(
     for (int k = 0; k < 3; ++k)
     {
       const int n = triangle.Neighbors[k];
-      if (n < 0 || std::find(triangles.begin(), triangles.end(), n) == triangles.end())
+      const bool outside =
+        n < 0 || std::find(triangles.begin(), triangles.end(), n) == triangles.end();
+      // A fixed edge inside remains; its other side is one of the new triangles.
+      if (outside || triangle.Fixed[k])
       {
         const int next = triangle.Vertices[NextCorner(k)];
-        borders.push_back({ { { next, triangle.Vertices[PreviousCorner(k)] } }, n,
+        borders.push_back({ { { next, triangle.Vertices[PreviousCorner(k)] } }, outside ? n : -1,
           n < 0 ? 0 : NextCorner(this->IndexOf(n, next)), triangle.Fixed[k] });
       }
     }

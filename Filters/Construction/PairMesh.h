@@ -69,7 +69,8 @@ public:
   /// disk or contain a fixed edge.
   bool Outline(const std::vector<int>& triangles, std::vector<int>& outline) const;
 
-  /// Puts other triangles with the same outline in the place of some.
+  /// Puts other triangles with the same outline, and the same fixed edges inside, in the place of
+  /// some.
   std::vector<int> Replace(
     const std::vector<int>& triangles, const std::vector<std::array<int, 3>>& vertices);
 

@@ -4,7 +4,9 @@
 #include "Figures.h"
 
 #include "Construction/CommonMap.h"
+#include "Construction/FaceDissection.h"
 #include "Construction/FaceFilling.h"
+#include "Construction/RegionRefilling.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +16,8 @@ using namespace homeomorphism;
 namespace
 {
 
-/// Fills two polygons by their overlay alone and checks the pair.
-std::string Overlay(const FigurePair& figure)
+/// The only face of a map whose only edges are those of an outline, and its polygons.
+bool OnlyFace(const FigurePair& figure, CommonMap::Face& face, PolygonPair& polygons)
 {
   const int m = static_cast<int>(figure.Points[0].size());
   CommonMap map(figure.Points);
@@ -26,7 +28,7 @@ std::string Overlay(const FigurePair& figure)
       (i + 1) % m + ConstrainedTriangulation::BoxCorners });
     if (map.Add(edges.back()[0], edges.back()[1]).Why != CommonMap::Refusal::None)
     {
-      return "the polygons are not simple";
+      return false;
     }
   }
   map.MarkOutside(edges);
@@ -35,40 +37,61 @@ std::string Overlay(const FigurePair& figure)
   map.Faces(closed, faces);
   if (faces.size() != 1 || faces[0].Walks.size() != 1)
   {
-    return "there is not one face";
+    return false;
   }
-  PolygonPair polygons;
+  face = faces[0];
   for (int d = 0; d < 2; ++d)
   {
-    for (const int v : faces[0].Walks[0])
+    for (const int v : face.Walks[0])
     {
       polygons[d].push_back(map.GetPoints(d)[v]);
     }
   }
-  std::array<std::vector<Vector2>, 2> points;
-  IsomorphicTriangulationResult result;
-  if (!FillByOverlay(
-        polygons, faces[0].Triangles, PairQuality::MinimumAngle, points, result.Triangles))
-  {
-    return "double precision does not suffice";
-  }
-  const int added = static_cast<int>(points[0].size());
-  EXPECT_LE(added, CountCrossings(faces[0].Triangles, m));
+  return true;
+}
+
+/// Checks triangles that fill two polygons, numbered as CornerTriangles are.
+std::string CheckFilling(const PolygonPair& polygons,
+  const std::array<std::vector<Vector2>, 2>& points, const CornerTriangles& triangles)
+{
+  const int m = static_cast<int>(polygons[0].size());
   FigurePair walked;
   walked.Points = polygons;
+  IsomorphicTriangulationResult result;
+  result.Triangles = triangles;
   result.Points = polygons;
   result.OriginalIds = Range(0, m);
   for (int i = 0; i < m; ++i)
   {
     result.LoopEdges.push_back({ i, (i + 1) % m });
   }
-  for (int i = 0; i < added; ++i)
+  for (std::size_t i = 0; i < points[0].size(); ++i)
   {
     result.OriginalIds.push_back(-1);
     result.Points[0].push_back(points[0][i]);
     result.Points[1].push_back(points[1][i]);
   }
   return Check(walked, result);
+}
+
+/// Fills two polygons by their overlay alone and checks the pair.
+std::string Overlay(const FigurePair& figure)
+{
+  CommonMap::Face face;
+  PolygonPair polygons;
+  if (!OnlyFace(figure, face, polygons))
+  {
+    return "the polygons are not simple";
+  }
+  std::array<std::vector<Vector2>, 2> points;
+  CornerTriangles triangles;
+  if (!FillByOverlay(polygons, face.Triangles, PairQuality::MinimumAngle, points, triangles))
+  {
+    return "double precision does not suffice";
+  }
+  EXPECT_LE(static_cast<int>(points[0].size()),
+    CountCrossings(face.Triangles, static_cast<int>(polygons[0].size())));
+  return CheckFilling(polygons, points, triangles);
 }
 
 TEST(FaceFilling, OverlaysOfRandomPolygonsAndSnakes)
@@ -118,12 +141,173 @@ TEST(FaceFilling, DiagonalsAreTheBestOfAll)
   EXPECT_DOUBLE_EQ(best(0, 5), worst);
 }
 
+/// A quadrangle whose reflex corner differs, so that it has no common diagonal.
+PolygonPair Dart()
+{
+  return { { { { 0, 0 }, { 4, 0 }, { 1, 1 }, { 0, 4 } },
+    { { 4, 0 }, { 1, 1 }, { 0, 4 }, { 0, 0 } } } };
+}
+
+TEST(FaceFilling, FewPointsAreNoMoreThanNecessary)
+{
+  std::array<std::vector<Vector2>, 2> points;
+  CornerTriangles triangles;
+  // Two convex polygons need none, a quadrangle without a common diagonal needs one.
+  const PolygonPair convex{ { Circle(9), Circle(9, 3.0, { 1, 2 }) } };
+  ASSERT_TRUE(FillWithFewPoints(convex, PairQuality::MinimumAngle, 3, points, triangles));
+  EXPECT_EQ(0u, points[0].size());
+  EXPECT_EQ("", CheckFilling(convex, points, triangles));
+  triangles.clear();
+  EXPECT_FALSE(FillWithFewPoints(Dart(), PairQuality::MinimumAngle, 0, points, triangles));
+  triangles.clear();
+  ASSERT_TRUE(FillWithFewPoints(Dart(), PairQuality::MinimumAngle, 3, points, triangles));
+  EXPECT_EQ(1u, points[0].size());
+  EXPECT_EQ("", CheckFilling(Dart(), points, triangles));
+  // Random stars: valid, and as few as the limit says.
+  Random random(4);
+  int filled = 0;
+  for (int i = 0; i < 60; ++i)
+  {
+    const PolygonPair polygons{ { RandomStar(12, random), RandomStar(12, random) } };
+    points = {};
+    triangles.clear();
+    if (FillWithFewPoints(polygons, PairQuality::MinimumAngle, 4, points, triangles))
+    {
+      ++filled;
+      const int most = static_cast<int>(points[0].size());
+      ASSERT_EQ("", CheckFilling(polygons, points, triangles)) << i;
+      EXPECT_FALSE(most > 0 &&
+        FillWithFewPoints(polygons, PairQuality::MinimumAngle, most - 1, points, triangles));
+    }
+  }
+  EXPECT_LT(30, filled);
+}
+
+TEST(FaceFilling, DissectionsAreCompleteWherePossible)
+{
+  // As many diagonals, and as good triangles, as FillByDiagonals finds; else fewer.
+  Random random(5);
+  int complete = 0;
+  for (int i = 0; i < 100; ++i)
+  {
+    const int corners = 4 + i % 9;
+    CommonMap::Face face;
+    PolygonPair polygons;
+    ASSERT_TRUE(
+      OnlyFace(Outline(RandomStar(corners, random), RandomStar(corners, random)), face, polygons));
+    std::set<std::pair<int, int>> chords;
+    for (const auto& chord : Dissect(polygons, face.Triangles, PairQuality::MinimumAngle))
+    {
+      chords.emplace(chord[0], chord[1]);
+      for (const auto& other : chords)
+      {
+        EXPECT_FALSE(other.first < chord[0] && chord[0] < other.second && other.second < chord[1]);
+      }
+    }
+    chords.erase({ 0, corners - 1 });
+    CornerTriangles best;
+    if (!FillByDiagonals(polygons, PairQuality::MinimumAngle, best))
+    {
+      EXPECT_GT(static_cast<std::size_t>(corners - 3), chords.size());
+      continue;
+    }
+    ++complete;
+    EXPECT_EQ(static_cast<std::size_t>(corners - 3), chords.size());
+    const auto worst = [&](const CornerTriangles& triangles) {
+      double least = 180.0;
+      for (const auto& t : triangles)
+      {
+        least = std::min(least,
+          QualityOf(PairQuality::MinimumAngle,
+            { polygons[0][t[0]], polygons[0][t[1]], polygons[0][t[2]] },
+            { polygons[1][t[0]], polygons[1][t[1]], polygons[1][t[2]] }));
+      }
+      return least;
+    };
+    const auto has = [&](int a, int b) {
+      return b == a + 1 || (a == 0 && b == corners - 1) || chords.count({ a, b }) != 0;
+    };
+    CornerTriangles made;
+    for (int a = 0; a < corners; ++a)
+    {
+      for (int b = a + 1; b < corners; ++b)
+      {
+        for (int c = b + 1; c < corners; ++c)
+        {
+          if (has(a, b) && has(b, c) && has(a, c))
+          {
+            made.push_back({ a, b, c });
+          }
+        }
+      }
+    }
+    EXPECT_EQ(best.size(), made.size());
+    EXPECT_NEAR(worst(best), worst(made), 1e-4);
+  }
+  EXPECT_LT(20, complete);
+}
+
+TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
+{
+  // A convex polygon, a landmark with a fixed segment in it, and added points all around.
+  std::array<std::vector<Vector2>, 2> points{ { Circle(6, 4.0), Circle(6, 4.0) } };
+  for (auto& p : points)
+  {
+    p.push_back({ 0, 0 });
+    const std::vector<Vector2> ring = Circle(6, 2.0);
+    p.insert(p.end(), ring.begin(), ring.end());
+  }
+  std::vector<std::array<int, 3>> triangles;
+  for (int i = 0; i < 6; ++i)
+  {
+    const int next = (i + 1) % 6;
+    triangles.push_back({ 6, 7 + i, 7 + next });
+    triangles.push_back({ i, next, 7 + i });
+    triangles.push_back({ next, 7 + next, 7 + i });
+  }
+  PairMesh mesh(points, triangles, {}, 7, PairQuality::MinimumAngle);
+  for (int pass = 0; pass < 3; ++pass)
+  {
+    for (const int vertex : mesh.FreeVertices())
+    {
+      if (mesh.IsFree(vertex))
+      {
+        const std::size_t mark = mesh.Mark();
+        const int before = mesh.CountAdded();
+        if (RefillRegion(mesh, vertex, 18, pass))
+        {
+          const int after = mesh.CountAdded();
+          EXPECT_GT(before, after);
+          mesh.RollBack(mark);
+          EXPECT_EQ(before, mesh.CountAdded());
+          EXPECT_TRUE(RefillRegion(mesh, vertex, 18, pass));
+          EXPECT_EQ(after, mesh.CountAdded());
+        }
+      }
+    }
+  }
+  EXPECT_EQ(0, mesh.CountAdded());
+  EXPECT_TRUE(mesh.IsUsed(6));
+  EXPECT_LT(0.0, mesh.WorstQuality());
+}
+
 TEST(FaceFilling, StarCentersSeeAllCorners)
 {
   Random random(3);
   std::array<Vector2, 2> center;
   EXPECT_TRUE(FindStarCenter({ { RandomStar(9, random), Circle(9) } }, center));
   EXPECT_FALSE(FindStarCenter({ { Spiral(20, 2.0), Circle(20) } }, center));
+  // The best center of a triangle that is flat on one side is its incenter.
+  const std::vector<Vector2> flat{ { 0, 0 }, { 8, 0 }, { 0, 1 } };
+  ASSERT_TRUE(FindBestStarCenter(flat, center[0]));
+  double least = 90.0;
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    const auto angles = Angles({ center[0], flat[i], flat[(i + 1) % 3] });
+    least = std::min({ least, angles[1], angles[2] });
+  }
+  EXPECT_NEAR(0.5 * std::atan2(1.0, 8.0) * 57.29578, least, 0.1);
+  EXPECT_FALSE(FindBestStarCenter(Spiral(20, 2.0), center[0]));
 }
 
 TEST(PairQuality, GradientsAreDerivatives)

@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "FaceDissection.h"
+
+#include "Kernel/ExactSign.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace homeomorphism
+{
+namespace
+{
+
+/// What an open face costs: this for each edge, and something once, so that four edges make 1.
+constexpr float EdgeCost = 0.5F;
+constexpr float FaceCost = 1.0F - 4.0F * EdgeCost;
+
+/// For each corner of a polygon the others that are visible from it, ascending: those to which a
+/// segment leads through the inside and meets no corner. Takes as many steps as triangles are
+/// visible.
+std::vector<std::vector<int>> VisibleCorners(
+  const std::vector<Vector2>& points, const CornerTriangles& own)
+{
+  const std::size_t m = points.size();
+  std::map<std::array<int, 2>, int> apexes;
+  std::vector<std::vector<std::array<int, 2>>> opposite(m);
+  for (const auto& t : own)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const std::array<int, 2> edge{ { t[NextCorner(k)], t[PreviousCorner(k)] } };
+      apexes[edge] = t[k];
+      opposite[t[k]].push_back(edge);
+    }
+  }
+  // An edge seen from a corner on its left, and the corners that limit the view to the right and
+  // to the left.
+  struct View
+  {
+    std::array<int, 2> Edge;
+    int Right;
+    int Left;
+  };
+  std::vector<View> views;
+  std::vector<std::vector<int>> visible(m);
+  for (std::size_t from = 0; from < m; ++from)
+  {
+    auto& seen = visible[from];
+    for (const auto& edge : opposite[from])
+    {
+      seen.insert(seen.end(), edge.begin(), edge.end());
+      views.push_back({ edge, edge[0], edge[1] });
+    }
+    while (!views.empty())
+    {
+      const View view = views.back();
+      views.pop_back();
+      const auto beyond = apexes.find({ view.Edge[1], view.Edge[0] });
+      if (beyond == apexes.end())
+      {
+        continue;
+      }
+      const int apex = beyond->second;
+      const Vector2& p = points[from];
+      const bool leftOfRight = Orientation(p, points[view.Right], points[apex]) > 0;
+      const bool rightOfLeft = Orientation(p, points[apex], points[view.Left]) > 0;
+      if (leftOfRight && rightOfLeft)
+      {
+        seen.push_back(apex);
+      }
+      if (leftOfRight)
+      {
+        views.push_back({ { view.Edge[0], apex }, view.Right, rightOfLeft ? apex : view.Left });
+      }
+      if (rightOfLeft)
+      {
+        views.push_back({ { apex, view.Edge[1] }, leftOfRight ? apex : view.Right, view.Left });
+      }
+    }
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  }
+  return visible;
+}
+
+} // namespace
+
+std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
+  const std::array<CornerTriangles, 2>& own, const QualityMeasure& quality)
+{
+  const int m = static_cast<int>(polygons[0].size());
+  const std::size_t size = polygons[0].size();
+  const std::array<std::vector<std::vector<int>>, 2> visible{ { VisibleCorners(polygons[0], own[0]),
+    VisibleCorners(polygons[1], own[1]) } };
+
+  // Common chords, by their lower corners, and the best dissection of the part of the polygons
+  // between the ends of each.
+  struct Part
+  {
+    int End;
+    float Cost = 0.0F;
+    float Quality = std::numeric_limits<float>::infinity();
+    /// The third corner of the triangle at the chord, -1 if the face there is an open one.
+    int Third = -1;
+  };
+  std::vector<std::vector<Part>> parts(size);
+  std::vector<std::vector<int>> startsByLength(size);
+  std::vector<int> both;
+  for (int i = 0; i < m; ++i)
+  {
+    both.clear();
+    std::set_intersection(visible[0][i].begin(), visible[0][i].end(), visible[1][i].begin(),
+      visible[1][i].end(), std::back_inserter(both));
+    for (auto j = std::upper_bound(both.begin(), both.end(), i); j != both.end(); ++j)
+    {
+      parts[i].push_back({ *j });
+      startsByLength[*j - i].push_back(i);
+    }
+  }
+  const auto find = [&](int i, int j) -> Part* {
+    const auto at = std::lower_bound(parts[i].begin(), parts[i].end(), j,
+      [](const Part& part, int end) { return part.End < end; });
+    return at != parts[i].end() && at->End == j ? &*at : nullptr;
+  };
+
+  // The cost of the cheapest walks along chords from each corner to each later one.
+  std::vector<float> walks(size * size, std::numeric_limits<float>::infinity());
+  const auto walk = [&](int i, int j) -> float& { return walks[i * size + j]; };
+  for (int i = 0; i < m; ++i)
+  {
+    walk(i, i) = 0.0F;
+  }
+  for (int length = 1; length < m; ++length)
+  {
+    for (int i = 0; i + length < m; ++i)
+    {
+      float& best = walk(i, i + length);
+      for (const Part& part : parts[i])
+      {
+        if (part.End >= i + length)
+        {
+          break;
+        }
+        best = std::min(best, part.Cost + EdgeCost + walk(part.End, i + length));
+      }
+    }
+    for (const int i : startsByLength[length])
+    {
+      const int j = i + length;
+      Part& best = *find(i, j);
+      if (length > 1)
+      {
+        best.Cost = walk(i, j) + FaceCost;
+        best.Quality = 0.0F;
+        for (const Part& first : parts[i])
+        {
+          const Part* second = first.End < j ? find(first.End, j) : nullptr;
+          if (!second)
+          {
+            continue;
+          }
+          const int k = first.End;
+          const float cost = first.Cost + second->Cost;
+          const float least = std::min(first.Quality, second->Quality);
+          if (cost < best.Cost || (cost == best.Cost && least > best.Quality))
+          {
+            const float own2 = static_cast<float>(
+              QualityOf(quality, { polygons[0][i], polygons[0][k], polygons[0][j] },
+                { polygons[1][i], polygons[1][k], polygons[1][j] }));
+            if (own2 >= 0.0F && (cost < best.Cost || std::min(least, own2) > best.Quality))
+            {
+              best.Cost = cost;
+              best.Quality = std::min(least, own2);
+              best.Third = k;
+            }
+          }
+        }
+      }
+      walk(i, j) = std::min(walk(i, j), best.Cost + EdgeCost);
+    }
+  }
+
+  std::vector<std::array<int, 2>> chords;
+  std::vector<std::array<int, 2>> open;
+  if (find(0, m - 1))
+  {
+    open.push_back({ 0, m - 1 });
+  }
+  while (!open.empty())
+  {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    const Part& part = *find(i, j);
+    if (j - i < 2)
+    {
+      continue;
+    }
+    chords.push_back({ i, j });
+    if (part.Third >= 0)
+    {
+      open.push_back({ i, part.Third });
+      open.push_back({ part.Third, j });
+      continue;
+    }
+    for (int at = i; at != j;)
+    {
+      int next = -1;
+      float least = std::numeric_limits<float>::infinity();
+      for (const Part& edge : parts[at])
+      {
+        if (edge.End > j || (at == i && edge.End == j))
+        {
+          break;
+        }
+        const float cost = edge.Cost + EdgeCost + walk(edge.End, j);
+        if (cost < least)
+        {
+          least = cost;
+          next = edge.End;
+        }
+      }
+      open.push_back({ at, next });
+      at = next;
+    }
+  }
+  return chords;
+}
+
+} // namespace homeomorphism
