@@ -178,8 +178,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether constraint segments that conflict with shorter ones are left out, instead of refusing
-  /// the figure. GetNumberOfLeftOutSegments() and related methods list them. Off by default.
+  /// Whether constraint segments that conflict with others are left out, as few and as long ones as
+  /// possible, instead of refusing the figure. GetNumberOfLeftOutSegments() and related methods list them. Off by default.
   vtkSetMacro(LeaveOutConflictingSegments, bool);
   vtkGetMacro(LeaveOutConflictingSegments, bool);
   vtkBooleanMacro(LeaveOutConflictingSegments, bool);

@@ -163,24 +163,22 @@ TEST(FaceFilling, FewPointsAreNoMoreThanNecessary)
   ASSERT_TRUE(FillWithFewPoints(Dart(), PairQuality::MinimumAngle, 3, points, triangles));
   EXPECT_EQ(1u, points[0].size());
   EXPECT_EQ("", CheckFilling(Dart(), points, triangles));
-  // Random stars: valid, and as few as the limit says.
+  // Stars need one point at most.
   Random random(4);
-  int filled = 0;
+  int needed = 0;
   for (int i = 0; i < 60; ++i)
   {
     const PolygonPair polygons{ { RandomStar(12, random), RandomStar(12, random) } };
     points = {};
     triangles.clear();
-    if (FillWithFewPoints(polygons, PairQuality::MinimumAngle, 4, points, triangles))
-    {
-      ++filled;
-      const int most = static_cast<int>(points[0].size());
-      ASSERT_EQ("", CheckFilling(polygons, points, triangles)) << i;
-      EXPECT_FALSE(most > 0 &&
-        FillWithFewPoints(polygons, PairQuality::MinimumAngle, most - 1, points, triangles));
-    }
+    ASSERT_TRUE(FillWithFewPoints(polygons, PairQuality::MinimumAngle, 4, points, triangles)) << i;
+    ASSERT_EQ("", CheckFilling(polygons, points, triangles)) << i;
+    CornerTriangles diagonals;
+    const bool none = FillByDiagonals(polygons, PairQuality::MinimumAngle, diagonals);
+    EXPECT_EQ(none ? 0u : 1u, points[0].size());
+    needed += none ? 0 : 1;
   }
-  EXPECT_LT(30, filled);
+  EXPECT_LT(10, needed);
 }
 
 TEST(FaceFilling, DissectionsAreCompleteWherePossible)
@@ -202,6 +200,15 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
       for (const auto& other : chords)
       {
         EXPECT_FALSE(other.first < chord[0] && chord[0] < other.second && other.second < chord[1]);
+      }
+      for (int side = 0; side < 2 * corners; ++side)
+      {
+        const auto& p = polygons[side % 2];
+        const int a = side / 2;
+        const int b = (a + 1) % corners;
+        const auto [i, j] = chord;
+        EXPECT_FALSE(Orientation(p[i], p[j], p[a]) * Orientation(p[i], p[j], p[b]) < 0 &&
+          Orientation(p[a], p[b], p[i]) * Orientation(p[a], p[b], p[j]) < 0);
       }
     }
     chords.erase({ 0, corners - 1 });
@@ -249,7 +256,7 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
 
 TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
 {
-  // A convex polygon, a landmark with a fixed segment in it, and added points all around.
+  // A convex polygon, two landmarks with a fixed segment in it, and added points around.
   std::array<std::vector<Vector2>, 2> points{ { Circle(6, 4.0), Circle(6, 4.0) } };
   for (auto& p : points)
   {
@@ -265,7 +272,7 @@ TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
     triangles.push_back({ i, next, 7 + i });
     triangles.push_back({ next, 7 + next, 7 + i });
   }
-  PairMesh mesh(points, triangles, {}, 7, PairQuality::MinimumAngle);
+  PairMesh mesh(points, triangles, { { 6, 7 } }, 8, PairQuality::MinimumAngle);
   for (int pass = 0; pass < 3; ++pass)
   {
     for (const int vertex : mesh.FreeVertices())
@@ -288,6 +295,18 @@ TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
   }
   EXPECT_EQ(0, mesh.CountAdded());
   EXPECT_TRUE(mesh.IsUsed(6));
+  int fixed = 0;
+  for (const PairMesh::Triangle& t : mesh.GetTriangles())
+  {
+    for (int k = 0; k < 3 && t.Alive; ++k)
+    {
+      const std::pair<int, int> ends =
+        std::minmax(t.Vertices[NextCorner(k)], t.Vertices[PreviousCorner(k)]);
+      EXPECT_EQ(t.Neighbors[k] < 0 || ends == std::make_pair(6, 7), t.Fixed[k]);
+      fixed += ends == std::make_pair(6, 7) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(2, fixed);
   EXPECT_LT(0.0, mesh.WorstQuality());
 }
 
@@ -297,16 +316,16 @@ TEST(FaceFilling, StarCentersSeeAllCorners)
   std::array<Vector2, 2> center;
   EXPECT_TRUE(FindStarCenter({ { RandomStar(9, random), Circle(9) } }, center));
   EXPECT_FALSE(FindStarCenter({ { Spiral(20, 2.0), Circle(20) } }, center));
-  // The best center of a triangle that is flat on one side is its incenter.
-  const std::vector<Vector2> flat{ { 0, 0 }, { 8, 0 }, { 0, 1 } };
-  ASSERT_TRUE(FindBestStarCenter(flat, center[0]));
+  // The best center of a triangle is its incenter.
+  const std::vector<Vector2> triangle{ { 0, 0 }, { 1, 0 }, { 0, 1 } };
+  ASSERT_TRUE(FindBestStarCenter(triangle, center[0]));
   double least = 90.0;
   for (std::size_t i = 0; i < 3; ++i)
   {
-    const auto angles = Angles({ center[0], flat[i], flat[(i + 1) % 3] });
+    const auto angles = Angles({ center[0], triangle[i], triangle[(i + 1) % 3] });
     least = std::min({ least, angles[1], angles[2] });
   }
-  EXPECT_NEAR(0.5 * std::atan2(1.0, 8.0) * 57.29578, least, 0.1);
+  EXPECT_NEAR(22.5, least, 1.0);
   EXPECT_FALSE(FindBestStarCenter(Spiral(20, 2.0), center[0]));
 }
 

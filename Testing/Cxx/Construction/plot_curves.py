@@ -10,6 +10,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import MaxNLocator
 
 # Smallest angles of source and target with a number of added points: Surazhsky and Gotsman,
 # "High quality compatible triangulations" (2004).
@@ -53,6 +54,7 @@ for number, (name, rows) in enumerate(curves.items()):
     lower.set(xlabel="added points, at most", ylabel="share of triangles (%)", ylim=(-2, 102))
     for axis in (upper, lower):
         axis.set_xlim(left=0)
+        axis.xaxis.set_major_locator(MaxNLocator(integer=True))
 for axis in axes.flat[len(curves):]:
     if not axis.lines:
         axis.set_axis_off()
