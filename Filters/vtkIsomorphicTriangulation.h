@@ -179,7 +179,8 @@ public:
 
   ///@{
   /// Whether constraint segments that conflict with others are left out, as few and as long ones as
-  /// possible, instead of refusing the figure. GetNumberOfLeftOutSegments() and related methods list them. Off by default.
+  /// possible, instead of refusing the figure. GetNumberOfLeftOutSegments() and related methods
+  /// list them. Off by default.
   vtkSetMacro(LeaveOutConflictingSegments, bool);
   vtkGetMacro(LeaveOutConflictingSegments, bool);
   vtkBooleanMacro(LeaveOutConflictingSegments, bool);
