@@ -41,12 +41,13 @@ std::vector<Point> Queries(vtkPolyData* mesh, std::uint64_t seed)
   std::vector<Point> queries = corners;
   for (const Triangle& t : TrianglesOf(mesh))
   {
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 40; ++i)
     {
-      // Runs of points in one triangle, at first close to each other.
-      const double a = i < 15 ? 0.04 * i + 0.1 : random.Uniform();
-      const double b = i < 15 ? 0.2 : (1.0 - a) * random.Uniform();
-      queries.push_back(PointIn(mesh, t, { a, b, 1.0 - a - b }));
+      // Runs of points in one triangle, at first close to each other, then the same above it.
+      const double a = i % 20 < 15 ? 0.04 * (i % 20) + 0.1 : random.Uniform();
+      const double b = i % 20 < 15 ? 0.2 : (1.0 - a) * random.Uniform();
+      const Point height{ 0.0, 0.0, i < 20 ? 0.0 : 0.3 };
+      queries.push_back(PointIn(mesh, t, { a, b, 1.0 - a - b }) + height);
     }
     const double w = random.Uniform();
     for (const Point& weights : { Point{ w, 1.0 - w, 0.0 }, { 0.0, w, 1.0 - w },
