@@ -95,7 +95,7 @@ def test_tables_of_two_columns_are_told_what_landmarks_need(dhm):
 
 def test_landmarks_of_thin_triangles_name_the_system_that_is_fast(dhm):
     random = numpy.random.default_rng(30)
-    write_landmarks(dhm.path("marks.csv"), random.random((30, 2)), random.random((30, 2)))
+    write_landmarks(dhm.path("marks.csv"), random.random((100, 2)), random.random((100, 2)))
     assert "--system smooth" in dhm("triangulate", "marks.csv", "-o", "pair.vtp").err
     write_landmarks(dhm.path("marks.csv"), *landmarks())
     assert "--system smooth" not in dhm("triangulate", "marks.csv", "-o", "pair.vtp", "-f").err
