@@ -11,7 +11,7 @@ import time
 
 import numpy
 import pytest
-from conftest import FILE, REFUSED, USAGE
+from conftest import DONE, FILE, REFUSED, USAGE
 from pairs import Pair, inside_points, make_pair, read_json, write_csv, write_json, write_mesh, \
     write_obj, write_vtk
 
@@ -253,7 +253,9 @@ def test_wrong_triangulation_files(dhm, pair):
         dhm.refuse(FILE, "convert", "bad.json", "-o", "new.json", says="bad.json")
     for deep in ('"extra": ' + "[" * 30000 + "]" * 30000, '"vertices": [' + "[" * 200000 + "]" * 200000 + "]"):
         dhm.path("bad.json").write_text(dhm.path("pair.json").read_text().replace("{", "{" + deep + ",", 1))
-        dhm.refuse(FILE, "convert", "bad.json", "-o", "new.json", says=("bad.json", "nested"))
+        # Python 3.14 can read them.
+        result = dhm("convert", "bad.json", "-o", "deep.json", "-f", status={DONE, FILE})
+        assert result.status == DONE or ("bad.json" in result.err and "nested" in result.err)
     # Brackets in strings are no depth.
     write_json(dhm.path("text.json"), pair, description="[" * 500 + '\\"{')
     dhm("convert", "text.json", "-o", "again.json")
