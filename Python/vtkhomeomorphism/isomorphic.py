@@ -160,8 +160,7 @@ def isomorphic_triangulation(
     maximum_triangle_size : float
         Triangles that are larger, as a share of their domain, are divided. 0: none is.
     leave_out_conflicting_segments : bool
-        Leave out segments that do not agree with others, as few and as long ones as possible, instead of raising
-        ValueError.
+        Leave out segments that do not agree with others, as few as possible, instead of raising ValueError.
     names : sequence of str
         What messages call the first points; the others are called by their numbers.
 
