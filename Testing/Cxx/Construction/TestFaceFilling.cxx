@@ -186,9 +186,9 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
   // As many diagonals, and as good triangles, as FillByDiagonals finds; else fewer.
   Random random(5);
   int complete = 0;
-  for (int i = 0; i < 100; ++i)
+  for (int number = 0; number < 100; ++number)
   {
-    const int corners = 4 + i % 9;
+    const int corners = 4 + number % 9;
     CommonMap::Face face;
     PolygonPair polygons;
     ASSERT_TRUE(
