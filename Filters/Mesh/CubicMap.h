@@ -102,12 +102,6 @@ public:
 
   /// The derivative at a point of a triangle.
   Matrix2 GetDerivative(int triangle, const Vector2& point) const;
-  void MapPoint(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const
-  {
-    CubicTriangle prepared = this->Prepare();
-    image = this->MapPoint(triangle, point, prepared);
-    derivative = this->GetDerivative(triangle, point);
-  }
 
   /// The point that is mapped to @a image, and the triangle in which it lies. @a triangle is where
   /// the piecewise linear map has it. Returns false if no point of the domain is found, which

@@ -4,6 +4,7 @@
 https://proj.org/en/stable/specifications/triangulation.html"""
 
 import json
+import re
 from dataclasses import dataclass, field
 from typing import Optional
 
@@ -11,6 +12,7 @@ import numpy
 
 from .files import quote
 
+DEEPEST = 100  # the depth to which arrays and objects may be nested
 STRATEGIES = ("none", "nearest_side", "nearest_centroid")
 CORNERS = ["idx_vertex1", "idx_vertex2", "idx_vertex3"]
 
@@ -98,24 +100,30 @@ def _take_columns(file, document, member, names):
     if missing:
         file.fail(f'"{member}_columns" has no column "{missing[0]}".')
     chosen = [columns.index(name) for name in names]
+    values = []
     try:
         for i, row in enumerate(rows):
             if len(row) != len(columns) or not {type(row[k]) for k in chosen} <= {int, float}:
                 raise TypeError
-        return numpy.array([[row[k] for k in chosen] for row in rows], float).reshape(-1, len(names))
+            values.append([float(row[k]) for k in chosen])
     except (TypeError, KeyError, OverflowError):
         file.fail(f"{member}[{i}]: expected {len(columns)} values, numbers as {', '.join(names)}; found {quote(row)}.")
+    return numpy.array(values, float).reshape(-1, len(names))
 
 
 def read(file):
     """The shift in an input of format 1.x. Raises Failure, naming the line or the member."""
+    with open(file.path, encoding="utf-8-sig", errors="replace") as opened:
+        text = opened.read()
+    # Brackets outside of strings. What Python's parser accepts, and how fast it fails, depends on its version.
+    signs = numpy.frombuffer(re.sub(r'"(?:[^"\\]|\\.)*"', "", text).encode(), numpy.uint8)
+    steps = numpy.isin(signs, list(b"[{")).astype(int) - numpy.isin(signs, list(b"]}"))
+    if numpy.cumsum(steps).max(initial=0) > DEEPEST:
+        file.fail("its arrays are nested too deep for a triangulation file.")
     try:
-        with open(file.path, encoding="utf-8-sig", errors="replace") as text:
-            document = json.load(text)
+        document = json.loads(text)
     except json.JSONDecodeError as error:
         file.fail(f"line {error.lineno}, column {error.colno}: {error.msg}.")
-    except RecursionError:
-        file.fail("its arrays are nested too deep.")
     except ValueError as error:
         file.fail(f"{quote(error)}.")
     document = document if isinstance(document, dict) else {}

@@ -11,7 +11,7 @@ import time
 
 import numpy
 import pytest
-from conftest import DONE, FILE, REFUSED, USAGE
+from conftest import FILE, REFUSED, USAGE
 from pairs import Pair, inside_points, make_pair, read_json, write_csv, write_json, write_mesh, \
     write_obj, write_vtk
 
@@ -246,6 +246,7 @@ def test_wrong_triangulation_files(dhm, pair):
     refuse(["target_y"], vertices_columns=["source_x", "source_y", "target_x", "z"])
     refuse(["vertices[3]"], vertices=good["vertices"][:3] + [[1, 2, 3]] + good["vertices"][4:])
     refuse(["vertices[0]", "source_x"], vertices=[["1" * 5000, 2, 3, 4]] + good["vertices"][1:])
+    refuse(["vertices[1]", "source_x"], vertices=good["vertices"][:1] + [[10**400, 2, 3, 4]] + good["vertices"][2:])
     for index in (-1, 49, 1.5, "1", None, 2**63, 1e300):
         refuse(["triangles[1]"], triangles=good["triangles"][:1] + [[0, 1, index]])
     for text in ("[]", "null", "{}", "", "[" * 100000, '{"a":' * 50000, "\x00" * 50):
@@ -253,9 +254,7 @@ def test_wrong_triangulation_files(dhm, pair):
         dhm.refuse(FILE, "convert", "bad.json", "-o", "new.json", says="bad.json")
     for deep in ('"extra": ' + "[" * 30000 + "]" * 30000, '"vertices": [' + "[" * 200000 + "]" * 200000 + "]"):
         dhm.path("bad.json").write_text(dhm.path("pair.json").read_text().replace("{", "{" + deep + ",", 1))
-        # Python 3.14 can read them.
-        result = dhm("convert", "bad.json", "-o", "deep.json", "-f", status={DONE, FILE})
-        assert result.status == DONE or ("bad.json" in result.err and "nested" in result.err)
+        dhm.refuse(FILE, "convert", "bad.json", "-o", "new.json", says=("bad.json", "nested"))
     # Brackets in strings are no depth.
     write_json(dhm.path("text.json"), pair, description="[" * 500 + '\\"{')
     dhm("convert", "text.json", "-o", "again.json")

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from .. import landmarks, options, pair, vtkfiles
 from ..files import FILE, USAGE, Failure, Input, inform
 from ..isomorphic import DOMAINS, QUALITIES
-from ..landmarks import LandmarkFileError, Landmarks, read_lines
+from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lines
 
 
 def read_figure(name):
@@ -71,6 +71,9 @@ def command(inputs, output, lines, outlines, report, **settings):
         inputs.grids = [None, None]
     else:
         with Input(inputs.pair[0], inputs.format or "csv") as file:
+            if not is_landmark_file(file.path):
+                raise Failure(f"{file.name} is not a file of landmarks: the formats are .csv (source_x, source_y, "
+                              "target_x, target_y), .points and IIIF's .json.", USAGE)
             marks = landmarks.read(file, inputs)
         try:
             figure = {name: read_lines(file, marks.names)

@@ -60,7 +60,9 @@ struct Value
 
   Value(const CubicMap& map, int triangle, const Vector2& point)
   {
-    map.MapPoint(triangle, point, this->Image, this->Derivative);
+    CubicTriangle prepared = map.Prepare();
+    this->Image = map.MapPoint(triangle, point, prepared);
+    this->Derivative = map.GetDerivative(triangle, point);
   }
 };
 

@@ -75,24 +75,23 @@ void Measure(const CubicMap& map, int points, std::mt19937_64& random, Result& r
     size = std::max({ size, std::abs(p.x), std::abs(p.y) });
   }
   result.Points += points;
+  CubicTriangle prepared = map.Prepare();
   for (const Sample& sample : RandomSamples(pair, random(), points))
   {
     const int t = sample.Triangle;
-    Vector2 image;
-    Matrix2 derivative;
-    map.MapPoint(t, sample.In(pair, pair.Source), image, derivative);
-    const double determinant = derivative.Determinant();
+    const Vector2 point = sample.In(pair, pair.Source);
+    const Vector2 image = map.MapPoint(t, point, prepared);
+    const double determinant = map.GetDerivative(t, point).Determinant();
     result.Folds += determinant > 0.0 ? 0 : 1;
     result.LeastRatio = std::min(result.LeastRatio, determinant / pair.GetAffine(t).Determinant());
     int at = LocateImage(pair, image, t);
     Vector2 back;
-    if (!map.FindPreimage(image, at, back))
+    if (!map.FindPreimage(image, at, back, prepared))
     {
       ++result.Lost;
       continue;
     }
-    Vector2 again;
-    map.MapPoint(at, back, again, derivative);
+    const Vector2 again = map.MapPoint(at, back, prepared);
     result.RoundTrip = std::max(result.RoundTrip, Norm(again - image) / size);
   }
 }
@@ -242,15 +241,13 @@ double SecondDifferences(const CubicMap& map, bool linear, int cells)
   double sum = 0.0;
   const int count = 4000;
   int t = 0;
+  CubicTriangle prepared = map.Prepare();
   for (int n = 0; n < count; ++n)
   {
     const Vector2 x{ uniform(random), uniform(random) };
     const auto value = [&](const Vector2& p) {
       t = std::max(0, Locate(pair, pair.Source, t, p));
-      Vector2 image;
-      Matrix2 derivative;
-      map.MapPoint(t, p, image, derivative);
-      return linear ? MapLinearly(pair, t, p) : image;
+      return linear ? MapLinearly(pair, t, p) : map.MapPoint(t, p, prepared);
     };
     const Vector2 middle = value(x);
     const auto difference = [&](const Vector2& d) {
