@@ -71,9 +71,11 @@ def main():
     except click.ClickException as failure:
         message, status = str(failure), failure.exit_code
     except ImportError as error:
-        name = (error.name or str(error)).partition(".")[0]
-        message, status = (f"{name} is needed: install Debian's package python3-{name.lower()}, or run pip install "
-                           f"{'pillow' if name == 'PIL' else name}."), FILE
+        # A library that is there may name what it lacks in words only.
+        name, message, status = (error.name or "").partition(".")[0], f"A library is missing: {quote(error)}", FILE
+        if name:
+            message = (f"{name} is needed: install Debian's package python3-{name.lower()}, or run pip install "
+                       f"{'pillow' if name == 'PIL' else name}.")
     except MemoryError:
         message, status = "There is not enough memory.", FILE
     except OSError as error:

@@ -153,6 +153,9 @@ def test_missing_libraries_are_named(dhm, shift, parcels):
     dhm.environment["PYTHONPATH"] = f"{blocked}:{dhm.environment.get('PYTHONPATH', '')}"
     parcels.to_file(dhm.path("in.gpkg"), driver="GPKG")
     dhm.refuse(FILE, "map", "shift.json", "in.gpkg", "-o", "new.gpkg", says=("geopandas", "python3-geopandas", "pip"))
+    (blocked / "geopandas" / "__init__.py").write_text('raise ImportError("no pyogrio or fiona")')
+    result = dhm.refuse(FILE, "map", "shift.json", "in.gpkg", "-o", "new.gpkg", says="no pyogrio or fiona")
+    assert "python3-no" not in result.err
     write_csv(dhm.path("p.csv"), inside_points(shift, 5))
     dhm("map", "shift.json", "p.csv", "-o", "out.csv")
 
