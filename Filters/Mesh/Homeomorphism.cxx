@@ -112,7 +112,7 @@ struct SmoothCoordinates
 
   HOMEOMORPHISM_ALWAYS_INLINE std::pair<double, double> Get(int i) const
   {
-    // L has the coordinates of the lane's corner, the one after it and the one before it. Reading
+    // L has the coordinates of the point's corner, the one after it and the one before it. Reading
     // all of them is faster than a branch.
     const bool isApex = this->Batch.Corner[i] == this->Apex;
     const bool isSecond = this->Batch.Corner[i] == PreviousCorner(this->Apex);
