@@ -8,7 +8,7 @@
 //
 // SHARE is how much of the full run is made, 1 by default. The results depend on it alone.
 
-#include "CubicPairs.h"
+#include "Mesh/CubicPairs.h"
 
 #include "Mesh/CubicMap.h"
 

@@ -12,7 +12,7 @@
 //
 // Times are those of the processor, in one thread.
 
-#include "Figures.h"
+#include "Construction/Figures.h"
 
 #include <cstring>
 #include <ctime>
