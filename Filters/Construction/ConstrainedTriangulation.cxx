@@ -388,28 +388,22 @@ void ConstrainedTriangulation::Legalize()
 
 ConstrainedTriangulation::Edge ConstrainedTriangulation::FindEdge(int from, int to) const
 {
-  const int start = this->TriangleOf[from];
   // Counterclockwise about the vertex; then, at the box's corners, clockwise.
-  int t = start;
-  do
+  bool clockwise = false;
+  for (int t = this->TriangleOf[from];;)
   {
     const int i = this->IndexOf(t, from);
     if (this->Triangles[t].Vertices[NextCorner(i)] == to)
     {
       return { t, PreviousCorner(i) };
     }
-    t = this->Triangles[t].Neighbors[NextCorner(i)];
-  } while (t >= 0 && t != start);
-  for (t = t < 0 ? start : -1; t >= 0;)
-  {
-    const int i = this->IndexOf(t, from);
-    if (this->Triangles[t].Vertices[NextCorner(i)] == to)
+    t = this->Triangles[t].Neighbors[clockwise ? PreviousCorner(i) : NextCorner(i)];
+    if (t < 0)
     {
-      return { t, PreviousCorner(i) };
+      clockwise = true;
+      t = this->TriangleOf[from];
     }
-    t = this->Triangles[t].Neighbors[PreviousCorner(i)];
   }
-  return {};
 }
 
 ConstrainedTriangulation::Trace ConstrainedTriangulation::Follow(int from, int to) const
@@ -524,11 +518,7 @@ void ConstrainedTriangulation::Constrain(int from, int to, const Trace& trace)
   this->SetConstrained(from, to, true);
   for (const auto& [a, d] : made)
   {
-    const Edge edge = this->FindEdge(a, d);
-    if (edge.Triangle >= 0)
-    {
-      this->Doubtful.push_back(edge);
-    }
+    this->Doubtful.push_back(this->FindEdge(a, d));
   }
   this->Legalize();
 }

@@ -91,7 +91,7 @@ public:
   /// -1 if there is none, @a to itself if it is the only one.
   int ConstrainedNeighborBefore(int from, int to, const Trace& trace) const;
 
-  /// The triangle to the left of an edge. Triangle -1 if there is no such edge.
+  /// The triangle to the left of an edge, which must exist.
   Edge FindEdge(int from, int to) const;
 
   const std::vector<Triangle>& GetTriangles() const { return this->Triangles; }

@@ -679,10 +679,7 @@ void JointOptimization::Settle()
     for (const int vertex : vertices)
     {
       this->Mesh.Star(vertex, star);
-      if (!this->Mesh.Outline(star, outline))
-      {
-        continue;
-      }
+      this->Mesh.Outline(star, outline);
       // In both domains, else in one of them.
       const double before = worst();
       bool moved = false;

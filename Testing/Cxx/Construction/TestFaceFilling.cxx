@@ -6,6 +6,7 @@
 #include "Construction/CommonMap.h"
 #include "Construction/FaceDissection.h"
 #include "Construction/FaceFilling.h"
+#include "Construction/JointOptimization.h"
 #include "Construction/RegionRefilling.h"
 
 #include <gtest/gtest.h>
@@ -16,11 +17,18 @@ using namespace homeomorphism;
 namespace
 {
 
-/// The only face of a map whose only edges are those of an outline, and its polygons.
-bool OnlyFace(const FigurePair& figure, CommonMap::Face& face, PolygonPair& polygons)
+/// The faces of a map.
+std::vector<CommonMap::Face> FacesOf(const CommonMap& map)
 {
-  const int m = static_cast<int>(figure.Points[0].size());
-  CommonMap map(figure.Points);
+  CornerTriangles closed;
+  std::vector<CommonMap::Face> faces;
+  map.Faces(closed, faces);
+  return faces;
+}
+
+/// Draws an outline through the first points. False if it is not simple.
+bool DrawOutline(CommonMap& map, int m)
+{
   std::vector<std::array<int, 2>> edges;
   for (int i = 0; i < m; ++i)
   {
@@ -32,14 +40,18 @@ bool OnlyFace(const FigurePair& figure, CommonMap::Face& face, PolygonPair& poly
     }
   }
   map.MarkOutside(edges);
-  CornerTriangles closed;
-  std::vector<CommonMap::Face> faces;
-  map.Faces(closed, faces);
-  if (faces.size() != 1 || faces[0].Walks.size() != 1)
+  return true;
+}
+
+/// The only face of a map whose only edges are those of an outline, and its polygons.
+bool OnlyFace(const FigurePair& figure, CommonMap::Face& face, PolygonPair& polygons)
+{
+  CommonMap map(figure.Points);
+  if (!DrawOutline(map, static_cast<int>(figure.Points[0].size())) || FacesOf(map).size() != 1)
   {
     return false;
   }
-  face = faces[0];
+  face = FacesOf(map)[0];
   for (int d = 0; d < 2; ++d)
   {
     for (const int v : face.Walks[0])
@@ -106,6 +118,36 @@ TEST(FaceFilling, OverlaysOfRandomPolygonsAndSnakes)
   {
     ASSERT_EQ("", Overlay(Outline(Snake(corners, false), Snake(corners, true)))) << corners;
   }
+}
+
+TEST(FaceFilling, PartsOfLargeFacesHaveFewerCrossings)
+{
+  // Bands wound three times whose corners are a quarter of the way apart.
+  std::vector<Vector2> band = Spiral(600, 3.0);
+  std::vector<Vector2> moved = band;
+  std::rotate(moved.begin(), moved.begin() + 150, moved.end());
+  const FigurePair figure = Outline(band, moved);
+  CommonMap map(figure.Points);
+  ASSERT_TRUE(DrawOutline(map, 600));
+  const auto crossings = [&]() {
+    int sum = 0;
+    for (const CommonMap::Face& face : FacesOf(map))
+    {
+      sum += CountCrossings(face.Triangles, static_cast<int>(face.Walks[0].size()));
+    }
+    return sum;
+  };
+  const int before = crossings();
+  ASSERT_EQ(CommonMap::Drawn::Yes, map.Split(FacesOf(map)[0]));
+  EXPECT_EQ(2u, FacesOf(map).size());
+  EXPECT_LT(crossings(), before);
+  // The construction divides such faces.
+  IsomorphicTriangulationOptions options;
+  options.OptimizeAddedPoints = false;
+  options.MaximumNumberOfAddedPoints = before;
+  const auto result = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_EQ("", Check(figure, result));
+  EXPECT_GT(2000, result.NumberOfAddedPoints);
 }
 
 TEST(FaceFilling, DiagonalsAreTheBestOfAll)
@@ -327,6 +369,104 @@ TEST(FaceFilling, StarCentersSeeAllCorners)
   }
   EXPECT_NEAR(22.5, least, 1.0);
   EXPECT_FALSE(FindBestStarCenter(Spiral(20, 2.0), center[0]));
+}
+
+TEST(FaceFilling, BridgesAreStraightWherePossible)
+{
+  // The inner circle is turned so that some edges of the source would have to bend in the target.
+  const FigurePair figure = Annulus(8, 0.8, false);
+  CommonMap map(figure.Points);
+  ASSERT_TRUE(DrawOutline(map, 8));
+  for (int i = 0; i < 8; ++i)
+  {
+    map.Add(12 + i, 12 + (i + 1) % 8);
+  }
+  for (const CommonMap::Face& face : FacesOf(map))
+  {
+    if (face.Walks.size() == 2)
+    {
+      EXPECT_EQ(CommonMap::Drawn::Yes, map.Bridge(face));
+    }
+  }
+  EXPECT_EQ(1, map.GetNumberOfComponents());
+  EXPECT_EQ(20u, map.GetPoints(0).size());
+}
+
+TEST(JointOptimization, MergingLeavesFewerPoints)
+{
+  // Overlays of stars, of which one point would be enough.
+  Random random(6);
+  std::array<int, 2> left{ { 0, 0 } };
+  for (int i = 0; i < 20; ++i)
+  {
+    const FigurePair figure = Outline(RandomStar(12, random), RandomStar(12, random));
+    CommonMap::Face face;
+    PolygonPair polygons;
+    ASSERT_TRUE(OnlyFace(figure, face, polygons));
+    std::array<std::vector<Vector2>, 2> points;
+    CornerTriangles triangles;
+    ASSERT_TRUE(
+      FillByOverlay(polygons, face.Triangles, PairQuality::MinimumAngle, points, triangles));
+    for (int d = 0; d < 2; ++d)
+    {
+      points[d].insert(points[d].begin(), polygons[d].begin(), polygons[d].end());
+    }
+    for (const bool merge : { false, true })
+    {
+      PairMesh mesh(points, triangles, {}, 12, PairQuality::MinimumAngle);
+      JointOptimization(mesh, []() { return true; }).RemovePoints(merge);
+      EXPECT_LT(0.0, mesh.WorstQuality());
+      left[merge] += mesh.CountAdded();
+    }
+  }
+  EXPECT_LT(left[1], left[0]);
+}
+
+TEST(JointOptimization, PointsMoveToTheBestPlaces)
+{
+  // Equilateral triangles whose inner points are displaced.
+  std::array<std::vector<Vector2>, 2> points;
+  std::map<std::pair<int, int>, int> number;
+  Random random(8);
+  for (const bool inner : { false, true })
+  {
+    for (int i = -3; i <= 3; ++i)
+    {
+      for (int j = -3; j <= 3; ++j)
+      {
+        const int distance = std::max({ std::abs(i), std::abs(j), std::abs(i + j) });
+        if (inner ? distance < 3 : distance == 3)
+        {
+          number[{ i, j }] = static_cast<int>(points[0].size());
+          for (auto& p : points)
+          {
+            const Vector2 shift{ random(-0.3, 0.3), random(-0.3, 0.3) };
+            p.push_back(Vector2{ i + 0.5 * j, std::sqrt(0.75) * j } + (inner ? 1.0 : 0.0) * shift);
+          }
+        }
+      }
+    }
+  }
+  CornerTriangles triangles;
+  for (const auto& [at, a] : number)
+  {
+    const auto [i, j] = at;
+    const auto right = number.find({ i + 1, j });
+    const auto above = number.find({ i, j + 1 });
+    const auto left = number.find({ i - 1, j + 1 });
+    if (above != number.end() && right != number.end())
+    {
+      triangles.push_back({ a, right->second, above->second });
+    }
+    if (above != number.end() && left != number.end())
+    {
+      triangles.push_back({ a, above->second, left->second });
+    }
+  }
+  PairMesh mesh(points, triangles, {}, 18, PairQuality::MinimumAngle);
+  JointOptimization(mesh, []() { return true; }).AddPoints(0.0, mesh.CountAdded());
+  EXPECT_EQ(19, mesh.CountAdded());
+  EXPECT_LT(59.9, mesh.SmallestAngle());
 }
 
 TEST(PairQuality, GradientsAreDerivatives)

@@ -143,6 +143,37 @@ TEST(FigureRefusals, NameWhatIsWrong)
         options.Frames.fill({ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 0, 6 } });
         Add(f, { 2, 0 }, { 1, 0.25 });
       } },
+    { Kind::OutsideDomain, 1, { 7 }, -1, -1,
+      [](FigurePair& f, Options& options) {
+        f.Loops.clear();
+        options.Frames.fill({ { -1, -1 }, { 5, -1 }, { 5, 5 }, { -1, 5 } });
+        Add(f, { 2, 2 }, { 2, 6 });
+      } },
+    { Kind::OutsideDomain, -1, { 1, 3 }, 0, -1,
+      [](FigurePair& f, Options&) {
+        const std::vector<Vector2> dart{ { 0, 0 }, { 4, 0 }, { 1, 1 }, { 0, 4 } };
+        f = Outline(dart, dart);
+        f.Lines = { { 1, 3 } };
+      } },
+    { Kind::BadFrame, 1, {}, -1, -1,
+      [](FigurePair& f, Options& options) {
+        f.Loops.clear();
+        options.Frames = { { { { -1, -1 }, { 9, -1 }, { 9, 9 }, { -1, 9 } },
+          { { -1, -1 }, { 9, -1 }, { -1, 9 }, { 9, 9 } } } };
+      } },
+    { Kind::BadCell, -1, {}, -1, -1,
+      [](FigurePair& f, Options& options) {
+        f.Loops.clear();
+        options.Domain = FigureDomain::Outline;
+      } },
+    { Kind::Precision, -1, { 0, 1, 2, 3 }, -1, -1,
+      [](FigurePair& f, Options&) {
+        // No common diagonal, and in the source no double inside that sees all corners.
+        constexpr double one = 1.0 + std::numeric_limits<double>::epsilon();
+        constexpr double four = 1.0 + 4.0 * std::numeric_limits<double>::epsilon();
+        f = Outline({ { 1, 1 }, { four, 1 }, { one, one }, { 1, four } },
+          { { 4, 0 }, { 1, 1 }, { 0, 4 }, { 0, 0 } });
+      } },
     { Kind::PointLimit, -1, {}, -1, -1,
       [](FigurePair& f, Options& options) {
         f = Outline(Snake(40, false), Snake(40, true));
@@ -349,6 +380,75 @@ TEST(IsomorphicTriangulation, FiguresOfAllKinds)
       { "unrelated", Unrelated(25, 12) }, { "float coordinates of a map", inFloat } })
   {
     EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {}))) << name;
+  }
+}
+
+TEST(IsomorphicTriangulation, UnrelatedPointsTakeAGrid)
+{
+  const FigurePair figure = Unrelated(100, 12);
+  Options options;
+  options.OptimizeAddedPoints = false;
+  const auto result = MakeIsomorphicTriangulation(figure, options);
+  EXPECT_EQ("", Check(figure, result));
+  // Less than half of a grid's points, of which the needless ones were removed.
+  EXPECT_GT(102 * 102, 2 * result.NumberOfAddedPoints);
+}
+
+TEST(IsomorphicTriangulation, LoopsAreConstraintsBesideOtherDomains)
+{
+  FigurePair figure = Square();
+  for (const double y : { -1.0, 5.0 })
+  {
+    Add(figure, { -1, y }, { -1, y });
+    Add(figure, { 5, y }, { 5, y });
+  }
+  for (const FigureDomain domain : { FigureDomain::ConvexHull, FigureDomain::Frame })
+  {
+    Options options;
+    options.Domain = domain;
+    const auto result = MakeIsomorphicTriangulation(figure, options);
+    EXPECT_EQ("", Check(figure, result));
+    EXPECT_EQ(4u, result.Segments.size());
+    EXPECT_LT(10u, result.Triangles.size());
+  }
+}
+
+TEST(IsomorphicTriangulation, OutlinesKeepTheirEdgesBesideNearPoints)
+{
+  // The Delaunay triangulation in a box joins points so near to an edge to the box instead.
+  FigurePair figure = Outline(Circle(4), Circle(4));
+  for (std::size_t i = 0; i < 64; ++i)
+  {
+    const Vector2 a = figure.Points[0][i % 4];
+    const Vector2 b = figure.Points[0][(i + 1) % 4];
+    const Vector2 p = (1.0 - 1e-9) * (a + (static_cast<double>(i + 1) / 66.0) * (b - a));
+    Add(figure, p, p);
+  }
+  for (int sense = 0; sense < 2; ++sense)
+  {
+    EXPECT_EQ("", Check(figure, MakeIsomorphicTriangulation(figure, {})));
+    std::reverse(figure.Loops[0].begin(), figure.Loops[0].end());
+  }
+}
+
+TEST(IsomorphicTriangulation, StopsWhenAsked)
+{
+  // At each of its questions, or never.
+  const FigurePair figure = Noise(60, 0.5, 4);
+  bool stopped = true;
+  for (int limit = 0; stopped; limit += 1 + limit / 4)
+  {
+    stopped = false;
+    int questions = limit;
+    Options options;
+    options.TargetQuality = 10.0;
+    options.Progress = [&](double) {
+      stopped = stopped || questions-- == 0;
+      return !stopped;
+    };
+    const auto result = MakeIsomorphicTriangulation(figure, options);
+    EXPECT_EQ(stopped ? "Stopped on request." : "", Check(figure, result));
+    EXPECT_EQ(stopped, result.Triangles.empty());
   }
 }
 
