@@ -9,6 +9,7 @@ import os
 import pathlib
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -97,15 +98,20 @@ def run_tests(program, tests):
     command = [str(BUILD / "bin" / program), f"--gtest_filter={tests}", "--gtest_fail_fast"]
     if not os.environ.get("DISPLAY"):
         command = ["xvfb-run", "-a"] + command
+    # A session of its own, so that xvfb-run's child ends with it.
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                               preexec_fn=limit_memory, start_new_session=True)
     try:
-        result = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT, preexec_fn=limit_memory)
+        output, _ = process.communicate(timeout=TIME_LIMIT)
     except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
         return "time limit"
-    if "[==========] 0 tests" in result.stdout or "[==========]" not in result.stdout:
+    if "[==========] 0 tests" in output or "[==========]" not in output:
         sys.exit(f"{program} has no tests {tests}.")
-    if result.returncode == 0:
+    if process.returncode == 0:
         return None
-    failed = [line.split()[3].rstrip(",") for line in result.stdout.splitlines() if line.startswith("[  FAILED  ] ")]
+    failed = [line.split()[3].rstrip(",") for line in output.splitlines() if line.startswith("[  FAILED  ] ")]
     return failed[0] if failed else "crash"
 
 
