@@ -21,7 +21,17 @@ namespace
 {
 
 constexpr int MaximumRounds = 120;
-constexpr int MaximumProximalRounds = 8;
+constexpr int MaximumProximalRounds = 20;
+/// Proximal rounds end when the energy falls to no less than this share.
+constexpr double EnoughProgress = 0.998;
+/// By what the pull on an element is divided when a solution is certified: on one that had to be
+/// pulled harder for that, and on others.
+constexpr double CautiousRelaxation = 4.0;
+constexpr double Relaxation = 64.0;
+/// Coefficients of the determinant that are less than this share of the template's above the
+/// least one allowed are constraints that may hold an element back, and sweeps to find how hard.
+constexpr double NearShare = 0.4;
+constexpr int MultiplierSweeps = 30;
 /// Above this share of failing triangles everything is cut from the start, which bends less.
 constexpr double CutAllShare = 0.05;
 /// Failures after which a whole triangle, or the whole neighbors of a cut one, are cut.
@@ -110,10 +120,37 @@ struct Element
   double Enough = 0.0;
   double Reference = 0.0;
   bool Failed = false;
-  BendingMatrix Bending;
+  /// How often it has failed since the last certified solution.
+  int Failures = 0;
+  BendingMatrix Bending{};
+  /// What the constraints exert on it, see Solver::KeepForce.
+  std::array<Vector2, 9> Force{};
   /// Doubles cannot represent even the template's own element: its triangle is not certified.
   bool IsLost = false;
 };
+
+/// The distance of an element's data from its aim whose square the pull punishes.
+BendingMatrix GetPullMatrix(const std::array<Vector2, 3>& points)
+{
+  BendingMatrix pull{};
+  for (int i = 0; i < 3; ++i)
+  {
+    pull[3 * i + 1][3 * i + 1] = 1.0;
+    pull[3 * i + 2][3 * i + 2] = 1.0;
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = 3 * NextCorner(k);
+    const int j = 3 * PreviousCorner(k);
+    const Vector2 edge = points[j / 3] - points[i / 3];
+    const double weight = 1.0 / Dot(edge, edge);
+    pull[i][i] += weight;
+    pull[j][j] += weight;
+    pull[i][j] -= weight;
+    pull[j][i] -= weight;
+  }
+  return pull;
+}
 
 class Solver
 {
@@ -171,11 +208,13 @@ private:
   bool SolveSystem();
   int Check(bool rigorous);
   void Aim();
+  void KeepForce(Element& element) const;
   double GetEnergy() const;
   void CutTriangle(int triangle) { this->IsCut[triangle] = 1; }
   BendingNode GetTemplateNode(int triangle, const TriangleCut& cut, int node) const;
   CubicElement GetElement(const Element& element, bool aim) const;
   void GetVector(const Element& element, bool aim, std::array<Vector2, 9>& v) const;
+  std::array<Vector2, 9> GetAim(const Element& element) const;
   LinearForm Unknown() { return { {}, { { this->NumberOfUnknowns++, 1.0 } } }; }
   BendingSolution Extract() const;
 
@@ -316,7 +355,7 @@ void Solver::Build()
     const std::array<std::int32_t, 3>& corners = this->Pair.Triangles[t];
     if (!this->IsCut[t])
     {
-      Element element{ t, -1, { corners[0], corners[1], corners[2] }, 0.0, 0.0, 0.0, false, {} };
+      Element element{ t, -1, { corners[0], corners[1], corners[2] } };
       const auto old = oldElements.find({ t, -1 });
       if (old != oldElements.end())
       {
@@ -367,8 +406,7 @@ void Solver::Build()
         continue;
       }
       const std::array<std::int8_t, 3>& numbers = TriangleCut::Elements[e];
-      Element element{ t, e, { nodes[numbers[0]], nodes[numbers[1]], nodes[numbers[2]] }, 0.0, 0.0,
-        0.0, false, {} };
+      Element element{ t, e, { nodes[numbers[0]], nodes[numbers[1]], nodes[numbers[2]] } };
       const auto old = oldElements.find({ t, e });
       if (old != oldElements.end())
       {
@@ -593,6 +631,18 @@ void Solver::GetVector(const Element& element, bool aim, std::array<Vector2, 9>&
 }
 
 //------------------------------------------------------------------------------
+// What an element is pulled to: at first, a whole triangle to its affine map.
+std::array<Vector2, 9> Solver::GetAim(const Element& element) const
+{
+  std::array<Vector2, 9> aim{};
+  if (element.Number >= 0 || this->Proximal)
+  {
+    this->GetVector(element, true, aim);
+  }
+  return aim;
+}
+
+//------------------------------------------------------------------------------
 void Solver::Assemble()
 {
   // Entries in a fixed order, which are summed where the first assembly has found their places.
@@ -620,7 +670,8 @@ void Solver::Assemble()
       constants[3 * i + 1] = node.ByX.Constant - affine.ImageOfX;
       constants[3 * i + 2] = node.ByY.Constant - affine.ImageOfY;
     }
-    // Bending times the constants, then the pull times their distance from the aim.
+    // Bending times the constants, then the pull times their distance from the aim, less what the
+    // constraints exert.
     std::array<Vector2, 9> force{};
     for (int m = 0; m < 9; ++m)
     {
@@ -631,35 +682,16 @@ void Solver::Assemble()
     }
     if (element.Omega > 0.0)
     {
-      std::array<Vector2, 9> aim{};
-      if (element.Number >= 0 || this->Proximal)
-      {
-        this->GetVector(element, true, aim);
-      }
-      BendingMatrix pull{};
-      for (int i = 0; i < 3; ++i)
-      {
-        pull[3 * i + 1][3 * i + 1] = element.Omega;
-        pull[3 * i + 2][3 * i + 2] = element.Omega;
-      }
-      const CubicElement cubic = this->GetElement(element, true);
-      for (int k = 0; k < 3; ++k)
-      {
-        const int i = 3 * NextCorner(k);
-        const int j = 3 * PreviousCorner(k);
-        const Vector2 edge = cubic.Points[j / 3] - cubic.Points[i / 3];
-        const double weight = element.Omega / Dot(edge, edge);
-        pull[i][i] += weight;
-        pull[j][j] += weight;
-        pull[i][j] -= weight;
-        pull[j][i] -= weight;
-      }
+      const std::array<Vector2, 9> aim = this->GetAim(element);
+      const BendingMatrix pull = GetPullMatrix(this->GetElement(element, true).Points);
       for (int m = 0; m < 9; ++m)
       {
+        force[m] = force[m] - element.Force[m];
         for (int n = 0; n < 9; ++n)
         {
-          matrix[m][n] += pull[m][n];
-          force[m] = force[m] + pull[m][n] * (constants[n] - aim[n]);
+          const double weight = element.Omega * pull[m][n];
+          matrix[m][n] += weight;
+          force[m] = force[m] + weight * (constants[n] - aim[n]);
         }
       }
     }
@@ -819,6 +851,119 @@ int Solver::Check(bool rigorous)
 }
 
 //------------------------------------------------------------------------------
+// The pull exerts a force on an element. The part of it that keeps small coefficients of the
+// determinant from falling is kept as a constant force when the pull is relaxed: then the element
+// may move along the border of what is certified, but is not pressed against it. It is the sum of
+// the coefficients' gradients times multipliers of at least zero that is nearest to the force
+// (augmented Lagrangian: Hestenes 1969, Powell 1969).
+void Solver::KeepForce(Element& element) const
+{
+  if (!(element.Omega > 0.0) || element.IsLost)
+  {
+    return;
+  }
+  const CubicElement cubic = this->GetElement(element, false);
+  const BendingMatrix pull = GetPullMatrix(cubic.Points);
+  const std::array<Vector2, 9> aim = this->GetAim(element);
+  std::array<Vector2, 9> now;
+  this->GetVector(element, false, now);
+  // By component, in units in which the pull's diagonal is 1.
+  std::array<double, 18> residual;
+  std::array<double, 18> unit;
+  for (int m = 0; m < 9; ++m)
+  {
+    Vector2 force = element.Force[m];
+    for (int n = 0; n < 9; ++n)
+    {
+      force = force - (element.Omega * pull[m][n]) * (now[n] - aim[n]);
+    }
+    const double scale = 1.0 / std::sqrt(pull[m][m]);
+    unit[2 * m] = scale;
+    unit[2 * m + 1] = scale;
+    residual[2 * m] = scale * force.x;
+    residual[2 * m + 1] = scale * force.y;
+  }
+  element.Force = {};
+  const DeterminantCoefficients coefficients = GetDeterminantCoefficients(cubic);
+  std::array<int, 45> near;
+  int count = 0;
+  for (int c = 0; c < 45; ++c)
+  {
+    if (coefficients[c] < element.Enough + NearShare * element.Reference)
+    {
+      near[count++] = c;
+    }
+  }
+  if (count == 0)
+  {
+    return;
+  }
+  // Coefficients are quadratic functions, so central differences are their derivatives.
+  std::array<std::array<double, 18>, 45> gradients;
+  const double size = std::sqrt(cubic.Affine.Determinant());
+  for (int d = 0; d < 18; ++d)
+  {
+    DeterminantCoefficients beside[2];
+    for (int side = 0; side < 2; ++side)
+    {
+      CubicElement moved = cubic;
+      const int corner = d / 6;
+      Vector2& v = d / 2 % 3 == 0
+        ? moved.Values[corner]
+        : (d / 2 % 3 == 1 ? moved.Gradients[corner].ImageOfX : moved.Gradients[corner].ImageOfY);
+      (d % 2 == 0 ? v.x : v.y) += (side == 0 ? -size : size) * unit[d];
+      if (element.Number >= 0)
+      {
+        this->Template.GetCut(element.Triangle).SetRightAngle(element.Number, moved);
+      }
+      beside[side] = GetDeterminantCoefficients(moved);
+    }
+    for (int n = 0; n < count; ++n)
+    {
+      gradients[n][d] = (beside[1][near[n]] - beside[0][near[n]]) / (2.0 * size);
+    }
+  }
+  const auto product = [](const std::array<double, 18>& a, const std::array<double, 18>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  std::array<double, 45> multipliers{};
+  std::array<double, 45> norms;
+  for (int n = 0; n < count; ++n)
+  {
+    norms[n] = product(gradients[n], gradients[n]);
+  }
+  for (int sweep = 0; sweep < MultiplierSweeps; ++sweep)
+  {
+    for (int n = 0; n < count; ++n)
+    {
+      if (!(norms[n] > 0.0))
+      {
+        continue;
+      }
+      const double next =
+        std::max(0.0, multipliers[n] + product(gradients[n], residual) / norms[n]);
+      const double step = next - multipliers[n];
+      multipliers[n] = next;
+      for (int d = 0; d < 18; ++d)
+      {
+        residual[d] -= step * gradients[n][d];
+      }
+    }
+  }
+  for (int n = 0; n < count; ++n)
+  {
+    if (multipliers[n] > 0.0)
+    {
+      for (int d = 0; d < 18; ++d)
+      {
+        Vector2& force = element.Force[d / 2];
+        (d % 2 == 0 ? force.x : force.y) += multipliers[n] * gradients[n][d] / unit[d];
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void Solver::Aim()
 {
   for (Node& node : this->Nodes)
@@ -966,23 +1111,30 @@ BendingSolution Solver::Run()
     if (failed == 0)
     {
       const double energy = this->GetEnergy();
-      if (!(energy < 0.995 * bestEnergy))
+      const bool isLittle = !(energy < EnoughProgress * bestEnergy);
+      if (energy < bestEnergy)
       {
-        break;
+        bestEnergy = energy;
+        best = this->Extract();
+        this->Statistics.Energies.push_back(energy);
       }
-      bestEnergy = energy;
-      best = this->Extract();
-      bool pulled = false;
-      for (Element& element : this->Elements)
-      {
-        pulled = pulled || element.Omega > 0.0;
-        element.Omega /= 16.0;
-      }
-      if (!pulled || this->Statistics.ProximalRounds == MaximumProximalRounds)
+      const bool pulled = std::any_of(this->Elements.begin(), this->Elements.end(),
+        [](const Element& element) { return element.Omega > 0.0; });
+      if (isLittle || !pulled || this->Statistics.ProximalRounds == MaximumProximalRounds)
       {
         break;
       }
       ++this->Statistics.ProximalRounds;
+      this->Parallel(static_cast<std::int64_t>(this->Elements.size()),
+        [this](std::int64_t begin, std::int64_t end) {
+          for (std::int64_t e = begin; e < end; ++e)
+          {
+            Element& element = this->Elements[e];
+            this->KeepForce(element);
+            element.Omega /= element.Failures > 0 ? CautiousRelaxation : Relaxation;
+            element.Failures = 0;
+          }
+        });
       this->Aim();
       continue;
     }
@@ -1006,7 +1158,10 @@ BendingSolution Solver::Run()
         }
         const int t = element.Triangle;
         const bool whole = element.Number < 0;
-        element.Omega = std::max(4.0 * element.Omega, whole && !this->Proximal ? 0.5 : 0.1);
+        // In proximal rounds, twice as much harder with each failure.
+        const double harder = 4.0 * (this->Proximal ? std::exp2(element.Failures) : 1.0);
+        ++element.Failures;
+        element.Omega = std::max(harder * element.Omega, whole && !this->Proximal ? 0.5 : 0.1);
         if (counted == t || this->Proximal)
         {
           continue;
@@ -1050,6 +1205,7 @@ BendingSolution Solver::Run()
   }
   best.Statistics.Rounds = this->Statistics.Rounds;
   best.Statistics.ProximalRounds = this->Statistics.ProximalRounds;
+  best.Statistics.Energies = this->Statistics.Energies;
   return best;
 }
 

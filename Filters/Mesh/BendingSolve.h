@@ -47,6 +47,9 @@ struct BendingStatistics
   int TemplateTriangles = 0;
   /// The integral of the squared second derivatives, in the units of the target, squared.
   double Energy = 0.0;
+  /// The energies of the certified maps that were found in rounds, each below the one before; the
+  /// last is the result's.
+  std::vector<double> Energies;
   /// Whether the rounds ran out or a system could not be solved, so that the template itself had to
   /// be taken.
   bool TookTemplate = false;

@@ -709,6 +709,24 @@ TEST_P(CubicMaps, PartsMayTouchInAPoint)
   }
 }
 
+TEST(CubicMap, BendingFallsFromRoundToRound)
+{
+  for (int seed : { 29, 36 })
+  {
+    const CubicMap map(RandomPair(seed, 2.0, 5), Options(CubicBending::Least));
+    EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
+    const BendingStatistics& bending = map.GetStatistics().Bending;
+    const std::vector<double>& energies = bending.Energies;
+    ASSERT_GT(energies.size(), 2U);
+    EXPECT_EQ(energies.back(), bending.Energy);
+    for (std::size_t n = 1; n < energies.size(); ++n)
+    {
+      EXPECT_LT(energies[n], energies[n - 1]);
+    }
+    EXPECT_LT(energies.back(), 0.5 * energies.front());
+  }
+}
+
 TEST(CubicMap, StripsAndCornersLeaveNoGap)
 {
   const PlanarPair pair = RandomPair(15, 0.5, 12);
