@@ -62,6 +62,22 @@ bool OnlyFace(const FigurePair& figure, CommonMap::Face& face, PolygonPair& poly
   return true;
 }
 
+double Quality(const PolygonPair& polygons, int i, int k, int j)
+{
+  return QualityOf(PairQuality::MinimumAngle, { polygons[0][i], polygons[0][k], polygons[0][j] },
+    { polygons[1][i], polygons[1][k], polygons[1][j] });
+}
+
+double WorstQuality(const PolygonPair& polygons, const CornerTriangles& triangles)
+{
+  double worst = 180.0;
+  for (const auto& t : triangles)
+  {
+    worst = std::min(worst, Quality(polygons, t[0], t[1], t[2]));
+  }
+  return worst;
+}
+
 /// Checks triangles that fill two polygons, numbered as CornerTriangles are.
 std::string CheckFilling(const PolygonPair& polygons,
   const std::array<std::vector<Vector2>, 2>& points, const CornerTriangles& triangles)
@@ -160,27 +176,18 @@ TEST(FaceFilling, DiagonalsAreTheBestOfAll)
     p = { p.x + random(-0.1, 0.1), 0.5 * p.y };
   }
   const PolygonPair polygons{ { circle, Circle(6) } };
-  const auto quality = [&](int i, int k, int j) {
-    return QualityOf(PairQuality::MinimumAngle, { polygons[0][i], polygons[0][k], polygons[0][j] },
-      { polygons[1][i], polygons[1][k], polygons[1][j] });
-  };
   std::function<double(int, int)> best = [&](int i, int j) {
     double found = j - i < 2 ? 180.0 : -1.0;
     for (int k = i + 1; k < j; ++k)
     {
-      found = std::max(found, std::min({ best(i, k), best(k, j), quality(i, k, j) }));
+      found = std::max(found, std::min({ best(i, k), best(k, j), Quality(polygons, i, k, j) }));
     }
     return found;
   };
   CornerTriangles triangles;
   ASSERT_TRUE(FillByDiagonals(polygons, PairQuality::MinimumAngle, triangles));
-  double worst = 180.0;
-  for (const auto& t : triangles)
-  {
-    worst = std::min(worst, quality(t[0], t[1], t[2]));
-  }
   EXPECT_EQ(4u, triangles.size());
-  EXPECT_DOUBLE_EQ(best(0, 5), worst);
+  EXPECT_DOUBLE_EQ(best(0, 5), WorstQuality(polygons, triangles));
 }
 
 /// A quadrangle whose reflex corner differs, so that it has no common diagonal.
@@ -262,17 +269,6 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
     }
     ++complete;
     EXPECT_EQ(static_cast<std::size_t>(corners - 3), chords.size());
-    const auto worst = [&](const CornerTriangles& triangles) {
-      double least = 180.0;
-      for (const auto& t : triangles)
-      {
-        least = std::min(least,
-          QualityOf(PairQuality::MinimumAngle,
-            { polygons[0][t[0]], polygons[0][t[1]], polygons[0][t[2]] },
-            { polygons[1][t[0]], polygons[1][t[1]], polygons[1][t[2]] }));
-      }
-      return least;
-    };
     const auto has = [&](int a, int b) {
       return b == a + 1 || (a == 0 && b == corners - 1) || chords.count({ a, b }) != 0;
     };
@@ -291,7 +287,7 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
       }
     }
     EXPECT_EQ(best.size(), made.size());
-    EXPECT_NEAR(worst(best), worst(made), 1e-4);
+    EXPECT_NEAR(WorstQuality(polygons, best), WorstQuality(polygons, made), 1e-4);
   }
   EXPECT_LT(20, complete);
 }

@@ -292,8 +292,9 @@ TEST_P(KindsOfData, EmptyInputsGiveEmptyOutputs)
   }
   EXPECT_EQ(this->Run(vtkNew<vtkMultiBlockDataSet>())->GetNumberOfElements(0), 0);
   EXPECT_EQ(this->Run(vtkNew<vtkPartitionedDataSetCollection>())->GetNumberOfElements(0), 0);
-  // All points are outside an empty domain.
-  for (const auto& empty : { vtkSmartPointer<vtkPolyData>::New(), MakeCloud({}) })
+  // All points are outside an empty domain, with points or without.
+  for (const auto& empty :
+    { vtkSmartPointer<vtkPolyData>::New(), MakeCloud({}), MakeCloud(PointsOf(ThePair().Source)) })
   {
     for (const System& system : AllSystems())
     {
@@ -306,7 +307,8 @@ TEST_P(KindsOfData, EmptyInputsGiveEmptyOutputs)
       auto* output = vtkDataSet::SafeDownCast(this->Run(ThePair().Source));
       EXPECT_EQ(CountDifferentPoints(output, ThePair().Source), 0);
       EXPECT_EQ(this->Filter->GetNumberOfOutsidePoints(), output->GetNumberOfPoints());
-      EXPECT_EQ(this->Run(nullptr)->GetNumberOfElements(vtkDataObject::POINT), 0);
+      EXPECT_EQ(
+        this->Run(nullptr)->GetNumberOfElements(vtkDataObject::POINT), empty->GetNumberOfPoints());
     }
   }
   EXPECT_EQ(messages.Error() + messages.Warning(), "");

@@ -597,18 +597,4 @@ TEST(MeshValidation, HiddenDefectsAreIgnored)
   EXPECT_TRUE(Read(pair).Map->GetPair().GetGeometry(homeomorphism::Domain::Target).IsColumnar());
 }
 
-TEST(MeshValidation, EmptyMeshesHaveNoPointInside)
-{
-  const auto points = MakeMesh(GridPoints(2, 0, 0.0), {});
-  for (const auto& mesh : { points, vtkSmartPointer<vtkPolyData>::New() })
-  {
-    ExpectAccepted(Read(mesh, mesh));
-    ExpectAccepted(Read(mesh));
-    const MappedPoints mapped = MapPoints({ mesh, mesh }, { { 0, 0, 0 }, { 1, 1, 0 } });
-    EXPECT_EQ(mapped.Error + mapped.Warning, "");
-    EXPECT_EQ(mapped.Triangles, (Ids{ -1, -1 }));
-    EXPECT_EQ(mapped.Images, (std::vector<Point>{ { 0, 0, 0 }, { 1, 1, 0 } }));
-  }
-}
-
 } // namespace
