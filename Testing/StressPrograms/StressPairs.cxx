@@ -16,7 +16,6 @@
 
 #include <cstring>
 #include <ctime>
-#include <functional>
 #include <iostream>
 
 #include <sys/resource.h> // for the memory

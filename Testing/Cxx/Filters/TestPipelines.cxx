@@ -19,9 +19,7 @@
 #include "vtkPolyDataStreamer.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkSphereSource.h"
-#include "vtkStructuredGrid.h"
 #include "vtkTimeSourceExample.h"
-#include "vtkUnstructuredGrid.h"
 
 namespace
 {
