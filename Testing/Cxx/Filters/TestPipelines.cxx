@@ -20,6 +20,7 @@
 #include "vtkRTAnalyticSource.h"
 #include "vtkSphereSource.h"
 #include "vtkTimeSourceExample.h"
+#include "vtkUnstructuredGrid.h"
 
 namespace
 {
