@@ -30,6 +30,18 @@ constexpr int PreviousCorner(int corner)
   return corner == 0 ? 2 : corner - 1;
 }
 
+/// The corner that is @a further (0, 1 or 2) corners after @a corner.
+constexpr int CornerAfter(int corner, int further)
+{
+  return corner + further < 3 ? corner + further : corner + further - 3;
+}
+
+/// How many corners after @a corner another one is.
+constexpr int CornersBetween(int corner, int other)
+{
+  return other < corner ? other + 3 - corner : other - corner;
+}
+
 /// What belongs to a corner, the one after it and the one before it, in the order of the corners.
 /// Loads from places that depend on the corner are fast. Stores to them would be waited for by
 /// whoever loads the result in one piece.
@@ -116,6 +128,31 @@ HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(const Vector2& v)
 /// sum to 0).
 using Barycentric = std::array<double, 3>;
 
+/// Barycentric coordinates for a corner, the next one and the previous one.
+struct CornerCoordinates
+{
+  double Own;
+  double Next;
+  double Previous;
+
+  /// From the coordinates for the corners 0, 1, 2, or to them.
+  static HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates From(const Barycentric& l, int corner)
+  {
+    return { l[corner], l[NextCorner(corner)], l[PreviousCorner(corner)] };
+  }
+  HOMEOMORPHISM_ALWAYS_INLINE Barycentric InOrderFrom(int corner) const
+  {
+    return InOrder(corner, this->Own, this->Next, this->Previous);
+  }
+
+  /// The same for the corner that is 0, 1 or 2 corners further.
+  HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates Turned(int further) const
+  {
+    const double values[5] = { this->Own, this->Next, this->Previous, this->Own, this->Next };
+    return { values[further], values[further + 1], values[further + 2] };
+  }
+};
+
 /// A non-degenerate triangle in its own frame. The longest edge lies on the x axis, from the corner
 /// after the apex at the origin to the corner before the apex at (Base, 0). The apex is (ApexX,
 /// Height) with 0 <= ApexX <= Base and Height > 0. The corners 0, 1, 2 are in counterclockwise
@@ -143,14 +180,20 @@ struct TriangleShape
   /// Barycentric coordinates of the point of the closed triangle nearest to a point.
   Barycentric ToBarycentric(const Vector2& point) const
   {
+    return this->ToCornerCoordinates(point).InOrderFrom(this->Apex);
+  }
+
+  /// The same for the apex and the corners after and before it.
+  HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates ToCornerCoordinates(const Vector2& point) const
+  {
     const double apex = point.y / this->Height;
     const double second = (point.x - this->ApexX * apex) / this->Base;
     const double first = 1.0 - apex - second;
     if (!(apex >= 0.0 && first >= 0.0 && second >= 0.0))
     {
-      return this->NearestOnBoundary(point);
+      return CornerCoordinates::From(this->NearestOnBoundary(point), this->Apex);
     }
-    return InOrder(this->Apex, apex, first, second);
+    return { apex, first, second };
   }
 
   /// Barycentric coordinates of the boundary point nearest to @a point.
@@ -184,18 +227,29 @@ struct TriangleShape
   /// components of a vector to the vector.
   Vector2 FromBarycentric(const Barycentric& l) const
   {
-    const double apex = l[this->Apex];
-    const double second = l[PreviousCorner(this->Apex)];
+    return this->ToFrame(l[this->Apex], l[PreviousCorner(this->Apex)]);
+  }
+
+  /// The same, from the coordinates for the apex and for the corner before it.
+  HOMEOMORPHISM_ALWAYS_INLINE Vector2 ToFrame(double apex, double second) const
+  {
     return { this->Base * second + this->ApexX * apex, this->Height * apex };
   }
 
   /// The components of a vector of the plane, which sum to 0: the derivative of ToBarycentric.
   Barycentric VectorToBarycentric(const Vector2& vector) const
   {
+    return this->VectorToCornerCoordinates(vector).InOrderFrom(this->Apex);
+  }
+
+  /// The same for the apex and the corners after and before it.
+  HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates VectorToCornerCoordinates(
+    const Vector2& vector) const
+  {
     // Reciprocals, which are the same for both axes.
     const double apex = vector.y * (1.0 / this->Height);
     const double second = (vector.x - this->ApexX * apex) * (1.0 / this->Base);
-    return InOrder(this->Apex, apex, -apex - second, second);
+    return { apex, -apex - second, second };
   }
 };
 

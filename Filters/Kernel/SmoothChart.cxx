@@ -199,41 +199,30 @@ private:
   double HalfCurvature[Width];
 };
 
-HOMEOMORPHISM_ALWAYS_INLINE Barycentric Moved(
-  const Barycentric& l, int k, const SmoothStrip& strip, double factor)
+StripFunction<double> FunctionAt(const CornerCoordinates& l, const SmoothStrip& strip)
 {
-  return InOrder(k, l[k] + (strip.Kappa - 1.0) * factor,
-    l[NextCorner(k)] + strip.OffsetNext * factor,
-    l[PreviousCorner(k)] + strip.OffsetPrevious * factor);
-}
-
-StripFunction<double> FunctionAt(const Barycentric& l, int k, const SmoothStrip& strip)
-{
-  return StripFunction<double>(l[k], l[NextCorner(k)], l[PreviousCorner(k)], strip.Tau);
-}
-
-bool Contains(const SmoothStrip& strip, const Barycentric& l, int k)
-{
-  return strip.Contains(l[k], l[NextCorner(k)], l[PreviousCorner(k)]);
+  return StripFunction<double>(l.Own, l.Next, l.Previous, strip.Tau);
 }
 
 /// The chart maps each strip onto itself, so the affine coordinates determine whether the point
 /// with the least coordinate for k is in the strip opposite k.
-Barycentric ToReferenceOf(const Barycentric& affine, int k, const SmoothStrip& strip)
+HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates ToReferenceOf(
+  const CornerCoordinates& affine, const SmoothStrip& strip)
 {
-  if (!Contains(strip, affine, k))
+  if (!strip.Contains(affine))
   {
     return affine;
   }
   StripEquation<1> equation;
-  SolveBatch<1>(equation, &affine[k], &affine[NextCorner(k)], &affine[PreviousCorner(k)],
-    &strip.Kappa, &strip.OffsetNext, &strip.OffsetPrevious, &strip.Tau);
-  return Moved(affine, k, strip, -equation.Root[0]);
+  SolveBatch<1>(equation, &affine.Own, &affine.Next, &affine.Previous, &strip.Kappa,
+    &strip.OffsetNext, &strip.OffsetPrevious, &strip.Tau);
+  return strip.Move(affine, -equation.Root[0]);
 }
 
-Barycentric FromReferenceOf(const Barycentric& l, int k, const SmoothStrip& strip)
+HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates FromReferenceOf(
+  const CornerCoordinates& l, const SmoothStrip& strip)
 {
-  return Contains(strip, l, k) ? Moved(l, k, strip, FunctionAt(l, k, strip).Value()) : l;
+  return strip.Contains(l) ? strip.Move(l, FunctionAt(l, strip).Value()) : l;
 }
 
 } // namespace
@@ -419,69 +408,45 @@ SmoothChart::Reference SmoothChart::ToReference(const Vector2& point) const
 {
   const Barycentric affine = this->Shape.ToBarycentric(point);
   const int k = LeastCorner(affine[0], affine[1], affine[2]);
-  return ToReferenceOf(affine, k, this->Strips[k]);
+  return ToReferenceOf(CornerCoordinates::From(affine, k), this->Strips[k]).InOrderFrom(k);
 }
 
-SmoothPoint MapSmoothPoint(
-  const Barycentric& affine, const SmoothStripsView& source, const SmoothStripsView& target)
+SmoothPoint MapSmoothPoint(int corner, const CornerCoordinates& l, const SmoothStripsView& source,
+  const SmoothStripsView& target)
 {
-  const int k = LeastCorner(affine[0], affine[1], affine[2]);
+  const int least = LeastCorner(l.Own, l.Next, l.Previous);
   SmoothPoint point;
-  point.Reference = ToReferenceOf(affine, k, source[k]);
-  point.Image = FromReferenceOf(point.Reference, k, target[k]);
+  point.Corner = CornerAfter(corner, least);
+  point.Reference = ToReferenceOf(l.Turned(least), source[point.Corner]);
+  point.Image = FromReferenceOf(point.Reference, target[point.Corner]);
   return point;
 }
 
 Vector2 SmoothChart::ToPoint(const Reference& l) const
 {
   const int k = LeastCorner(l[0], l[1], l[2]);
-  return this->Shape.FromBarycentric(FromReferenceOf(l, k, this->Strips[k]));
+  return this->Shape.FromBarycentric(
+    FromReferenceOf(CornerCoordinates::From(l, k), this->Strips[k]).InOrderFrom(k));
 }
 
-SmoothChart::Differential::Differential(
-  const TriangleShape& shape, const SmoothStripsView& strips, const Reference& l)
+SmoothChart::Differential::Differential(const TriangleShape& shape, const SmoothStripsView& strips,
+  int corner, const CornerCoordinates& l)
   : Shape(shape)
-  , Edge(LeastCorner(l[0], l[1], l[2]))
-  , Strip(strips[this->Edge])
+  , Edge(corner)
+  , Strip(strips[corner])
 {
-  if (!Contains(this->Strip, l, this->Edge))
+  this->IsInStrip = this->Strip.Contains(l);
+  if (!this->IsInStrip)
   {
-    this->Edge = -1;
     return;
   }
-  const StripFunction<double> function = FunctionAt(l, this->Edge, this->Strip);
+  const StripFunction<double> function = FunctionAt(l, this->Strip);
   this->ByOwn = 1.0 - function.OneMinusSlope();
   this->ByNext = function.AlongSides(1.0, 0.0);
   this->ByPrevious = function.AlongSides(0.0, 1.0);
   this->DeterminantRatio = function.DeterminantRatio(
     this->Strip.Kappa, this->Strip.OffsetNext, this->Strip.OffsetPrevious);
   this->InverseDeterminantRatio = 1.0 / this->DeterminantRatio;
-}
-
-double SmoothChart::Differential::Along(const Barycentric& direction) const
-{
-  return this->ByOwn * direction[this->Edge] +
-    (this->ByNext * direction[NextCorner(this->Edge)] +
-      this->ByPrevious * direction[PreviousCorner(this->Edge)]);
-}
-
-Vector2 SmoothChart::Differential::Pushforward(const Direction& direction) const
-{
-  return this->Shape.FromBarycentric(this->Edge < 0
-      ? direction
-      : homeomorphism::Moved(direction, this->Edge, this->Strip, this->Along(direction)));
-}
-
-SmoothChart::Direction SmoothChart::Differential::Pullback(const Vector2& vector) const
-{
-  const Barycentric direction = this->Shape.VectorToBarycentric(vector);
-  if (this->Edge < 0)
-  {
-    return direction;
-  }
-  // Sherman-Morrison formula.
-  return homeomorphism::Moved(
-    direction, this->Edge, this->Strip, -this->Along(direction) * this->InverseDeterminantRatio);
 }
 
 TriangularCoordinates SmoothChart::ToCoordinates(const Reference& l) const

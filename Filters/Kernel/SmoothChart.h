@@ -78,9 +78,17 @@ struct SmoothStrip
   }
 
   /// Whether l is in the strip, given that the strip belongs to edge k: 0 <= l_k / (tau q) < 1.
-  bool Contains(double k, double next, double previous) const
+  bool Contains(const CornerCoordinates& l) const
   {
-    return k * (next + previous) < this->Tau * next * previous;
+    return l.Own * (l.Next + l.Previous) < this->Tau * l.Next * l.Previous;
+  }
+
+  /// l + @a factor d, with the barycentric components d of D_k.
+  HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates Move(
+    const CornerCoordinates& l, double factor) const
+  {
+    return { l.Own + (this->Kappa - 1.0) * factor, l.Next + this->OffsetNext * factor,
+      l.Previous + this->OffsetPrevious * factor };
   }
 };
 
@@ -151,24 +159,27 @@ void FillSmoothBatch(SmoothBatch& batch, int begin, int end);
 /// references to @a references, in the order of L, unless it is null.
 void MapSmoothBatch(SmoothBatch& batch, int count, double (*references)[SmoothBatch::Size]);
 
-/// Barycentric coordinates of a point in the affine charts of both triangles, and its reference.
+/// A point in the affine charts of both triangles, and its reference.
 struct SmoothPoint
 {
-  Barycentric Reference;
-  Barycentric Image;
+  /// The corner with the least coordinate, to which the others refer.
+  int Corner;
+  CornerCoordinates Reference;
+  CornerCoordinates Image;
 };
 
-/// Maps a point with these barycentric coordinates in the affine chart of the source, to the same
-/// bits as MapSmoothBatch.
-SmoothPoint MapSmoothPoint(
-  const Barycentric& affine, const SmoothStripsView& source, const SmoothStripsView& target);
+/// Maps a point of the affine chart of the source, to the same bits as MapSmoothBatch. @a l refers
+/// to @a corner, any of the three.
+SmoothPoint MapSmoothPoint(int corner, const CornerCoordinates& l, const SmoothStripsView& source,
+  const SmoothStripsView& target);
 
 /// The chart of the Smooth system.
 class SmoothChart
 {
 public:
   using Reference = Barycentric;
-  using Direction = Barycentric;
+  /// For the corner with the least coordinate of the reference.
+  using Direction = CornerCoordinates;
 
   SmoothChart(const TriangleShape& shape, const SmoothStrips& strips)
     : Shape(shape)
@@ -190,21 +201,41 @@ public:
   class Differential
   {
   public:
-    /// Of the strips, only one is read.
-    Differential(const TriangleShape& shape, const SmoothStripsView& strips, const Reference& l);
-    Direction Pullback(const Vector2& vector) const;
-    Vector2 Pushforward(const Direction& direction) const;
+    /// Of the strips, only one is read. @a l refers to @a corner, which has the least coordinate.
+    Differential(const TriangleShape& shape, const SmoothStripsView& strips, int corner,
+      const CornerCoordinates& l);
+    Direction Pullback(const Vector2& vector) const
+    {
+      const CornerCoordinates direction = this->Shape.VectorToCornerCoordinates(vector).Turned(
+        CornersBetween(this->Shape.Apex, this->Edge));
+      // Sherman-Morrison formula.
+      return this->IsInStrip
+        ? this->Strip.Move(direction, -this->Along(direction) * this->InverseDeterminantRatio)
+        : direction;
+    }
+    Vector2 Pushforward(const Direction& direction) const
+    {
+      const CornerCoordinates moved =
+        (this->IsInStrip ? this->Strip.Move(direction, this->Along(direction)) : direction)
+          .Turned(CornersBetween(this->Edge, this->Shape.Apex));
+      return this->Shape.ToFrame(moved.Own, moved.Previous);
+    }
     /// See SmoothChart.
     double GetDeterminantRatio() const { return this->DeterminantRatio; }
     double GetInverseDeterminantRatio() const { return this->InverseDeterminantRatio; }
 
   private:
     /// The derivative of B along a direction whose components sum to 0.
-    double Along(const Barycentric& direction) const;
+    double Along(const CornerCoordinates& direction) const
+    {
+      return this->ByOwn * direction.Own +
+        (this->ByNext * direction.Next + this->ByPrevious * direction.Previous);
+    }
 
     TriangleShape Shape;
-    /// The edge whose strip contains l, or -1.
+    /// The edge whose strip may contain l, and whether it does.
     int Edge;
+    bool IsInStrip;
     SmoothStrip Strip;
     double ByOwn = 0.0;
     double ByNext = 0.0;
@@ -215,7 +246,8 @@ public:
 
   Differential DifferentialAt(const Reference& l) const
   {
-    return { this->Shape, { this->Strips.data(), 1 }, l };
+    const int corner = LeastCorner(l[0], l[1], l[2]);
+    return { this->Shape, { this->Strips.data(), 1 }, corner, CornerCoordinates::From(l, corner) };
   }
   Direction Pullback(const Reference& l, const Vector2& vector) const
   {

@@ -153,6 +153,13 @@ HOMEOMORPHISM_FOR_WIDE_VECTORS void ToHorizontalPlane(const PlaneFrame& frame, d
   }
 }
 
+/// The image of a point that the Smooth system has mapped, in the frame of a triangle.
+Vector2 ToFrame(const TriangleShape& shape, const SmoothPoint& point)
+{
+  const CornerCoordinates l = point.Image.Turned(CornersBetween(point.Corner, shape.Apex));
+  return shape.ToFrame(l.Own, l.Previous);
+}
+
 double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
 {
   return (other.Base * (1.0 / shape.Base)) * (other.Height * (1.0 / shape.Height));
@@ -547,14 +554,16 @@ bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
   {
     return this->MapByCubic(from, surfacePoint, image, nullptr);
   }
-  FramePoint point;
-  point.Offset = offset;
+  const TriangleIndex t = surfacePoint.Triangle;
   // Without the charts, of which one strip is needed.
-  point.InPlane = this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth
-    ? target.GetShape(surfacePoint.Triangle)
-        .FromBarycentric(this->MapByStrip(from, surfacePoint).Image)
-    : this->MapInFrame(from, surfacePoint.Triangle, surfacePoint.Point.InPlane);
-  target.FromNormalized(target.FromFrame(surfacePoint.Triangle, point), image);
+  if (this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth)
+  {
+    const Vector2 inPlane = ToFrame(target.GetShape(t), this->MapByStrip(from, surfacePoint));
+    target.FromNormalized(target.FromFrame(t, { inPlane, offset }), image);
+    return true;
+  }
+  const Vector2 inPlane = this->MapInFrame(from, t, surfacePoint.Point.InPlane);
+  target.FromNormalized(target.FromFrame(t, { inPlane, offset }), image);
   return true;
 }
 
@@ -589,11 +598,11 @@ Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle,
 
 /// The derivative of the Smooth map, without the charts, of which one strip is needed.
 Jacobian Homeomorphism::DeriveByStrip(
-  Domain from, TriangleIndex triangle, const SmoothChart::Reference& reference) const
+  Domain from, TriangleIndex triangle, int corner, const CornerCoordinates& reference) const
 {
   const auto at = [&](Domain domain) {
     return SmoothChart::Differential(this->Pair->GetGeometry(domain).GetShape(triangle),
-      this->GetCharts(domain).GetStrips(triangle), reference);
+      this->GetCharts(domain).GetStrips(triangle), corner, reference);
   };
   return this->Derive(from, triangle, at(from), at(Opposite(from)));
 }
@@ -634,8 +643,8 @@ bool Homeomorphism::MapPoint(
   if (this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth)
   {
     const SmoothPoint mapped = this->MapByStrip(from, surfacePoint);
-    point.InPlane = target.GetShape(triangle).FromBarycentric(mapped.Image);
-    jacobian = this->DeriveByStrip(from, triangle, mapped.Reference);
+    point.InPlane = ToFrame(target.GetShape(triangle), mapped);
+    jacobian = this->DeriveByStrip(from, triangle, mapped.Corner, mapped.Reference);
   }
   else
   {
@@ -677,8 +686,8 @@ bool Homeomorphism::MapByCubic(
 SmoothPoint Homeomorphism::MapByStrip(Domain from, const SurfacePoint& surfacePoint) const
 {
   const TriangleIndex t = surfacePoint.Triangle;
-  return MapSmoothPoint(
-    this->Pair->GetGeometry(from).GetShape(t).ToBarycentric(surfacePoint.Point.InPlane),
+  const TriangleShape shape = this->Pair->GetGeometry(from).GetShape(t);
+  return MapSmoothPoint(shape.Apex, shape.ToCornerCoordinates(surfacePoint.Point.InPlane),
     this->GetCharts(from).GetStrips(t), this->GetCharts(Opposite(from)).GetStrips(t));
 }
 
@@ -697,9 +706,8 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const PointBlock& block, int i)
       block.ReferencePlaces[i], { block.References[0][i], block.References[1][i] });
     return this->FromFrames(from, triangle, derivative, derivative.Determinant());
   }
-  return this->DeriveByStrip(from, triangle,
-    InOrder(block.ReferencePlaces[i], block.References[0][i], block.References[1][i],
-      block.References[2][i]));
+  return this->DeriveByStrip(from, triangle, block.ReferencePlaces[i],
+    { block.References[0][i], block.References[1][i], block.References[2][i] });
 }
 
 Jacobian Homeomorphism::GetJacobian(

@@ -175,7 +175,7 @@ private:
   Jacobian Derive(Domain from, TriangleIndex triangle, const Differential& differential,
     const Differential& other) const;
   Jacobian DeriveByStrip(
-    Domain from, TriangleIndex triangle, const SmoothChart::Reference& reference) const;
+    Domain from, TriangleIndex triangle, int corner, const CornerCoordinates& reference) const;
 
   /// From the triangle's frames to the input's coordinates. @a determinant is that of the matrix.
   Jacobian FromFrames(

@@ -586,15 +586,8 @@ FramePoint MeshGeometry::ToFrame(TriangleIndex triangle, const Vector3& normaliz
   return { { Dot3(d, frame.Tangent), Dot3(d, frame.Inward) }, Dot3(d, frame.Normal) };
 }
 
-Vector3 MeshGeometry::FromFrame(TriangleIndex triangle, const FramePoint& point) const
+Vector3 MeshGeometry::FromSpaceFrame(TriangleIndex triangle, const FramePoint& point) const
 {
-  if (this->Planar)
-  {
-    const PlaneFrame& frame = this->PlaneFrames[triangle];
-    const Vector2 inPlane = frame.FromFrame(point.InPlane);
-    return { inPlane.x, inPlane.y,
-      this->Columnar ? point.Offset : frame.Orientation * point.Offset };
-  }
   const SpaceFrame& frame = this->SpaceFrames[triangle];
   const double x = point.InPlane.x;
   const double y = point.InPlane.y;

@@ -286,7 +286,17 @@ public:
   }
 
   FramePoint ToFrame(TriangleIndex triangle, const Vector3& normalized) const;
-  Vector3 FromFrame(TriangleIndex triangle, const FramePoint& point) const;
+  Vector3 FromFrame(TriangleIndex triangle, const FramePoint& point) const
+  {
+    if (!this->Planar)
+    {
+      return this->FromSpaceFrame(triangle, point);
+    }
+    const PlaneFrame& frame = this->PlaneFrames[triangle];
+    const Vector2 inPlane = frame.FromFrame(point.InPlane);
+    return { inPlane.x, inPlane.y,
+      this->Columnar ? point.Offset : frame.Orientation * point.Offset };
+  }
 
   /// The axes of the frame as unit vectors of the space of the input: along the longest edge, from
   /// it towards the apex, and the normal along which offsets are measured.
@@ -309,6 +319,7 @@ private:
     TriangleShape Shape;
   };
 
+  Vector3 FromSpaceFrame(TriangleIndex triangle, const FramePoint& point) const;
   Vector3 ToTiltedPlane(const Vector3& scaled) const;
   Vector3 FromTiltedPlane(const Vector3& normalized) const;
   /// The corner opposite the longest edge, the first of equals.

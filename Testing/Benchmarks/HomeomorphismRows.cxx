@@ -20,7 +20,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <stdexcept>
 
 using namespace homeomorphism;
@@ -72,7 +71,7 @@ private:
   std::shared_ptr<const Homeomorphism> Map;
 };
 
-/// With the Jacobians, which are added up, or without.
+/// With the Jacobians or without.
 template <bool WithJacobian>
 void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
 {
@@ -93,7 +92,7 @@ void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
       {
         Jacobian jacobian;
         map.MapPoint(from, surfacePoint, out + 3 * i, jacobian);
-        sum = std::accumulate(jacobian.Matrix.begin(), jacobian.Matrix.end(), sum);
+        sum += jacobian.Determinant;
       }
       else
       {

@@ -351,16 +351,14 @@ struct Magnification
     {
       for (int k = 0; k < 3; ++k)
       {
-        Barycentric along{};
-        along[NextCorner(k)] = -1.0;
-        along[PreviousCorner(k)] = 1.0;
-        Barycentric across{ -0.5, -0.5, -0.5 };
-        across[k] = 1.0;
+        const CornerCoordinates along = CornerCoordinates{ 0.0, -1.0, 1.0 }.Turned(k);
+        const CornerCoordinates across = CornerCoordinates{ 1.0, -0.5, -0.5 }.Turned(k);
         this->Forward =
           std::max({ this->Forward, Norm(chart.Pushforward(reference, along)) / shape.Base,
             Norm(chart.Pushforward(reference, across)) / shape.Base });
         // Directions of the affine chart, so that the shape of the triangle does not matter.
-        for (const double component : chart.Pullback(reference, shape.FromBarycentric(across)))
+        const Vector2 vector = shape.FromBarycentric(across.InOrderFrom(0));
+        for (const double component : chart.Pullback(reference, vector).InOrderFrom(0))
         {
           this->Inverse = std::max(this->Inverse, std::abs(component));
         }

@@ -149,6 +149,7 @@ TEST(SmoothEdge, DeterminantIsThatOfTheDerivativeAndOnAnEdgeTheShareOfTheNeighbo
       const Barycentric l = random.Chance(0.5)
         ? random.Weights()
         : OnStripBorder(k, chart.StripWidth(k) * random.Uniform(), random.Uniform(0.001, 0.999));
+      // To the next corner and to the previous one.
       const Vector2 a = chart.Pushforward(l, { -1.0, 1.0, 0.0 });
       const Vector2 b = chart.Pushforward(l, { -1.0, 0.0, 1.0 });
       const double affine = t.Shape.Base * t.Shape.Height;
