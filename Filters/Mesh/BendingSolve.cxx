@@ -36,6 +36,9 @@ constexpr int MultiplierSweeps = 30;
 constexpr double CutAllShare = 0.05;
 /// Failures after which a whole triangle, or the whole neighbors of a cut one, are cut.
 constexpr int PatientRounds = 3;
+/// Elements of cut triangles that are thinner than this share of their triangle's size bend at a
+/// scale that is not seen. They count as if their bending were spread over this width.
+constexpr double SeenWidth = 0.05;
 /// Steps of conjugate gradients, and the residual over the right-hand side that ends them.
 constexpr int MaximumSteps = 1000;
 constexpr double EnoughResidual = 1e-12;
@@ -122,12 +125,36 @@ struct Element
   bool Failed = false;
   /// How often it has failed since the last certified solution.
   int Failures = 0;
+  /// The share of its bending that is minimized, and the matrix of that share.
+  double Weight = 1.0;
   BendingMatrix Bending{};
   /// What the constraints exert on it, see Solver::KeepForce.
   std::array<Vector2, 9> Force{};
   /// Doubles cannot represent even the template's own element: its triangle is not certified.
   bool IsLost = false;
 };
+
+double GetDoubledArea(const std::array<Vector2, 3>& points)
+{
+  return Cross(points[1] - points[0], points[2] - points[0]);
+}
+
+double GetSize(const std::array<Vector2, 3>& points)
+{
+  return std::sqrt(GetDoubledArea(points));
+}
+
+/// The height over the longest edge.
+double GetThickness(const CubicElement& element)
+{
+  const std::array<Vector2, 3>& points = element.Points;
+  const double longest = std::max({ Length(points[1] - points[0]), Length(points[2] - points[1]),
+    Length(points[0] - points[2]) });
+  // The legs of a thin element are more accurate than its area.
+  const RightAngle& right = element.Right;
+  return (right.Corner >= 0 ? right.AlongTangent * right.AlongNormal : GetDoubledArea(points)) /
+    longest;
+}
 
 /// The distance of an element's data from its aim whose square the pull punishes.
 BendingMatrix GetPullMatrix(const std::array<Vector2, 3>& points)
@@ -209,7 +236,7 @@ private:
   int Check(bool rigorous);
   void Aim();
   void KeepForce(Element& element) const;
-  double GetEnergy() const;
+  double GetEnergy(bool isWeighted) const;
   void CutTriangle(int triangle) { this->IsCut[triangle] = 1; }
   BendingNode GetTemplateNode(int triangle, const TriangleCut& cut, int node) const;
   CubicElement GetElement(const Element& element, bool aim) const;
@@ -430,7 +457,22 @@ void Solver::Build()
       for (std::int64_t e = begin; e < end; ++e)
       {
         Element& element = this->Elements[e];
-        element.Bending = GetBendingMatrix(this->GetElement(element, false).Points);
+        const CubicElement cubic = this->GetElement(element, false);
+        element.Bending = GetBendingMatrix(cubic.Points);
+        element.Weight = 1.0;
+        if (element.Number >= 0)
+        {
+          const double width = SeenWidth * GetSize(this->Pair.GetSourceCorners(element.Triangle));
+          const double share = GetThickness(cubic) / width;
+          element.Weight = share > 0.0 ? std::min(1.0, share) : 1.0;
+          for (std::array<double, 9>& row : element.Bending)
+          {
+            for (double& entry : row)
+            {
+              entry *= element.Weight;
+            }
+          }
+        }
       }
     });
 }
@@ -974,18 +1016,19 @@ void Solver::Aim()
 }
 
 //------------------------------------------------------------------------------
-double Solver::GetEnergy() const
+double Solver::GetEnergy(bool isWeighted) const
 {
   double energy = 0.0;
   for (const Element& element : this->Elements)
   {
     std::array<Vector2, 9> v;
+    const double share = isWeighted ? 1.0 : 1.0 / element.Weight;
     this->GetVector(element, false, v);
     for (int m = 0; m < 9; ++m)
     {
       for (int n = 0; n < 9; ++n)
       {
-        energy += element.Bending[m][n] * Dot(v[m], v[n]);
+        energy += share * element.Bending[m][n] * Dot(v[m], v[n]);
       }
     }
   }
@@ -1020,7 +1063,7 @@ BendingSolution Solver::Extract() const
     ++solution.Statistics.CutTriangles;
     solution.Statistics.TemplateTriangles += same ? 1 : 0;
   }
-  solution.Statistics.Energy = this->GetEnergy();
+  solution.Statistics.Energy = this->GetEnergy(false);
   return solution;
 }
 
@@ -1110,13 +1153,13 @@ BendingSolution Solver::Run()
     failed = failed == 0 ? this->Check(true) : failed;
     if (failed == 0)
     {
-      const double energy = this->GetEnergy();
+      const double energy = this->GetEnergy(true);
       const bool isLittle = !(energy < EnoughProgress * bestEnergy);
       if (energy < bestEnergy)
       {
         bestEnergy = energy;
         best = this->Extract();
-        this->Statistics.Energies.push_back(energy);
+        this->Statistics.MinimizedEnergies.push_back(energy);
       }
       const bool pulled = std::any_of(this->Elements.begin(), this->Elements.end(),
         [](const Element& element) { return element.Omega > 0.0; });
@@ -1205,7 +1248,7 @@ BendingSolution Solver::Run()
   }
   best.Statistics.Rounds = this->Statistics.Rounds;
   best.Statistics.ProximalRounds = this->Statistics.ProximalRounds;
-  best.Statistics.Energies = this->Statistics.Energies;
+  best.Statistics.MinimizedEnergies = this->Statistics.MinimizedEnergies;
   return best;
 }
 

@@ -47,9 +47,9 @@ struct BendingStatistics
   int TemplateTriangles = 0;
   /// The integral of the squared second derivatives, in the units of the target, squared.
   double Energy = 0.0;
-  /// The energies of the certified maps that were found in rounds, each below the one before; the
-  /// last is the result's.
-  std::vector<double> Energies;
+  /// Of the certified maps that were found in rounds, the energy that is minimized, in which thin
+  /// elements count less. Each is below the one before; the last is the result's.
+  std::vector<double> MinimizedEnergies;
   /// Whether the rounds ran out or a system could not be solved, so that the template itself had to
   /// be taken.
   bool TookTemplate = false;
@@ -95,7 +95,8 @@ bool SolveWithWholeTriangles(const CubicTemplate& cubicTemplate, const BendingOp
 /// of all nodes but the points'. Where the determinant is not certified, the solution is pulled
 /// towards a certified map, first the triangle's own affine one, then, the triangle being cut, the
 /// template, ever harder until all is certified; it then becomes the aim from which the pull
-/// is relaxed, as long as the bending falls. @a isFree marks points whose value is an unknown too.
+/// is relaxed, as long as the bending falls. Of elements far thinner than their triangles, only a
+/// share of the bending is minimized. @a isFree marks points whose value is an unknown too.
 /// Corners that the template does not find differentiable keep the template's elements.
 BendingSolution SolveForLeastBending(const CubicTemplate& cubicTemplate,
   const BendingOptions& options, const std::vector<std::uint8_t>& isFree,

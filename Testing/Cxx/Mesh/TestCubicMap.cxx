@@ -716,9 +716,9 @@ TEST(CubicMap, BendingFallsFromRoundToRound)
     const CubicMap map(RandomPair(seed, 2.0, 5), Options(CubicBending::Least));
     EXPECT_EQ(map.GetStatistics().UncertifiedTriangles, 0);
     const BendingStatistics& bending = map.GetStatistics().Bending;
-    const std::vector<double>& energies = bending.Energies;
+    const std::vector<double>& energies = bending.MinimizedEnergies;
     ASSERT_GT(energies.size(), 2U);
-    EXPECT_EQ(energies.back(), bending.Energy);
+    EXPECT_LE(energies.back(), bending.Energy);
     for (std::size_t n = 1; n < energies.size(); ++n)
     {
       EXPECT_LT(energies[n], energies[n - 1]);
