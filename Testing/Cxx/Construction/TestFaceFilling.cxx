@@ -292,17 +292,23 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
   EXPECT_LT(20, complete);
 }
 
-TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
+/// A hexagon, its center, and six points between them, which may be displaced; points from a number
+/// on are added ones.
+PairMesh Rings(int firstAdded, const std::vector<std::array<int, 2>>& fixed, double displacement)
 {
-  // A convex polygon, two landmarks with a fixed segment in it, and added points around.
+  Random random(8);
   std::array<std::vector<Vector2>, 2> points{ { Circle(6, 4.0), Circle(6, 4.0) } };
   for (auto& p : points)
   {
-    p.push_back({ 0, 0 });
-    const std::vector<Vector2> ring = Circle(6, 2.0);
-    p.insert(p.end(), ring.begin(), ring.end());
+    std::vector<Vector2> inner = Circle(6, 2.0);
+    inner.insert(inner.begin(), Vector2{});
+    for (const Vector2& q : inner)
+    {
+      const double x = random(-displacement, displacement);
+      p.push_back(q + Vector2{ x, random(-displacement, displacement) });
+    }
   }
-  std::vector<std::array<int, 3>> triangles;
+  CornerTriangles triangles;
   for (int i = 0; i < 6; ++i)
   {
     const int next = (i + 1) % 6;
@@ -310,42 +316,52 @@ TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
     triangles.push_back({ i, next, 7 + i });
     triangles.push_back({ next, 7 + next, 7 + i });
   }
-  PairMesh mesh(points, triangles, { { 6, 7 } }, 8, PairQuality::MinimumAngle);
-  for (int pass = 0; pass < 3; ++pass)
+  return { points, triangles, fixed, firstAdded, PairQuality::MinimumAngle };
+}
+
+TEST(FaceFilling, RegionsAreFilledWithFewerPoints)
+{
+  for (const bool hasSegment : { false, true })
   {
-    for (const int vertex : mesh.FreeVertices())
+    // The center is a landmark, alone or with a segment to another one.
+    PairMesh mesh = hasSegment ? Rings(8, { { 6, 7 } }, 0.0) : Rings(7, {}, 0.0);
+    for (int pass = 0; pass < 3; ++pass)
     {
-      if (mesh.IsFree(vertex))
+      for (const int vertex : mesh.FreeVertices())
       {
-        const std::size_t mark = mesh.Mark();
-        const int before = mesh.CountAdded();
-        if (RefillRegion(mesh, vertex, 18, pass))
+        if (mesh.IsFree(vertex))
         {
-          const int after = mesh.CountAdded();
-          EXPECT_GT(before, after);
-          mesh.RollBack(mark);
-          EXPECT_EQ(before, mesh.CountAdded());
-          EXPECT_TRUE(RefillRegion(mesh, vertex, 18, pass));
-          EXPECT_EQ(after, mesh.CountAdded());
+          const std::size_t mark = mesh.Mark();
+          const int before = mesh.CountAdded();
+          if (RefillRegion(mesh, vertex, 18, pass))
+          {
+            const int after = mesh.CountAdded();
+            EXPECT_GT(before, after);
+            mesh.RollBack(mark);
+            EXPECT_EQ(before, mesh.CountAdded());
+            EXPECT_TRUE(RefillRegion(mesh, vertex, 18, pass));
+            EXPECT_EQ(after, mesh.CountAdded());
+          }
         }
       }
     }
-  }
-  EXPECT_EQ(0, mesh.CountAdded());
-  EXPECT_TRUE(mesh.IsUsed(6));
-  int fixed = 0;
-  for (const PairMesh::Triangle& t : mesh.GetTriangles())
-  {
-    for (int k = 0; k < 3 && t.Alive; ++k)
+    EXPECT_EQ(0, mesh.CountAdded());
+    EXPECT_TRUE(mesh.IsUsed(6));
+    int fixed = 0;
+    for (const PairMesh::Triangle& t : mesh.GetTriangles())
     {
-      const std::pair<int, int> ends =
-        std::minmax(t.Vertices[NextCorner(k)], t.Vertices[PreviousCorner(k)]);
-      EXPECT_EQ(t.Neighbors[k] < 0 || ends == std::make_pair(6, 7), t.Fixed[k]);
-      fixed += ends == std::make_pair(6, 7) ? 1 : 0;
+      for (int k = 0; k < 3 && t.Alive; ++k)
+      {
+        const std::pair<int, int> ends =
+          std::minmax(t.Vertices[NextCorner(k)], t.Vertices[PreviousCorner(k)]);
+        const bool isSegment = hasSegment && ends == std::make_pair(6, 7);
+        EXPECT_EQ(t.Neighbors[k] < 0 || isSegment, t.Fixed[k]);
+        fixed += isSegment ? 1 : 0;
+      }
     }
+    EXPECT_EQ(hasSegment ? 2 : 0, fixed);
+    EXPECT_LT(0.0, mesh.WorstQuality());
   }
-  EXPECT_EQ(2, fixed);
-  EXPECT_LT(0.0, mesh.WorstQuality());
 }
 
 TEST(FaceFilling, StarCentersSeeAllCorners)
@@ -420,49 +436,17 @@ TEST(JointOptimization, MergingLeavesFewerPoints)
 
 TEST(JointOptimization, PointsMoveToTheBestPlaces)
 {
-  // Equilateral triangles whose inner points are displaced.
-  std::array<std::vector<Vector2>, 2> points;
-  std::map<std::pair<int, int>, int> number;
-  Random random(8);
-  for (const bool inner : { false, true })
+  std::array<double, 2> angles;
+  for (const bool displaced : { false, true })
   {
-    for (int i = -3; i <= 3; ++i)
-    {
-      for (int j = -3; j <= 3; ++j)
-      {
-        const int distance = std::max({ std::abs(i), std::abs(j), std::abs(i + j) });
-        if (inner ? distance < 3 : distance == 3)
-        {
-          number[{ i, j }] = static_cast<int>(points[0].size());
-          for (auto& p : points)
-          {
-            const Vector2 shift{ random(-0.3, 0.3), random(-0.3, 0.3) };
-            p.push_back(Vector2{ i + 0.5 * j, std::sqrt(0.75) * j } + (inner ? 1.0 : 0.0) * shift);
-          }
-        }
-      }
-    }
+    PairMesh mesh = Rings(6, {}, displaced ? 0.5 : 0.0);
+    JointOptimization(mesh, []() { return true; }).AddPoints(0.0, mesh.CountAdded());
+    EXPECT_EQ(7, mesh.CountAdded());
+    angles[displaced] = mesh.SmallestAngle();
   }
-  CornerTriangles triangles;
-  for (const auto& [at, a] : number)
-  {
-    const auto [i, j] = at;
-    const auto right = number.find({ i + 1, j });
-    const auto above = number.find({ i, j + 1 });
-    const auto left = number.find({ i - 1, j + 1 });
-    if (above != number.end() && right != number.end())
-    {
-      triangles.push_back({ a, right->second, above->second });
-    }
-    if (above != number.end() && left != number.end())
-    {
-      triangles.push_back({ a, above->second, left->second });
-    }
-  }
-  PairMesh mesh(points, triangles, {}, 18, PairQuality::MinimumAngle);
-  JointOptimization(mesh, []() { return true; }).AddPoints(0.0, mesh.CountAdded());
-  EXPECT_EQ(19, mesh.CountAdded());
-  EXPECT_LT(59.9, mesh.SmallestAngle());
+  // Three angles share the 120 degrees of a corner, wherever the points start.
+  EXPECT_LT(39.9, angles[0]);
+  EXPECT_NEAR(angles[0], angles[1], 0.01);
 }
 
 TEST(PairQuality, GradientsAreDerivatives)
