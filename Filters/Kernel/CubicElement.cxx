@@ -552,6 +552,27 @@ CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element)
 }
 
 //------------------------------------------------------------------------------
+Matrix2 Derive(const CubicElement& element, const Barycentric& l)
+{
+  const CubicPiece piece = FindPiece(l);
+  const int k = piece.Opposite;
+  const int i = NextCorner(k);
+  const int j = PreviousCorner(k);
+  const std::array<double, 6> weights = piece.GetQuadratics();
+  const bool isRight = element.Right.Corner >= 0;
+  const DerivativeOrdinates<double> d =
+    isRight ? MakeRightDerivative<double>(element) : MakeDerivative<double>(element);
+  const Matrix<double> sum = weights[0] * d.Corner[i] + weights[1] * d.Edge[k] +
+    weights[2] * d.Corner[j] + weights[3] * d.Spoke[i] + weights[4] * d.Spoke[j] +
+    weights[5] * d.Center;
+  const Matrix2 derivative{ { sum.First.x, sum.First.y }, { sum.Second.x, sum.Second.y } };
+  // From the frame's axes to the plane's.
+  return isRight ? OuterProduct(derivative.ImageOfX, element.Right.Tangent) +
+      OuterProduct(derivative.ImageOfY, element.Right.Normal)
+                 : derivative;
+}
+
+//------------------------------------------------------------------------------
 void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, const Barycentric& l,
   Vector2& value, Matrix2& derivative)
 {
@@ -576,19 +597,7 @@ void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, con
     centroid = centroid + weights[n] * fromCentroid[n];
   }
   value = piece.Start * start + piece.End * end + piece.Centroid * centroid;
-  const bool isRight = element.Right.Corner >= 0;
-  const DerivativeOrdinates<double> d =
-    isRight ? MakeRightDerivative<double>(element) : MakeDerivative<double>(element);
-  const Matrix<double> sum = weights[0] * d.Corner[i] + weights[1] * d.Edge[k] +
-    weights[2] * d.Corner[j] + weights[3] * d.Spoke[i] + weights[4] * d.Spoke[j] +
-    weights[5] * d.Center;
-  derivative = { { sum.First.x, sum.First.y }, { sum.Second.x, sum.Second.y } };
-  if (isRight)
-  {
-    // From the frame's axes to the plane's.
-    derivative = OuterProduct(derivative.ImageOfX, element.Right.Tangent) +
-      OuterProduct(derivative.ImageOfY, element.Right.Normal);
-  }
+  derivative = Derive(element, l);
 }
 
 //------------------------------------------------------------------------------

@@ -135,7 +135,10 @@ inline CubicPiece FindPiece(const Barycentric& l)
 
 CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element);
 
-/// D and its derivative at a point with barycentric coordinates @a l.
+/// The derivative of D at a point with barycentric coordinates @a l.
+Matrix2 Derive(const CubicElement& element, const Barycentric& l);
+
+/// D and its derivative, the same as Derive's.
 void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& ordinates,
   const Barycentric& l, Vector2& value, Matrix2& derivative);
 

@@ -462,10 +462,17 @@ Vector2 CubicMap::MapPoint(int triangle, const Vector2& point, CubicTriangle& pr
 Matrix2 CubicMap::GetDerivative(int triangle, const Vector2& point) const
 {
   const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
+  const PlanarPair& pair = this->GetFine();
+  const Vector2 local = point - pair.Source[pair.Triangles[child][0]];
+  if (this->IsWhole(child))
+  {
+    const Matrix2& affine = this->Template->GetAffine(child);
+    const CubicElement element = this->Bending->GetWhole(pair, affine, child);
+    return affine + Derive(element, ToBarycentric(element.Points, local));
+  }
   Vector2 image;
   Matrix2 derivative;
-  this->MapFine(
-    child, point - this->GetFine().Source[this->GetFine().Triangles[child][0]], image, derivative);
+  this->MapFine(child, local, image, derivative);
   return derivative;
 }
 
