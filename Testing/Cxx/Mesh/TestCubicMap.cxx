@@ -718,7 +718,8 @@ TEST(CubicMap, BendingFallsFromRoundToRound)
     const BendingStatistics& bending = map.GetStatistics().Bending;
     const std::vector<double>& energies = bending.MinimizedEnergies;
     ASSERT_GT(energies.size(), 2U);
-    EXPECT_LE(energies.back(), bending.Energy);
+    // Elements that are far thinner than their triangles count less.
+    EXPECT_LT(energies.back(), 0.9 * bending.Energy);
     for (std::size_t n = 1; n < energies.size(); ++n)
     {
       EXPECT_LT(energies[n], energies[n - 1]);
