@@ -493,14 +493,19 @@ Vector2 ContourChart::PointOn(const Reference& coordinates, const Half& half, do
       edge.Start.y + along * edge.Tangent.y + y * edge.Tangent.x };
 }
 
-ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) const
+ContourChart::Search ContourChart::Find(const Vector2& pointInFrame) const
 {
   Search search = this->StartSearch(pointInFrame);
   if (!search.IsStraight)
   {
     search.S = Clamp01(ContourThrough(search.Height, search.Length, search.X, search.Y));
   }
-  return this->EndSearch(search);
+  return search;
+}
+
+ContourChart::Reference ContourChart::ToReference(const Vector2& pointInFrame) const
+{
+  return this->EndSearch(this->Find(pointInFrame));
 }
 
 Vector2 ContourChart::ToPoint(const Reference& coordinates) const
@@ -552,15 +557,36 @@ void ContourChart::MapPoints(
   }
 }
 
+MappedPoint<ContourChart> ContourChart::MapWithDerivatives(
+  const ContourChart& from, const ContourChart& to, const Vector2& point)
+{
+  const Search search = from.Find(point);
+  const Reference coordinates = from.EndSearch(search);
+  const Ending ending = to.EndingOf(coordinates);
+  const double s = ContourEndingAt(ending.Flatness, ending.Proportion);
+  // The center has no contour of its own.
+  const Half half = from.EndingOf(coordinates).AtEdge;
+  return { to.PointOn(coordinates, ending.AtEdge, s),
+    search.EdgeLabel == 0 ? from.DifferentialAt(coordinates)
+                          : from.DifferentialOn(coordinates, half, search.S),
+    to.DifferentialOn(coordinates, ending.AtEdge, s) };
+}
+
+ContourChart::Differential ContourChart::DifferentialAt(const Reference& coordinates) const
+{
+  const Ending ending = this->EndingOf(coordinates);
+  return this->DifferentialOn(
+    coordinates, ending.AtEdge, ContourEndingAt(ending.Flatness, ending.Proportion));
+}
+
 /// The images of the two unit directions of the reference.
-Matrix2 ContourChart::Columns(const Reference& coordinates) const
+ContourChart::Differential ContourChart::DifferentialOn(
+  const Reference& coordinates, const Half& half, double s) const
 {
   const Edge& edge = this->Edges[coordinates.Edge - 1];
-  const Half half = this->HalfAt(edge, coordinates.EdgeParameter);
   const double h = edge.CenterHeight;
   const double b = half.Length;
   const double c = coordinates.ContourParameter;
-  const double s = ContourEndingAt(Flatness(h, b), Clamp01(half.EdgePoint / b));
   const ContourOfHalf contour(h, b, s);
   const ContourOfHalfDerivative derivative(h, b, s, contour);
   const double remaining = (1.0 - c) * contour.Length;
@@ -603,7 +629,7 @@ Matrix2 ContourChart::Columns(const Reference& coordinates) const
     return { along * edge.Tangent.x - v.y * edge.Tangent.y,
       along * edge.Tangent.y + v.y * edge.Tangent.x };
   };
-  return { toTriangle(byC), rate * toTriangle(bySOverC) };
+  return { { toTriangle(byC), rate * toTriangle(bySOverC) }, this->Unit };
 }
 
 Vector2 ContourChart::Differential::Pushforward(const Direction& direction) const

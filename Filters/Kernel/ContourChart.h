@@ -69,10 +69,7 @@ public:
     double Unit;
   };
 
-  Differential DifferentialAt(const Reference& coordinates) const
-  {
-    return { this->Columns(coordinates), this->Unit };
-  }
+  Differential DifferentialAt(const Reference& coordinates) const;
   Direction Pullback(const Reference& coordinates, const Vector2& vector) const
   {
     return this->DifferentialAt(coordinates).Pullback(vector);
@@ -91,6 +88,10 @@ public:
   /// time.
   static void MapPoints(
     const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count);
+
+  /// See CoordinateSystem.h.
+  static MappedPoint<ContourChart> MapWithDerivatives(
+    const ContourChart& from, const ContourChart& to, const Vector2& point);
 
   /// The point at which the contours start.
   Vector2 Center() const;
@@ -144,11 +145,13 @@ private:
   };
 
   Search StartSearch(const Vector2& pointInFrame) const;
+  /// Solves the equation, too.
+  Search Find(const Vector2& pointInFrame) const;
   Reference EndSearch(const Search& search) const;
   Ending EndingOf(const Reference& coordinates) const;
   Vector2 PointOn(const Reference& coordinates, const Half& half, double s) const;
   Half HalfAt(const Edge& edge, double p) const;
-  Matrix2 Columns(const Reference& coordinates) const;
+  Differential DifferentialOn(const Reference& coordinates, const Half& half, double s) const;
 
   /// The unit of length of all members below: a power of two near the size of the triangle, so that
   /// products neither underflow nor overflow.
@@ -159,6 +162,12 @@ private:
 };
 
 static_assert(IsChart<ContourChart>::value, "See CoordinateSystem.h");
+
+inline MappedPoint<ContourChart> MapWithDerivatives(
+  const ContourChart& from, const ContourChart& to, const Vector2& point)
+{
+  return ContourChart::MapWithDerivatives(from, to, point);
+}
 
 } // namespace homeomorphism
 

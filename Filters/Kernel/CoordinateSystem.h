@@ -85,6 +85,24 @@ Matrix2 MapDerivative(const Differential& from, const Differential& to)
     to.Pushforward(from.Pullback({ 0.0, 1.0 })) };
 }
 
+/// The image of a point, and the derivatives of both charts there.
+template <typename Chart>
+struct MappedPoint
+{
+  Vector2 Image;
+  typename Chart::Differential From;
+  typename Chart::Differential To;
+};
+
+/// MapPoint with the derivatives of the charts. Charts that solve equations overload it, to solve
+/// each only once.
+template <typename Chart>
+MappedPoint<Chart> MapWithDerivatives(const Chart& from, const Chart& to, const Vector2& point)
+{
+  const auto reference = from.ToReference(point);
+  return { to.ToPoint(reference), from.DifferentialAt(reference), to.DifferentialAt(reference) };
+}
+
 /// The derivative of the homeomorphism at the point with this reference in both triangles.
 template <typename Chart>
 Matrix2 MapDerivative(

@@ -618,9 +618,8 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoin
   }
   return this->VisitCharts(
     from, surfacePoint.Triangle, [this, from, &surfacePoint](const auto& chart, const auto& other) {
-      const auto reference = chart.ToReference(surfacePoint.Point.InPlane);
-      return this->Derive(from, surfacePoint.Triangle, chart.DifferentialAt(reference),
-        other.DifferentialAt(reference));
+      const auto mapped = MapWithDerivatives(chart, other, surfacePoint.Point.InPlane);
+      return this->Derive(from, surfacePoint.Triangle, mapped.From, mapped.To);
     });
 }
 
@@ -649,10 +648,9 @@ bool Homeomorphism::MapPoint(
   else
   {
     this->VisitCharts(from, triangle, [&](const auto& chart, const auto& other) {
-      const auto reference = chart.ToReference(surfacePoint.Point.InPlane);
-      point.InPlane = other.ToPoint(reference);
-      jacobian = this->Derive(
-        from, triangle, chart.DifferentialAt(reference), other.DifferentialAt(reference));
+      const auto mapped = MapWithDerivatives(chart, other, surfacePoint.Point.InPlane);
+      point.InPlane = mapped.Image;
+      jacobian = this->Derive(from, triangle, mapped.From, mapped.To);
     });
   }
   target.FromNormalized(target.FromFrame(triangle, point), image);
