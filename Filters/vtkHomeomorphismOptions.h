@@ -81,7 +81,7 @@ public:                                                                         
 /// Declares the methods and the member of a switch.
 #define vtkHomeomorphismSwitchMacro(name, value)                                                   \
 protected:                                                                                         \
-  bool name{ value };                                                                              \
+  bool name{ value }; /* NOLINT(bugprone-macro-parentheses) */                                     \
                                                                                                    \
 public:                                                                                            \
   vtkSetMacro(name, bool);                                                                         \

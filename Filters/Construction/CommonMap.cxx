@@ -405,6 +405,7 @@ std::vector<std::array<int, 3>> CommonMap::FaceTriangles(
     }
   }
   std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(labels.size());
   for (const auto& entry : labels)
   {
     triangles.push_back(entry.second);

@@ -94,8 +94,8 @@ public:
   /// Unconstrained edges of both triangulations inside the domain, the shortest first.
   std::vector<std::array<int, 2>> Candidates() const;
 
-  /// The faces inside the domain: triangles, and others.
-  void Faces(std::vector<std::array<int, 3>>& triangles, std::vector<Face>& faces) const;
+  /// The faces inside the domain: triangles (@a closed), and others.
+  void Faces(std::vector<std::array<int, 3>>& closed, std::vector<Face>& faces) const;
 
   int GetNumberOfComponents() const { return this->NumberOfComponents; }
   int Component(int vertex) const;

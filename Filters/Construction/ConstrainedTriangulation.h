@@ -104,8 +104,8 @@ public:
 private:
   int Sign(int a, int b, int c) const;
   int Locate(const Vector2& point, int& onEdge) const;
-  void Flip(int triangle, int edge);
-  bool IsConvex(int triangle, int edge) const;
+  void Flip(int t, int k);
+  bool IsConvex(int t, int k) const;
   void Link(int triangle, int edge, int neighbor, int neighborEdge);
   void Legalize();
 

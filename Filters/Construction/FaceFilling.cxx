@@ -483,8 +483,9 @@ bool FindBestStarCenter(const std::vector<Vector2>& polygon, Vector2& center)
   {
     slope *= 0.5;
   }
-  for (double share = 0.5; share > 0.02; share *= 0.5)
+  for (int i = 1; i <= 5; ++i)
   {
+    const double share = std::ldexp(1.0, -i);
     slope *= CenterAtSlope(polygon, slope * (1.0 + share), center) ? 1.0 + share : 1.0;
   }
   return true;

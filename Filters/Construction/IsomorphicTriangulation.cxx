@@ -563,13 +563,15 @@ private:
       least + 0.5 * std::max(bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y);
     const auto images = [&](const std::vector<Vector2>& corners) {
       std::vector<Vector2> mapped;
+      mapped.reserve(corners.size());
       for (const Vector2& corner : corners)
       {
         mapped.push_back(fit(corner));
       }
       return mapped;
     };
-    for (double margin = least; margin < most; margin *= 1.5)
+    double margin = least;
+    while (margin < most)
     {
       // Points nearer to the image than half the margin would make thin triangles.
       const std::vector<Vector2> inner = images(Corners(Enlarged(bounds, margin - 0.5 * least)));
@@ -579,6 +581,7 @@ private:
         const std::vector<Vector2> corners = Corners(Enlarged(bounds, margin));
         return { corners, images(corners) };
       }
+      margin *= 1.5;
     }
     return MatchRectangles(this->Figure, Enlarged(bounds, least),
       Enlarged(Bounds(this->Points[1]), this->FrameMargin * Spacing(this->Points[1])));

@@ -549,6 +549,7 @@ void JointOptimization::RemovePoints(bool mergePoints)
   const auto neighbors = [&](int vertex) {
     std::vector<int> found;
     this->Mesh.Star(vertex, star);
+    found.reserve(star.size());
     for (const int t : star)
     {
       found.push_back(

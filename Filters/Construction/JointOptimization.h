@@ -72,12 +72,12 @@ private:
   /// The free vertices whose best positions depend on a vertex: those that edges between free
   /// vertices connect with it, or those near it if these are many.
   std::vector<int> MovedWith(int vertex) const;
-  bool InsertNear(int triangle);
+  bool InsertNear(int worst);
   bool Relocate();
   bool FlipAndMove();
   bool Exchange();
   int SplitTriangle(int triangle);
-  int SplitEdge(int triangle, int edge);
+  int SplitEdge(int t, int k);
 
   PairMesh& Mesh;
   std::function<bool()> KeepGoing;

@@ -123,7 +123,7 @@ MapSamples SampleMap(const Homeomorphism& map, const Homeomorphism& linear)
       }
     }
   });
-  samples.Samples = static_cast<vtkIdType>(valid.size() * grid.size());
+  samples.Samples = static_cast<vtkIdType>(valid.size()) * static_cast<vtkIdType>(grid.size());
   for (const TriangleIndex triangle : valid)
   {
     const auto n = static_cast<std::size_t>(triangle);

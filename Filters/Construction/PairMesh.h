@@ -79,12 +79,13 @@ public:
   /// Computes the quality of the triangle anew, after its points have moved.
   void Update(int triangle);
 
-  /// Flips an edge if both quadrangles are convex and the worse of the two triangles gets better.
-  bool FlipIfBetter(int triangle, int edge, std::vector<int>& made);
+  /// Flips edge @a k of triangle @a t if both quadrangles are convex and the worse of the two
+  /// triangles gets better.
+  bool FlipIfBetter(int t, int k, std::vector<int>& made);
 
-  /// Flips an edge if both quadrangles are convex and both new triangles are better than @a least,
-  /// 0 or more.
-  bool Flip(int triangle, int edge, double least, std::vector<int>& made);
+  /// Flips edge @a k of triangle @a t if both quadrangles are convex and both new triangles are
+  /// better than @a least, 0 or more.
+  bool Flip(int t, int k, double least, std::vector<int>& made);
 
   /// The number of changes so far, to go back to.
   std::size_t Mark() const { return this->Changes.size(); }

@@ -35,6 +35,7 @@ enum class PairQuality
 /// largest angle. The other two qualities do not use it.
 struct QualityMeasure
 {
+  // A quality may stand for its measure. NOLINTNEXTLINE(google-explicit-constructor)
   QualityMeasure(PairQuality kind, double thin = 2.5)
     : Kind(kind)
     , Thin(thin)
@@ -48,7 +49,7 @@ struct QualityMeasure
 using TrianglePoints = std::array<Vector2, 3>;
 
 /// The angles of a triangle in degrees; negative if it is clockwise.
-std::array<double, 3> Angles(const TrianglePoints& triangle);
+std::array<double, 3> Angles(const TrianglePoints& p);
 
 /// The larger of the two singular values of the affine map from @a source to @a target divided by
 /// the smaller one: 1 for a similarity. Infinite for degenerate triangles.
@@ -70,10 +71,10 @@ struct QualityTerm
   TrianglePoints Gradient;
 };
 
-/// The terms whose smallest is the quality of a triangle in one domain, with their derivatives by
-/// that triangle's corners. @a other is the triangle in the other domain (for Distortion). Returns
-/// the number of terms, 0 if the triangle is not counterclockwise.
-int QualityTerms(const QualityMeasure& quality, const TrianglePoints& triangle,
+/// The terms whose smallest is the quality of the triangle @a p in one domain, with their
+/// derivatives by its corners. @a other is the triangle in the other domain (for Distortion).
+/// Returns the number of terms, 0 if the triangle is not counterclockwise.
+int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
   const TrianglePoints& other, std::array<QualityTerm, 9>& terms);
 
 } // namespace homeomorphism

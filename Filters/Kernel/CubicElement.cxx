@@ -25,7 +25,7 @@ struct Vector
     , y(b)
   {
   }
-  Vector(const Vector2& v)
+  explicit Vector(const Vector2& v)
     : x(v.x)
     , y(v.y)
   {
@@ -77,7 +77,7 @@ std::array<Vector<T>, 3> ToCentroid(const std::array<Vector2, 3>& points)
   std::array<Vector<T>, 3> toCentroid;
   for (int i = 0; i < 3; ++i)
   {
-    const Vector<T> here = points[i];
+    const Vector<T> here(points[i]);
     toCentroid[i] = third *
       ((Vector<T>(points[NextCorner(i)]) - here) + (Vector<T>(points[PreviousCorner(i)]) - here));
   }
@@ -93,7 +93,7 @@ CubicOrdinates<Vector<T>> MakeOrdinates(
   CubicOrdinates<Vector<T>> b;
   for (int i = 0; i < 3; ++i)
   {
-    b.Corner[i] = element.Values[i];
+    b.Corner[i] = Vector<T>(element.Values[i]);
     b.Inner[i] = b.Corner[i] + third * Apply(element.Gradients[i], toCentroid[i]);
   }
   for (int k = 0; k < 3; ++k)

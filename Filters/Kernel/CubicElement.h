@@ -139,8 +139,8 @@ CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element);
 Matrix2 Derive(const CubicElement& element, const Barycentric& l);
 
 /// D and its derivative, the same as Derive's.
-void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& ordinates,
-  const Barycentric& l, Vector2& value, Matrix2& derivative);
+void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, const Barycentric& l,
+  Vector2& value, Matrix2& derivative);
 
 /// Barycentric coordinates as ToBarycentric gives them, prepared for many points of one triangle.
 class BarycentricFrame

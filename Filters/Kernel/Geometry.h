@@ -52,6 +52,7 @@ HOMEOMORPHISM_ALWAYS_INLINE std::array<T, 3> InOrder(
   constexpr std::int8_t places[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } };
   const T values[3] = { own, next, previous };
   const std::int8_t(&place)[3] = places[corner];
+  // All are initialized. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript)
   return { values[place[0]], values[place[1]], values[place[2]] };
 }
 

@@ -23,6 +23,7 @@ struct RunningError
   double Error = 0.0;
 
   RunningError() = default;
+  // Numbers are exact. NOLINTNEXTLINE(google-explicit-constructor)
   RunningError(double exact)
     : Value(exact)
   {

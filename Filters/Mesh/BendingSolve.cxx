@@ -285,11 +285,11 @@ void Solver::FindBoundary()
       // The boundary runs counterclockwise: this edge leaves its start and arrives at its end.
       const int ends[2] = { this->Pair.Triangles[t][NextCorner(k)],
         this->Pair.Triangles[t][PreviousCorner(k)] };
-      for (int end = 0; end < 2; ++end)
+      for (const int end : ends)
       {
-        if (!this->IsSpecial(ends[end]))
+        if (!this->IsSpecial(end))
         {
-          this->Boundary[ends[end]];
+          this->Boundary[end];
         }
       }
     }
@@ -432,7 +432,7 @@ void Solver::Build()
       {
         continue;
       }
-      const std::array<std::int8_t, 3>& numbers = TriangleCut::Elements[e];
+      const std::array<std::uint8_t, 3>& numbers = TriangleCut::Elements[e];
       Element element{ t, e, { nodes[numbers[0]], nodes[numbers[1]], nodes[numbers[2]] } };
       const auto old = oldElements.find({ t, e });
       if (old != oldElements.end())

@@ -48,7 +48,7 @@ struct BottomToTop
 
   bool operator()(const Crossed& a, const Crossed& b) const
   {
-    return this->Compare(*a.Segment, *b.Segment) < 0;
+    return Compare(*a.Segment, *b.Segment) < 0;
   }
   bool operator()(const Crossed& a, const Vector2& point) const
   {

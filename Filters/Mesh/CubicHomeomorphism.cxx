@@ -145,7 +145,7 @@ void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch, CubicTriangle
   }
   this->LeaveUncertified(batch);
   // The map changes their triangles to those of the refined pair.
-  std::uint8_t isMirrored[CubicBatch::Capacity];
+  std::uint8_t isMirrored[CubicBatch::Capacity] = {};
   for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
   {
     isMirrored[i] = batch.Triangles[i] < 0 ? 0 : this->Mirrored[batch.Triangles[i]];

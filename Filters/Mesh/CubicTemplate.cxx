@@ -70,11 +70,11 @@ void SerialFor(std::int64_t count, const std::function<void(std::int64_t, std::i
 }
 
 //------------------------------------------------------------------------------
-const std::array<std::array<std::int8_t, 3>, TriangleCut::NumberOfElements> TriangleCut::Elements =
+const std::array<std::array<std::uint8_t, 3>, TriangleCut::NumberOfElements> TriangleCut::Elements =
   [] {
-    std::array<std::array<std::int8_t, 3>, NumberOfElements> elements{};
+    std::array<std::array<std::uint8_t, 3>, NumberOfElements> elements{};
     const auto set = [&elements](int element, int a, int b, int c) {
-      elements[element] = { std::int8_t(a), std::int8_t(b), std::int8_t(c) };
+      elements[element] = { std::uint8_t(a), std::uint8_t(b), std::uint8_t(c) };
     };
     for (int c = 0; c < 3; ++c)
     {
@@ -194,7 +194,7 @@ int TriangleCut::Find(const Vector2& point) const
   }
   for (int n = 0; n < 3; ++n)
   {
-    const std::array<std::int8_t, 3>& nodes = Elements[FirstMiddle + n];
+    const std::array<std::uint8_t, 3>& nodes = Elements[FirstMiddle + n];
     const Vector2 a = this->GetNode(nodes[0], 0);
     const Vector2 b = this->GetNode(nodes[2], 0);
     if (Cross(b - a, point - a) < 0.0)

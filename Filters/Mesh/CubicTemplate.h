@@ -40,7 +40,7 @@ struct TriangleCut
   static constexpr int FirstStrip = 9;
   static constexpr int FirstMiddle = 15;
 
-  static const std::array<std::array<std::int8_t, 3>, NumberOfElements> Elements;
+  static const std::array<std::array<std::uint8_t, 3>, NumberOfElements> Elements;
 
   std::array<Vector2, 3> Corners;
   /// Unit vectors along the edges.

@@ -29,9 +29,9 @@ void* AllocateLarge(std::size_t bytes)
   {
     // For the huge pages of which the array is a part, too: arrays often lie side by side. Failure
     // is harmless.
-    const auto begin = reinterpret_cast<std::uintptr_t>(memory) / largePage * largePage;
-    const auto end = reinterpret_cast<std::uintptr_t>(memory) + bytes + largePage - 1;
-    madvise(reinterpret_cast<void*>(begin), end / largePage * largePage - begin, MADV_HUGEPAGE);
+    const std::size_t before = reinterpret_cast<std::uintptr_t>(memory) % largePage;
+    const std::size_t pages = (before + bytes + largePage - 1) / largePage;
+    madvise(static_cast<char*>(memory) - before, pages * largePage, MADV_HUGEPAGE);
   }
 #endif
   return memory;

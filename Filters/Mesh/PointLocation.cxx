@@ -254,9 +254,10 @@ void PointLocation::FillSeeds()
     return row * columns + (row % 2 == 0 ? n % columns : columns - 1 - n % columns);
   };
   const auto fill = [&](std::size_t cell, std::initializer_list<TriangleIndex> starts) {
+    const std::size_t row = cell / columns;
     const Vector2 middle{ this->SeedOrigin.x +
         (static_cast<double>(cell % columns) + 0.5) / this->SeedScale.x,
-      this->SeedOrigin.y + (static_cast<double>(cell / columns) + 0.5) / this->SeedScale.y };
+      this->SeedOrigin.y + (static_cast<double>(row) + 0.5) / this->SeedScale.y };
     for (const TriangleIndex start : starts)
     {
       if (this->Seeds[cell] < 0 && start >= 0)

@@ -31,8 +31,10 @@ public:
   int Find(const double point[3], std::uint64_t key, MapBlock&& mapBlock)
   {
     const bool isSameMap = key == this->Key;
-    if (isSameMap && this->Next < this->Block.Count &&
-      std::memcmp(point, this->Block.PointBuffer[this->Next], 3 * sizeof(double)) == 0)
+    const bool mayBeNext = isSameMap && this->Next < this->Block.Count;
+    constexpr std::size_t size = 3 * sizeof(double);
+    // Bits are compared. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    if (mayBeNext && std::memcmp(point, this->Block.PointBuffer[this->Next], size) == 0)
     {
       return this->Next++;
     }

@@ -117,9 +117,9 @@ struct InverseHermite
       components[0][previous] = scale * Cross(alongNext, toNext);
       components[1][next] = scale * Cross(toPrevious, alongPrevious);
       components[1][previous] = scale * Cross(alongNext, toPrevious) - 1.0;
-      for (int edge = 0; edge < 2; ++edge)
+      for (double(&component)[3] : components)
       {
-        components[edge][i] = -components[edge][next] - components[edge][previous];
+        component[i] = -component[next] - component[previous];
       }
       for (int k = 0; k < 2; ++k)
       {
