@@ -565,10 +565,10 @@ MappedPoint<ContourChart> ContourChart::MapWithDerivatives(
   const Ending ending = to.EndingOf(coordinates);
   const double s = ContourEndingAt(ending.Flatness, ending.Proportion);
   // The center has no contour of its own.
-  const Half half = from.EndingOf(coordinates).AtEdge;
   return { to.PointOn(coordinates, ending.AtEdge, s),
-    search.EdgeLabel == 0 ? from.DifferentialAt(coordinates)
-                          : from.DifferentialOn(coordinates, half, search.S),
+    search.EdgeLabel == 0
+      ? from.DifferentialAt(coordinates)
+      : from.DifferentialOn(coordinates, from.EndingOf(coordinates).AtEdge, search.S),
     to.DifferentialOn(coordinates, ending.AtEdge, s) };
 }
 

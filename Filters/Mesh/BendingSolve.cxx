@@ -139,11 +139,6 @@ double GetDoubledArea(const std::array<Vector2, 3>& points)
   return Cross(points[1] - points[0], points[2] - points[0]);
 }
 
-double GetSize(const std::array<Vector2, 3>& points)
-{
-  return std::sqrt(GetDoubledArea(points));
-}
-
 /// The height over the longest edge.
 double GetThickness(const CubicElement& element)
 {
@@ -462,7 +457,8 @@ void Solver::Build()
         element.Weight = 1.0;
         if (element.Number >= 0)
         {
-          const double width = SeenWidth * GetSize(this->Pair.GetSourceCorners(element.Triangle));
+          const double width =
+            SeenWidth * std::sqrt(GetDoubledArea(this->Pair.GetSourceCorners(element.Triangle)));
           const double share = GetThickness(cubic) / width;
           element.Weight = share > 0.0 ? std::min(1.0, share) : 1.0;
           for (std::array<double, 9>& row : element.Bending)
@@ -940,6 +936,8 @@ void Solver::KeepForce(Element& element) const
   {
     return;
   }
+  const bool isCut = element.Number >= 0;
+  const TriangleCut cut = isCut ? this->Template.GetCut(element.Triangle) : TriangleCut{};
   // Coefficients are quadratic functions, so central differences are their derivatives.
   std::array<std::array<double, 18>, 45> gradients;
   const double size = std::sqrt(cubic.Affine.Determinant());
@@ -954,9 +952,9 @@ void Solver::KeepForce(Element& element) const
         ? moved.Values[corner]
         : (d / 2 % 3 == 1 ? moved.Gradients[corner].ImageOfX : moved.Gradients[corner].ImageOfY);
       (d % 2 == 0 ? v.x : v.y) += (side == 0 ? -size : size) * unit[d];
-      if (element.Number >= 0)
+      if (isCut)
       {
-        this->Template.GetCut(element.Triangle).SetRightAngle(element.Number, moved);
+        cut.SetRightAngle(element.Number, moved);
       }
       beside[side] = GetDeterminantCoefficients(moved);
     }

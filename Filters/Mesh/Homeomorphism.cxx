@@ -555,14 +555,10 @@ bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
     return this->MapByCubic(from, surfacePoint, image, nullptr);
   }
   const TriangleIndex t = surfacePoint.Triangle;
-  // Without the charts, of which one strip is needed.
-  if (this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth)
-  {
-    const Vector2 inPlane = ToFrame(target.GetShape(t), this->MapByStrip(from, surfacePoint));
-    target.FromNormalized(target.FromFrame(t, { inPlane, offset }), image);
-    return true;
-  }
-  const Vector2 inPlane = this->MapInFrame(from, t, surfacePoint.Point.InPlane);
+  // Smooth without the charts, of which one strip is needed.
+  const Vector2 inPlane = this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth
+    ? ToFrame(target.GetShape(t), this->MapByStrip(from, surfacePoint))
+    : this->MapInFrame(from, t, surfacePoint.Point.InPlane);
   target.FromNormalized(target.FromFrame(t, { inPlane, offset }), image);
   return true;
 }
