@@ -174,7 +174,7 @@ void RunStars()
     }
   }
   std::sort(rings.begin(), rings.end());
-  std::printf("| rays turn within | stars | derivative at once | inside rings | exceptional |\n"
+  std::printf("| rays turn within | stars | derivative without rings | derivative inside rings | exceptional |\n"
               "|---|---|---|---|---|\n");
   for (int wide = 0; wide < 2; ++wide)
   {
