@@ -10,6 +10,7 @@ import itertools
 import math
 import operator
 import re
+import threading
 import warnings
 from typing import Optional, Tuple
 
@@ -71,9 +72,16 @@ def configure(
     algorithm.SetMaskInvalidTriangles(mask_invalid)
 
 
+def as_array(values) -> numpy.ndarray:
+    """The values as an array. Masked ones are NaN."""
+    if numpy.ma.is_masked(values):
+        return values.astype(numpy.result_type(values, numpy.float32)).filled(numpy.nan)
+    return numpy.asarray(values)
+
+
 def as_points(points, what: str = "points") -> Tuple[vtkPoints, int]:
     """vtkPoints and the number of coordinates per point. Contiguous arrays of shape (n, 3) share their memory."""
-    array = numpy.asarray(points)
+    array = as_array(points)
     if array.dtype not in (numpy.float32, numpy.float64):
         if array.dtype.kind not in "biuf":
             raise TypeError(f"{what} must be an array of numbers, not of {array.dtype}")
@@ -120,11 +128,12 @@ def triangles_of(mesh) -> numpy.ndarray:
     return vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(numpy.int64)
 
 
-def add_array(data, name: str, values):
-    """Adds a point array, which shares the memory of contiguous values."""
-    array = numpy_to_vtk(numpy.ascontiguousarray(values))
+def add_array(data, name: str, values, of_cells: bool = False):
+    """Adds a point or a cell array, which shares the memory of contiguous values."""
+    # numpy_to_vtk takes the other byte order for the machine's.
+    array = numpy_to_vtk(numpy.ascontiguousarray(values, values.dtype.newbyteorder("=")))
     array.SetName(name)
-    data.GetPointData().AddArray(array)
+    (data.GetCellData() if of_cells else data.GetPointData()).AddArray(array)
 
 
 def arrays_of(attributes) -> dict:
@@ -196,8 +205,8 @@ class Homeomorphism:
     triangles : array of int of shape (m, 3)
 
     Points outside the domain become NaN, and points of triangles in which a Cubic map is not certified (a warning gives
-    their number). Invalid meshes raise ValueError with a message that lists the triangles. An
-    object must not be used by several threads at a time; each call is itself parallel.
+    their number). Invalid meshes raise ValueError with a message that lists the triangles. Masked elements of arrays
+    count as NaN. Several threads may use an object: their calls take turns, because each is itself parallel.
     """
 
     def __init__(self, source, target, triangles, system: str = "smooth", **options):
@@ -205,10 +214,10 @@ class Homeomorphism:
         if cells.ndim != 2 or cells.shape[1] != 3 or cells.dtype.kind not in "iu":
             raise ValueError(f"triangles must be integers with the shape (m, 3), not {cells.dtype} with {cells.shape}")
         # A copy, so that validated points cannot change.
-        self._meshes = [make_mesh(numpy.array(points), cells, what)
+        self._meshes = [make_mesh(as_array(points).copy(), cells, what)
                         for points, what in ((source, "source"), (target, "target"))]
         self._dimensions = [numpy.shape(points)[1] for points in (source, target)]
-        self._system, self._options = system, options
+        self._system, self._options, self._lock = system, options, threading.RLock()
         self._filter = self._set_up(vtkDifferentiableHomeomorphism())
         self._filter.TransformActiveAttributesOff()
         self._filter.BlankOutsideOff()
@@ -237,13 +246,17 @@ class Homeomorphism:
         configure(algorithm, self._system, **self._options)
         return algorithm
 
+    def _points(self, side: int) -> numpy.ndarray:
+        """A copy in its own precision, on which the rounding that is allowed depends."""
+        return vtk_to_numpy(self._meshes[side].GetPoints().GetData())[:, :self._dimensions[side]].copy()
+
     @property
     def source(self) -> numpy.ndarray:
-        return points_of(self._meshes[0])[:, :self._dimensions[0]].copy()
+        return self._points(0)
 
     @property
     def target(self) -> numpy.ndarray:
-        return points_of(self._meshes[1])[:, :self._dimensions[1]].copy()
+        return self._points(1)
 
     @property
     def triangles(self) -> numpy.ndarray:
@@ -261,9 +274,10 @@ class Homeomorphism:
         return update(self._filter), dimension, self._dimensions[0 if inverse else 1] if dimension == 2 else dimension
 
     def _map(self, points, inverse: bool) -> numpy.ndarray:
-        output, _, dimension = self._run(points, inverse)
-        result = points_of(output)[:, :dimension].copy()
-        result[vtk_to_numpy(output.GetPointData().GetArray(MASK)) == 0] = numpy.nan
+        with self._lock:
+            output, _, dimension = self._run(points, inverse)
+            result = points_of(output)[:, :dimension].copy()
+            result[vtk_to_numpy(output.GetPointData().GetArray(MASK)) == 0] = numpy.nan
         return result
 
     def __call__(self, points) -> numpy.ndarray:
@@ -278,13 +292,14 @@ class Homeomorphism:
         """The derivative of the map at points of the source's domain, or of the inverse at points of the target's:
         float64 of shape (n, k, d) for points of d coordinates whose images have k. Element [i, j, l] is the partial
         derivative of coordinate j of the image of point i with respect to coordinate l. NaN outside."""
-        self._filter.ComputeJacobianOn()
-        try:
-            output, columns, rows = self._run(points, inverse)
-        finally:
-            self._filter.ComputeJacobianOff()
-        jacobian = vtk_to_numpy(output.GetPointData().GetArray("Jacobian"))
-        return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :columns])
+        with self._lock:
+            self._filter.ComputeJacobianOn()
+            try:
+                output, columns, rows = self._run(points, inverse)
+            finally:
+                self._filter.ComputeJacobianOff()
+            jacobian = vtk_to_numpy(output.GetPointData().GetArray("Jacobian"))
+            return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :columns])
 
     def coordinates(self, points):
         """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0 outside), p and
@@ -321,7 +336,9 @@ class Homeomorphism:
 
         Returns an array of the image's type. Integers are rounded, and values of a mask of at least 0.5 become True.
         """
-        array = numpy.asarray(image)
+        if numpy.ma.is_masked(image) and image.dtype.kind != "f":
+            raise TypeError(f"masked pixels of {image.dtype} have no value: fill them, or convert the image to float")
+        array = as_array(image)
         if array.dtype.kind not in "biuf":
             raise TypeError(f"image must be an array of real numbers, not of {array.dtype}; warp complex ones in parts")
         if array.ndim not in (2, 3) or not array.size:

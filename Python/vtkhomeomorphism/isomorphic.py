@@ -12,7 +12,7 @@ import numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .arrays import arrays_of, as_cells, choose, make_mesh, points_of, triangles_of, update, values_of
+from .arrays import arrays_of, as_array, as_cells, choose, make_mesh, points_of, triangles_of, update, values_of
 from .vtkFiltersHomeomorphism import vtkIsomorphicTriangulation
 
 QUALITIES = values_of(vtkIsomorphicTriangulation, "minimum_angle", "concordance", "distortion", "non_obtuse")
@@ -96,7 +96,7 @@ def _smooth_frame(source, target, frame, trusted, smooth):
 
 def _with_frame(source, target, frame, make):
     """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks are outside."""
-    source, target = (numpy.asarray(points, float) for points in (source, target))
+    source, target = (numpy.asarray(as_array(points), float) for points in (source, target))
     first = make(source, target)
     trusted = numpy.flatnonzero(first.residuals <= first.usual_residual())
     for smooth in (True, False):
@@ -112,7 +112,7 @@ def _figure(points, outlines, segments, names, what: str) -> vtkPolyData:
         figure.ShallowCopy(points)
     else:
         # A copy, so that the points cannot change.
-        figure.ShallowCopy(make_mesh(numpy.array(points), outlines, what))
+        figure.ShallowCopy(make_mesh(as_array(points).copy(), outlines, what))
         figure.SetLines(as_cells(segments))
     called = vtkStringArray()
     for name in names:

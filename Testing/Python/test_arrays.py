@@ -2,8 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python package agrees with computations by numpy and scipy."""
 
+import copy
 import doctest
+import pickle
+import sys
 import tempfile
+import threading
 import unittest
 
 import numpy
@@ -177,6 +181,77 @@ class Arrays(unittest.TestCase):
         f = self.make()
         numpy.testing.assert_array_equal(f([[0, 0]]), self.target[[-4]])
         self.assertEqual(f(numpy.empty((0, 2))).shape, (0, 2))
+
+    def test_masked_elements_are_not_values(self):
+        f = self.make()
+        points = numpy.ma.array(self.points[:4], mask=[[0, 0], [1, 0], [0, 1], [0, 0]])
+        images = f(points)
+        numpy.testing.assert_array_equal(numpy.isnan(images[:, 0]), [False, True, True, False])
+        numpy.testing.assert_array_equal(images[::3], f(self.points[:4])[::3])
+        whole = numpy.ma.array([[0, 0], [1, 1]], mask=[[1, 0], [0, 0]])
+        self.assertEqual(numpy.isnan(f(whole)[:, 0]).tolist(), [True, False])
+        masked = numpy.ma.masked_less(self.source, 0.5)
+        with self.assertRaisesRegex(ValueError, "not finite|NaN"):
+            Homeomorphism(masked, self.target, self.triangles)
+        with self.assertRaisesRegex(ValueError, "not finite|NaN"):
+            Homeomorphism.from_landmarks(masked, self.target)
+        pixels = numpy.arange(64).reshape(8, 8)
+        g = Homeomorphism(7 * self.source, 7 * self.source, self.triangles)
+        warped = g.warp_image(numpy.ma.masked_equal(pixels.astype(float), 27))
+        # And pixels beside it, where rounding decides.
+        self.assertTrue(numpy.isnan(warped[3, 3]) and numpy.isfinite(warped[[0, 1, 5, 6, 7]]).all())
+        numpy.testing.assert_array_equal(g.warp_image(numpy.ma.array(pixels)), pixels)
+        with self.assertRaisesRegex(TypeError, "masked"):
+            g.warp_image(numpy.ma.masked_equal(pixels, 27))
+
+    def test_byte_orders(self):
+        f = Homeomorphism(7 * self.source, 7 * self.source, self.triangles)
+        pixels = 300 * numpy.arange(64).reshape(8, 8)
+        for kind in ("<u2", ">u2", ">i4", ">f4", ">f8"):
+            warped = f.warp_image(pixels.astype(kind))
+            self.assertEqual(warped.dtype, kind)
+            numpy.testing.assert_allclose(warped, pixels, rtol=0, atol=1e-3)
+        numpy.testing.assert_array_equal(self.make()(self.points.astype(">f8")), self.make()(self.points))
+        numpy.testing.assert_array_equal(
+            Homeomorphism(self.source, self.target, self.triangles.astype(">i4"))(self.points),
+            self.make()(self.points))
+
+    def test_copies_have_the_precision_of_the_first(self):
+        """Rounding allows for it: points of the border in float32 are inside."""
+        turn = numpy.array([[0.8, 0.6], [-0.6, 0.8]])
+        f = Homeomorphism((self.source @ turn).astype("f4"), (self.target @ turn).astype("f4"), self.triangles)
+        t = numpy.linspace(0, 1, 500)[:, None]
+        border = ((t * self.source[-4] + (1 - t) * self.source[-3]) @ turn).astype("f4")
+        self.assertFalse(numpy.isnan(f(border)).any())
+        for again in (pickle.loads(pickle.dumps(f)), copy.deepcopy(f),
+                      Homeomorphism(f.source, f.target, f.triangles)):
+            self.assertEqual(again.source.dtype, numpy.float32)
+            numpy.testing.assert_array_equal(again(border), f(border))
+
+    def test_threads_take_turns(self):
+        f = self.make()
+        parts = numpy.split(self.points, 8)
+        images, jacobians = [f(part) for part in parts], [f.jacobian(part) for part in parts]
+        wrong, interval = [], sys.getswitchinterval()
+
+        def run(k):
+            for i in range(60):
+                forward = (k + i) % 3
+                found = (f(parts[k]), f.inverse(images[k]), f.jacobian(parts[k]))[forward]
+                expected = (images[k], None, jacobians[k])[forward]
+                if expected is not None and not numpy.array_equal(found, expected):
+                    wrong.append(k)
+
+        sys.setswitchinterval(1e-6)
+        try:
+            threads = [threading.Thread(target=run, args=(k,)) for k in range(8)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        finally:
+            sys.setswitchinterval(interval)
+        self.assertEqual(wrong, [])
 
     def test_messages(self):
         with self.assertRaisesRegex(ValueError, "points"):
