@@ -212,8 +212,12 @@ void ImageSampling::Sample(const double (*points)[3], const bool* wanted, int co
           double sum = 0.0;
           for (int k = 0; k < size; ++k)
           {
-            sum +=
-              stencil.Weights[k] * static_cast<double>(values[stencil.Points[k] * components + c]);
+            // A value that is NaN does not count where its weight is zero.
+            if (stencil.Weights[k] != 0.0)
+            {
+              sum += stencil.Weights[k] *
+                static_cast<double>(values[stencil.Points[k] * components + c]);
+            }
           }
           results[stencil.Tuple * components + c] = FromDouble<Value>(sum);
         }

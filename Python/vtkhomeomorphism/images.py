@@ -75,8 +75,13 @@ class Grid:
     def part(self, column, row, width, height):
         return replace(self, width=width, height=height, first=self.at(numpy.array([column, row])))
 
-    def to_vtk(self, values=None):
-        """An image, with values of shape (height, width, components), whose first row is the lowest."""
+    def to_vtk(self, values=None, as_cells=False):
+        """An image, with values of shape (height, width, components), whose first row is the lowest, at its points or
+        in its cells."""
+        if as_cells:
+            image = self.part(-0.5, -0.5, self.width + 1, self.height + 1).to_vtk()
+            add_array(image, "Pixels", values[::-1].reshape(-1, values.shape[2]), True)
+            return image
         image = vtkImageData()
         image.SetDimensions(self.width, self.height, 1)
         steps = self.steps * [1, -1]
@@ -95,9 +100,12 @@ class Raster:
     """An image in memory, an array of shape (rows, columns, bands)."""
 
     nodata = None
+    source = None  # the file whose metadata the result gets
+    profile = None  # the ICC profile of the colors
+    is_classes = False  # whether the values are numbers of a palette's colors
 
-    def __init__(self, pixels):
-        self.pixels = numpy.atleast_3d(pixels)
+    def __init__(self, pixels, mask=None):
+        self.pixels, self.mask = numpy.atleast_3d(pixels), mask
         self.grid = Grid(self.pixels.shape[1], self.pixels.shape[0])
         self.bands, self.dtype = self.pixels.shape[2], self.pixels.dtype
         self.has_alpha = self.bands in (2, 4)
@@ -105,20 +113,47 @@ class Raster:
     def window(self, columns, rows):
         return self.pixels[slice(*rows), slice(*columns)]
 
+    def known(self, pixels, columns, rows):
+        """Which pixels of a window, or values of them, are not without data: of shape (rows, columns, 1 or bands), or
+        None if all are."""
+        known = self.read_mask(columns, rows)
+        if self.nodata is not None:
+            colors = pixels[:, :, : self.bands - self.has_alpha]
+            have = ~numpy.isnan(colors) if numpy.isnan(self.nodata) else colors != self.nodata
+            # A color may have the value in one of its parts; other bands are independent.
+            have = have.any(axis=2, keepdims=True) if self.is_color else have
+            known = have if known is None else have & known
+        return known
+
+    def read_mask(self, columns, rows):
+        return None if self.mask is None else self.mask[slice(*rows), slice(*columns)]
+
+    @property
+    def is_color(self):
+        return self.has_alpha or self.bands == 3 and self.dtype in (numpy.uint8, numpy.uint16)
+
     def reduce(self, factor):
         """The raster of the means of squares of `factor` by `factor` pixels; no data where one of them is none. Less
         than a square at the end repeats the last one."""
         (columns, rows), rest = (n.tolist() for n in numpy.divmod(self.grid.size, factor))
-        means = numpy.empty((rows, columns, self.bands), self.dtype)
+        means, mask = numpy.empty((rows, columns, self.bands), self.dtype), None
+
+        def over_squares(function, values):
+            return function(function(values, axis=0).reshape(columns, factor, -1), axis=1)
+
         for row in range(rows):
-            pixels = self.window((0, columns * factor), (row * factor, (row + 1) * factor))
-            sums = pixels.sum(axis=0, dtype=float).reshape(columns, factor, self.bands).sum(axis=1)
-            means[row] = round_to(self.dtype, sums / factor**2)
-            if self.nodata is not None:
-                unknown = (pixels == self.nodata).any(axis=0).reshape(columns, factor, self.bands).any(axis=1)
-                means[row, unknown] = self.nodata
-        result = Raster(numpy.pad(means, [(0, int(n > 0)) for n in (*rest[::-1], 0)], "edge"))
-        result.nodata, result.has_alpha = self.nodata, self.has_alpha
+            ranges = (0, columns * factor), (row * factor, (row + 1) * factor)
+            pixels = self.window(*ranges)
+            means[row] = round_to(self.dtype, over_squares(numpy.sum, pixels.astype(float)) / factor**2)
+            if self.has_alpha:
+                put_colors(means[row], over_squares(numpy.sum, weigh(pixels.astype(float))))
+            known = self.known(pixels, *ranges)
+            if known is not None:
+                mask = numpy.empty((rows, columns, known.shape[2]), bool) if mask is None else mask
+                mask[row] = over_squares(numpy.all, known)
+        padding = [(0, int(n > 0)) for n in (*rest[::-1], 0)]
+        result = Raster(numpy.pad(means, padding, "edge"), mask if mask is None else numpy.pad(mask, padding, "edge"))
+        result.has_alpha = self.has_alpha
         width, height = result.grid.size
         result.grid = replace(self.grid, width=width, height=height, steps=factor * self.grid.steps,
                               first=self.grid.at(numpy.full(2, (factor - 1) / 2)))
@@ -131,37 +166,59 @@ class Raster:
 class GdalRaster(Raster):
     """A raster that rasterio reads piece by piece."""
 
-    def __init__(self, input):
+    def __init__(self, input, keep_palette=False):
         import rasterio
 
         logging.getLogger("rasterio").setLevel(logging.CRITICAL)
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         self.file = rasterio.open(input.path)
-        self.nodata, self.bands, self.dtype = self.file.nodata, self.file.count, numpy.dtype(self.file.dtypes[0])
-        self.palette = None
-        if self.file.colorinterp[0].name == "palette" and self.bands == 1:
-            self.palette, self.bands = numpy.zeros((256, 3), numpy.uint8), 3
-            for value, color in self.file.colormap(1).items():
-                self.palette[value % 256] = color[:3]
-        self.has_alpha = self.file.colorinterp[-1].name == "alpha" or (not self.file.crs and self.bands in (2, 4))
+        self.bands, self.dtype, self.nodata = self.file.count, numpy.dtype(self.file.dtypes[0]), self.file.nodata
+        if not (self.nodata is None or can_hold(self.dtype, self.nodata)):
+            self.nodata = None
+        self.palette, kinds = None, [kind.name for kind in self.file.colorinterp]
+        # An extra band without a meaning is transparency, as a rule, if it is beside colors.
+        self.has_alpha = kinds[-1] == "alpha" or (
+            not self.file.crs and kinds[:-1] in (["gray"], ["red", "green", "blue"]) and self.dtype.kind == "u")
+        self.source = self.file
+        self.is_classes = kinds == ["palette"] and keep_palette
+        if kinds == ["palette"] and not keep_palette:
+            self._read_palette()
+        flags = self.file.mask_flag_enums[0]
+        self.has_mask = rasterio.enums.MaskFlags.per_dataset in flags and rasterio.enums.MaskFlags.alpha not in flags
         self.grid, t = Grid(self.file.width, self.file.height), self.file.transform
         if self.file.crs or not t.is_identity:
             steps = numpy.array([[t.a, t.b], [t.d, t.e]])
             self.grid = Grid(*self.grid.size, numpy.array([t.c, t.f]) + steps @ [0.5, 0.5], steps, self.file.crs, True)
 
+    def _read_palette(self):
+        """The colors of values; transparent for the value of no data."""
+        colors = numpy.zeros((2 ** (8 * self.dtype.itemsize), 4), numpy.uint8)
+        for value, color in self.file.colormap(1).items():
+            colors[value] = color
+        used = list(self.file.colormap(1))
+        if self.nodata is not None:
+            colors[int(self.nodata), 3] = 0
+        self.has_alpha, self.nodata = bool((colors[used, 3] < 255).any()), None
+        self.palette, self.bands, self.dtype = colors[:, : 3 + self.has_alpha], 3 + self.has_alpha, colors.dtype
+        self.source = None
+
     def window(self, columns, rows):
         pixels = self.file.read(window=(rows, columns))
         return numpy.moveaxis(pixels, 0, 2) if self.palette is None else self.palette[pixels[0]]
 
+    def read_mask(self, columns, rows):
+        return self.file.read_masks(1, window=(rows, columns))[:, :, None] > 0 if self.has_mask else None
 
-def read(name, standard_format="png"):
-    """The image in a file. Raises Failure."""
+
+def read(name, standard_format="png", keep_palette=False):
+    """The image in a file. The colors of a GeoTIFF's palette become its values unless they are to be kept. Raises
+    Failure."""
     input = Input(name, standard_format)
     if input.format not in PICTURES:
         raise Failure(f"Cannot read {input.name} as an image: the formats are {dotted(PICTURES)}.", USAGE)
     with input:
         try:
-            raster = GdalRaster(input) if input.format in ("tif", "tiff") else _read_picture(input)
+            raster = GdalRaster(input, keep_palette) if input.format in ("tif", "tiff") else _read_picture(input)
             # Read the end, to detect truncated files.
             width, height = raster.grid.size
             raster.window((width - 1, width), (height - 1, height))
@@ -182,11 +239,17 @@ def _read_picture(input):
         if "16B" in str(image.tile) and image.mode not in ("I", "I;16"):
             # Pillow would reduce 16 bits to 8.
             return Raster(GdalRaster(input).all())
+        # That of inks does not fit the colors that they become.
+        profile = image.info.get("icc_profile") if image.mode != "CMYK" else None
         if image.mode not in ("L", "LA", "RGB", "RGBA", "I", "I;16", "F"):
             kinds = {"P": "RGBA" if "transparency" in image.info else "RGB", "1": "L", "PA": "RGBA"}
             image = image.convert(kinds.get(image.mode, "RGB"))
+        elif image.mode in ("L", "RGB") and "transparency" in image.info:
+            image = image.convert("RGBA")
         pixels = numpy.asarray(ImageOps.exif_transpose(image))
-    return Raster(pixels.astype(numpy.uint16) if pixels.dtype == numpy.int32 else pixels)
+    raster = Raster(pixels.astype(numpy.uint16) if pixels.dtype == numpy.int32 else pixels)
+    raster.profile = profile
+    return raster
 
 
 def read_background(text, format):
@@ -218,12 +281,13 @@ def require_overlap(grid, name, mesh, mesh_name):
 
 
 class Warp:
-    """Warps images from one domain of a pair to the other, sampling at exact preimages, tile by tile."""
+    """Warps images from one domain of a pair to the other, sampling at exact preimages, tile by tile: interpolates, or
+    takes the value of the pixel in whose area a preimage is."""
 
-    def __init__(self, pair, settings, inverse=False):
+    def __init__(self, pair, settings, inverse=False, nearest=False):
         pair.require_flat()
         pair = replace(report.require_map(pair, settings.get("mask_invalid")), shift=None)
-        self.pair, self.inverse = pair, inverse
+        self.pair, self.inverse, self.nearest = pair, inverse, nearest
         self.map = PointMap(pair, settings, inverse)
         self.filter = set_up(vtkResampleThroughHomeomorphism(), settings, pair)
         self.filter.SetInverse(inverse)
@@ -251,7 +315,8 @@ class Warp:
         line = self._map(grid.outline(), forward)
         here, there = self.rims if forward else self.rims[::-1]
         pixels = grid.pixels(here)
-        inside = ((pixels >= -0.5) & (pixels <= numpy.array(grid.size) - 0.5)).all(axis=2)
+        # Beyond the centers of the pixels at the border, where a domain may end with the image, is no place for more.
+        inside = ((pixels >= -1e-6) & (pixels <= numpy.array(grid.size) - 1 + 1e-6)).all(axis=2)
         points = numpy.vstack((line, there[inside]))
         if numpy.isnan(points).all():
             return None
@@ -281,7 +346,7 @@ class Warp:
         """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
         # How many pixels of the raster are as wide as one of the grid.
         factor = int(min(grid.pixel / self.scale / raster.grid.pixel + 0.01, *raster.grid.size))
-        raster = raster.reduce(factor) if factor > 1 else raster
+        raster = raster.reduce(factor) if factor > 1 and not self.nearest else raster
         tiles = [(c, r) for r in range(0, grid.height, TILE) for c in range(0, grid.width, TILE)]
         for column, row in progress(tiles, text) if text else tiles:
             tile = grid.part(column, row, min(TILE, grid.width - column), min(TILE, grid.height - row))
@@ -293,25 +358,36 @@ class Warp:
         if (begin >= end).any():
             return numpy.zeros((*shape, raster.bands), raster.dtype), numpy.zeros(shape, bool)
         # At the raster's border, one more pixel of the same value, because pixels are areas and VTK's are points.
-        added = numpy.array([begin == 0, end == raster.grid.size]).astype(int)
-        window = raster.window(*numpy.array([begin, end]).T.tolist())
+        added = numpy.array([begin == 0, end == raster.grid.size]).astype(int) * (not self.nearest)
+        ranges = numpy.array([begin, end]).T.tolist()
+        window = raster.window(*ranges)
+        known = raster.known(window, *ranges)
+        if known is not None:
+            # Values for no data can be so large that rounding errors of them are not small.
+            window = numpy.where(known, window, window.dtype.type(0))
         window = numpy.pad(window, (*added.T[::-1], (0, 0)), "edge")
         rows, columns = window.shape[:2]
-        data = raster.grid.part(*(begin - added[0]), columns, rows).to_vtk(window)
+        data = raster.grid.part(*(begin - added[0]), columns, rows).to_vtk(window, self.nearest)
         if added.any():
             # In each direction, from 1 in the middle to 0 at added pixels, and rounded: the area ends at a half.
             x, y = (numpy.pad(numpy.ones(n - sum(pad), numpy.uint8), pad) for n, pad in zip((columns, rows), added.T))
             add_array(data, "Inside", numpy.stack(numpy.meshgrid(x, y[::-1]), axis=2).reshape(-1, 2))
-        if raster.nodata is not None:
-            unknown = numpy.isnan(window) if numpy.isnan(raster.nodata) else window == raster.nodata
-            add_array(data, "Known", (~unknown.any(axis=2)[::-1]).ravel().astype(float))
+        mixes_colors = raster.has_alpha and not self.nearest
+        if mixes_colors:
+            add_array(data, "Weighted", weigh(window)[::-1].reshape(-1, raster.bands))
+        if known is not None:
+            known = numpy.pad(known, (*added.T[::-1], (0, 0)), "edge")
+            add_array(data, "Known", known[::-1].reshape(-1, known.shape[2]).astype(float), self.nearest)
         self.filter.SetDataObject(data)
         self.filter.SetGridData(tile.to_vtk())
         arrays = arrays_of(run(self.filter, self.pair.name).GetPointData())
         arrays = {name: values.reshape(*shape, -1)[::-1] for name, values in arrays.items()}
         mask = (arrays[MASK] != 0).all(axis=2) & arrays.get("Inside", numpy.ones(1)).all(axis=-1)
-        if raster.nodata is not None:
-            mask &= arrays["Known"][:, :, 0] > 1 - 1e-9
+        if mixes_colors:
+            put_colors(arrays["Pixels"], arrays["Weighted"])
+        if known is not None:
+            known = arrays["Known"] > 1 - 1e-9
+            mask = mask & known[:, :, 0] if known.shape[2] == 1 else mask[:, :, None] & known
         return arrays["Pixels"], mask
 
     def _find_window(self, grid, tile):
@@ -329,12 +405,41 @@ class Warp:
         mask = numpy.zeros(pixels.shape[:2], bool)
         for column, row, part, inside in self.tiles(raster, grid, text):
             where = (slice(row, row + part.shape[0]), slice(column, column + part.shape[1]))
-            pixels[where], mask[where] = part, inside
+            pixels[where], mask[where] = part, inside if inside.ndim == 2 else inside.all(axis=2)
         return pixels, mask
+
+
+def can_hold(dtype, value):
+    """Whether a type of pixels has a value."""
+    if dtype.kind in "iu":
+        return numpy.iinfo(dtype).min <= value <= numpy.iinfo(dtype).max and value == int(value)
+    return not abs(value) > numpy.finfo(dtype).max or math.isinf(value)
+
+
+def unusual_value(raster):
+    """A value for no data that pixels hardly have."""
+    if raster.dtype.kind not in "iu":
+        return numpy.nan
+    limits = numpy.iinfo(raster.dtype)
+    return limits.max if raster.is_classes else limits.min
 
 
 def round_to(dtype, values):
     return (numpy.rint(values) if dtype.kind in "iu" else values).astype(dtype)
+
+
+def weigh(pixels):
+    """Pixels whose last band is transparency, with colors multiplied by it: they are mixed in that form, in which what
+    is transparent has no color."""
+    weighted = pixels.astype(numpy.float32 if pixels.dtype.itemsize < 4 else float)
+    weighted[..., :-1] *= weighted[..., -1:]
+    return weighted
+
+
+def put_colors(pixels, weighted):
+    """Sets the colors to those of mixed weighted pixels, except where all is transparent."""
+    opaque = weighted[..., -1] > 0
+    pixels[opaque, :-1] = round_to(pixels.dtype, weighted[opaque, :-1] / weighted[opaque, -1:])
 
 
 def brightest(dtype):
@@ -348,20 +453,22 @@ def add_alpha(pixels, mask=True):
 
 
 def finish(pixels, mask, has_alpha, background, nodata=None):
-    """Sets pixels outside to the background: a color, no data, or transparency (adding an alpha band if needed)."""
+    """Sets pixels outside to the background: a color, no data, or transparency (adding an alpha band if needed). The
+    mask has the shape (rows, columns), or that of the pixels."""
     full, colors = brightest(pixels.dtype), pixels.shape[2] - has_alpha
     fill = numpy.full(pixels.shape[2], 0.0 if nodata is None else nodata)
     if nodata is None and background is not None:
         fill[:colors] = numpy.multiply(background if colors == 3 else numpy.mean(background), full)
         fill[colors:] = full
-    pixels = pixels if mask.all() else numpy.where(mask[:, :, None], pixels, round_to(pixels.dtype, fill))
+    inside = mask.reshape(*mask.shape[:2], -1)
+    pixels = pixels if mask.all() else numpy.where(inside, pixels, round_to(pixels.dtype, fill))
     if background is None and nodata is None and not has_alpha and colors <= 3:
         pixels = add_alpha(pixels, mask)
     return pixels
 
 
-def write(pixels, output, grid):
-    """Writes an array of shape (rows, columns, bands) as an image."""
+def write(pixels, output, grid, profile=None):
+    """Writes an array of shape (rows, columns, bands) as an image, with an ICC profile of its colors."""
     bands, kind, format = pixels.shape[2], pixels.dtype, output.format
     if format in ("tif", "tiff") or kind == numpy.uint16 and format == "png":
         _write_raster(output, grid, bands, kind, bands in (2, 4), None, [(0, 0, pixels)])
@@ -372,11 +479,25 @@ def write(pixels, output, grid):
 
         options = {"jpg": {"quality": 95}, "jpeg": {"quality": 95}, "png": {"compress_level": 3}}.get(format, {})
         image = Image.fromarray(pixels[:, :, 0] if bands == 1 else pixels)
-        image.save(output.path, PILLOW_FORMATS.get(format, "PPM"), **options)
+        image.save(output.path, PILLOW_FORMATS.get(format, "PPM"), icc_profile=profile, **options)
 
 
-def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
-    """Writes tiles (column, row, pixels) to a TIFF, a GeoTIFF on a georeferenced grid."""
+def _copy_metadata(source, result):
+    """Copies what a file says of its bands (their names, units, scales) and of itself."""
+    for name in ("descriptions", "units", "scales", "offsets"):
+        known, own = getattr(source, name), getattr(result, name)
+        setattr(result, name, known[: result.count] + own[source.count :])
+    if source.colorinterp[0].name == "palette":
+        result.write_colormap(1, source.colormap(1))
+    for band in (0, *range(1, 1 + min(source.count, result.count))):
+        tags = {name: value for name, value in source.tags(band).items()
+                if name != "AREA_OR_POINT" and not name.startswith("STATISTICS_")}
+        result.update_tags(band, **tags)
+
+
+def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles, source=None):
+    """Writes tiles (column, row, pixels) to a TIFF, a GeoTIFF on a georeferenced grid, with the metadata of a source,
+    an open file with the same bands, or fewer."""
     import rasterio
 
     warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
@@ -387,9 +508,11 @@ def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles):
                "compress": "deflate", "zlevel": 1, "BIGTIFF": "IF_SAFER", "num_threads": "ALL_CPUS", **place}
     try:
         with rasterio.open(output.path, "w", **profile) as file:
-            if bands - has_alpha in (1, 3):
+            if bands - has_alpha in (1, 3) and not (source and source.colorinterp[0].name == "palette"):
                 colors = ["gray"] if bands < 3 else ["red", "green", "blue"]
                 file.colorinterp = [rasterio.enums.ColorInterp[name] for name in colors + ["alpha"] * has_alpha]
+            if source:
+                _copy_metadata(source, file)
             for column, row, pixels in tiles:
                 window = rasterio.windows.Window(column, row, *pixels.shape[1::-1])
                 file.write(numpy.moveaxis(pixels, 2, 0), window=window)
@@ -404,14 +527,15 @@ def write_warped(warp, raster, grid, output, background):
     """Warps a raster and writes it. Outside are the background, the raster's value for no data, transparency, or else a
     value for no data."""
     if output.format not in ("tif", "tiff"):
-        write(finish(*warp.warp(raster, grid), raster.has_alpha, background), output, grid)
+        write(finish(*warp.warp(raster, grid), raster.has_alpha, background), output, grid, raster.profile)
         return
     nodata, adds_alpha = raster.nodata, False
     if background is None and nodata is None and not raster.has_alpha:
-        adds_alpha = raster.dtype in (numpy.uint8, numpy.uint16) and raster.bands in (1, 3)
-        nodata = None if adds_alpha else numpy.nan if raster.dtype.kind == "f" else 0
-        if nodata == 0:
-            inform(f"{output.name}: pixels outside are 0, and 0 is marked as no data.")
+        adds_alpha = raster.dtype in (numpy.uint8, numpy.uint16) and raster.bands in (1, 3) and not raster.is_classes
+        nodata = None if adds_alpha else unusual_value(raster)
+        if nodata is not None and raster.dtype.kind != "f":
+            inform(f"{output.name}: pixels outside are {nodata}, and {nodata} is marked as no data.")
     tiles = ((column, row, finish(pixels, mask, raster.has_alpha, background, nodata))
              for column, row, pixels, mask in warp.tiles(raster, grid))
-    _write_raster(output, grid, raster.bands + adds_alpha, raster.dtype, raster.has_alpha or adds_alpha, nodata, tiles)
+    _write_raster(output, grid, raster.bands + adds_alpha, raster.dtype, raster.has_alpha or adds_alpha, nodata, tiles,
+                  raster.source)

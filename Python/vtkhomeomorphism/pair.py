@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import images, landmarks, meshes, tinshift, xmorph
 from .arrays import add_array, as_points, make_mesh, points_of, triangles_of
-from .files import FILE, USAGE, Failure, Input, format_of
+from .files import FILE, USAGE, Failure, Input, format_of, inform, quote
 from .landmarks import Landmarks
 
 FORMATS = ("json", "vtp", "vtk")  # formats that hold both meshes
@@ -44,6 +44,13 @@ class Pair:
         both = self.metadata.get("input_crs") or pixels, self.metadata.get("output_crs") or None
         return both[::-1] if inverse else both
 
+    def compare_crs(self, crs, inverse):
+        """Says if the coordinate reference system that a result is to have is not that of the domain mapped to."""
+        known = self.crs(inverse)[1]
+        if crs and known and not are_same_crs(crs, known):
+            inform(f"{self.name} maps to {quote(known)}: the result is marked as {crs} (--crs), but its coordinates "
+                   "are not converted.")
+
     def require_flat(self):
         for mesh, name in zip(self.meshes, self.names):
             if numpy.ptp(points_of(mesh)[:, 2]) != 0:
@@ -62,6 +69,16 @@ class Pair:
         for side, raster in rasters.items():
             raster.grid = raster.grid.hanging() if self.landmarks else raster.grid
             images.require_overlap(raster.grid, raster.name, self.meshes[side], self.name_of(side))
+
+
+def are_same_crs(first, second):
+    """Whether two coordinate reference systems are the same; by their names if pyproj does not know them."""
+    try:
+        import pyproj
+
+        return pyproj.CRS(first) == pyproj.CRS(second)
+    except Exception:
+        return str(first).lower() == str(second).lower()
 
 
 def read(files, options):

@@ -128,6 +128,45 @@ def test_smaller_images_have_means(dhm, pair, image, name):
                                   image[:15, :20].reshape(3, 5, 4, 5, 3).mean(axis=(1, 3)), rtol=0, atol=1)
 
 
+def test_transparent_pixels_have_no_color(dhm):
+    """Where a picture ends, its colors are not mixed with what is stored in transparent pixels."""
+    corners, triangles = make_grid(1, 1, 80, 80)
+    orange = [200, 100, 50]
+    pixels = numpy.zeros((41, 41, 4), "u1")
+    pixels[:, :20], pixels[:, 20:, :3], pixels[:, 20:, 3] = [0, 255, 0, 0], orange, 255
+    for bands, name in ((4, "rgba.png"), (4, "rgba.tif"), (2, "la.png")):
+        some = pixels[:, :, [0, 3]] if bands == 2 else pixels
+        Image.fromarray(some).save(dhm.path(name))
+        for shift, factor in ((0.5, 1), (0.25, 1), (0, 1 / 2.5)):
+            out = read(warp(dhm, Pair(corners - 20, factor * (corners - 20) + shift, triangles), image=name))
+            assert {0, 255} < set(numpy.unique(out[..., -1]))
+            seen = out[out[..., -1] > 0]
+            assert (seen[:, :-1] == (orange if bands == 4 else orange[:1])).all()
+    # One picture ends within the other.
+    whole = numpy.zeros((41, 41, 4), "u1") + numpy.array([*orange, 255], "u1")
+    Image.fromarray(whole).save(dhm.path("whole.png"))
+    write_json(dhm.path("same.json"), Pair(corners - 20, corners - 20, triangles))
+    dhm("morph", "same.json", "--source-image", "rgba.png", "--target-image", "whole.png", "-n", "3", "-o", "f%d.png")
+    frame = read(dhm.path("f1.png"))
+    assert (frame[:, :, :3] == orange).all() and set(numpy.unique(frame[:, :, 3])) == {128, 255}
+
+
+def test_profiles_and_transparent_colors_stay(dhm, pair, image):
+    same = pair._replace(target=pair.source)
+    for name in ("p.jpg", "p.png", "p.webp"):
+        Image.fromarray(image).save(dhm.path(name), icc_profile=b"profile" * 20)
+        out = warp(dhm, same, image=name, output="out-" + name)
+        assert Image.open(out).info["icc_profile"] == b"profile" * 20
+        dhm("morph", "pair.json", "--source-image", name, "-n", "2", "-o", "frame%d-" + name)
+        assert Image.open(dhm.path("frame1-" + name)).info["icc_profile"] == b"profile" * 20
+    image[2:5, 3:9] = [255, 0, 255]
+    Image.fromarray(image).save(dhm.path("t.png"), transparency=(255, 0, 255))
+    out = read(warp(dhm, same, image="t.png"))
+    clear = (image == [255, 0, 255]).all(axis=2)
+    numpy.testing.assert_array_equal(out[..., 3], numpy.where(clear, 0, 255))
+    numpy.testing.assert_array_equal(out[~clear, :3], image[~clear])
+
+
 def test_tiles_are_seamless(dhm, monkeypatch):
     """A warp in small tiles, each from its own window of the image, is that of the whole image."""
     from vtkhomeomorphism import images, meshes, pair as pairs
@@ -397,6 +436,154 @@ def test_geotiff_alpha_nodata_and_palette(dhm, shift):
     with rasterio.open(dhm.path("palette-out.tif")) as file:
         r, g, b, a = file.read()
         assert (r[a > 0] == 250).all() and (b == 0).all()
+
+
+@pytest.fixture
+def same(dhm):
+    """The identity of 800 by 600 m, for rasters of 80 by 60 pixels."""
+    corners, triangles = make_grid(1, 1, 800, 600)
+    points = corners + [3384100, 6672700]
+    write_json(dhm.path("same.json"), Pair(points, points, triangles), input_crs="EPSG:2393", output_crs="EPSG:2393")
+    return lambda pixels, **options: write_geotiff(dhm.path("in.tif"), pixels, 3384100, 6673300, 10, **options)
+
+
+def test_no_data_of_colors_and_of_bands(dhm, same):
+    """A color is no data if all of its parts are; other bands have gaps of their own."""
+    pixels = numpy.random.default_rng(3).integers(1, 256, (60, 80, 3)).astype("u1")
+    pixels[10, 20], pixels[30:33, 40:44] = [255, 0, 0], 0
+    for kind, options in (("u1", {"photometric": "rgb"}), ("i2", {}), ("f4", {})):
+        same(pixels.astype(kind), nodata=0, **options)
+        dhm("warp", "same.json", "in.tif", "-o", "out.tif", "--force")
+        with rasterio.open(dhm.path("out.tif")) as file:
+            assert file.nodata == 0
+            numpy.testing.assert_array_equal(numpy.moveaxis(file.read(), 0, 2), pixels)
+        # Means of 3 by 3 pixels.
+        dhm("warp", "same.json", "in.tif", "-o", "out.tif", "--force", "--resolution", "30")
+        with rasterio.open(dhm.path("out.tif")) as file:
+            missing = (file.read() == 0).sum(axis=(1, 2))
+        whole = (missing == missing[0]).all()
+        assert missing.min() >= 2 and whole == (kind == "u1")
+
+
+def test_no_data_leaves_no_trace(dhm, shift):
+    """However large its value is, and if pixels fall on pixels, up to rounding."""
+    values = numpy.random.default_rng(3).random((60, 80, 1)).astype("f4")
+    for nodata in (-3.4028234663852886e38, numpy.nan, numpy.inf):
+        values[20:30, 20:30] = values[40, ::2] = nodata
+        write_geotiff(dhm.path("in.tif"), values, 3384100.3, 6673300.7, 3, nodata=nodata)
+        corners, triangles = make_grid(1, 1, 3000, 3000)
+        source = corners + [3383000, 6672100]
+        for move in ([-3000000, -14.1], [0, 0]):
+            write_json(dhm.path("moved.json"), Pair(source, source + move, triangles))
+            dhm("warp", "moved.json", "in.tif", "-o", "out.tif", "--force")
+            with rasterio.open(dhm.path("out.tif")) as file:
+                found, known = file.read(1), file.dataset_mask() > 0
+            assert known.sum() > 4000 and (0 <= found[known]).all() and (found[known] <= 1).all()
+
+
+def test_no_data_that_pixels_cannot_have(dhm, same):
+    pixels = numpy.random.default_rng(3).integers(1, 256, (60, 80, 1)).astype("u1")
+    tifffile = pytest.importorskip("tifffile")
+    for value in ("-9999", "256", "0.5", "nan", "inf"):
+        tifffile.imwrite(dhm.path("odd.tif"), pixels[:, :, 0], extratags=[
+            (42113, "s", 0, value, True), (33550, "d", 3, (10.0, 10.0, 0.0), True),
+            (33922, "d", 6, (0.0, 0.0, 0.0, 3384100.0, 6673300.0, 0.0), True)])
+        dhm("warp", "same.json", "odd.tif", "-o", "out.tif", "--force")
+        with rasterio.open(dhm.path("out.tif")) as file:
+            numpy.testing.assert_array_equal(file.read(1), pixels[:, :, 0])
+
+
+def test_masks_of_geotiff(dhm, same):
+    pixels = numpy.random.default_rng(3).integers(0, 256, (60, 80, 3)).astype("u1")
+    mask = numpy.random.default_rng(4).random((60, 80)) > 0.3
+    for kind in ("u1", "f4"):
+        with rasterio.Env(GDAL_TIFF_INTERNAL_MASK=True):
+            same(pixels.astype(kind))
+            with rasterio.open(dhm.path("in.tif"), "r+") as file:
+                file.write_mask(mask)
+        dhm("warp", "same.json", "in.tif", "-o", "out.tif", "--force")
+        with rasterio.open(dhm.path("out.tif")) as file:
+            values, found = numpy.moveaxis(file.read(), 0, 2), file.dataset_mask() > 0
+        numpy.testing.assert_array_equal(found, mask)
+        numpy.testing.assert_array_equal(values[mask][:, :3], pixels[mask])
+        dhm("warp", "same.json", "in.tif", "-o", "out.tif", "--force", "--resolution", "30")
+        with rasterio.open(dhm.path("out.tif")) as file:
+            few = file.dataset_mask() > 0
+        squares = mask[:60, :78].reshape(20, 3, 26, 3).all(axis=(1, 3))
+        assert abs(few.mean() - squares.mean()) < 0.05
+
+
+def test_metadata_of_bands_stays(dhm, same):
+    heights = numpy.random.default_rng(5).integers(0, 3000, (60, 80, 2)).astype("i2")
+    same(heights, nodata=-1)
+    with rasterio.open(dhm.path("in.tif"), "r+") as file:
+        file.scales, file.offsets, file.units = (0.1, 2.0), (50.0, 0.0), ("m", "K")
+        file.descriptions = ("height", "temperature")
+        file.update_tags(AUTHOR="Ä. Surveyor")
+        file.update_tags(1, NOTE="of the roofs", STATISTICS_MEAN="7")
+    dhm("warp", "same.json", "in.tif", "-o", "out.tif", "--resolution", "30")
+    with rasterio.open(dhm.path("out.tif")) as file:
+        assert file.scales == (0.1, 2.0) and file.offsets == (50.0, 0.0) and file.units == ("m", "K")
+        assert file.descriptions == ("height", "temperature")
+        # Statistics are not those of other pixels.
+        assert file.tags()["AUTHOR"] == "Ä. Surveyor" and file.tags(1) == {"NOTE": "of the roofs"}
+
+
+def test_classes_are_not_mixed(dhm, shift):
+    """With --nearest, each value is that of the pixel in whose area the preimage is."""
+    index = numpy.random.default_rng(6).choice(numpy.array([1, 7, 200], "u1"), (90, 120, 1))
+    colors = {1: (0, 0, 200, 255), 7: (250, 0, 0, 255), 200: (0, 99, 0, 255)}
+    for name, options in (("palette.tif", {"photometric": "palette"}), ("gray.tif", {}), ("gaps.tif", {"nodata": 7})):
+        write_geotiff(dhm.path(name), index, 3384400, 6673200, 10, **options)
+        if name == "palette.tif":
+            with rasterio.open(dhm.path(name), "r+") as file:
+                file.write_colormap(1, colors)
+        for resolution in ("7", "35"):
+            dhm("warp", "--nearest", "shift.json", name, "-o", "out.tif", "-f", "--resolution", resolution)
+            with rasterio.open(dhm.path("out.tif")) as file:
+                values, known = file.read(1), file.dataset_mask() > 0
+                places = numpy.column_stack(rasterio.transform.xy(file.transform, *numpy.nonzero(known)))
+                assert file.count == (2 if name == "gray.tif" else 1)
+                assert name != "palette.tif" or {k: file.colormap(1)[k] for k in colors} == colors
+            origins = xy(map_points(dhm, ["shift.json"], places, "--inverse"))
+            columns, rows = ((origins - [3384400, 6673200]) / [10, -10]).T
+            # Not where rounding decides.
+            clear = (numpy.abs((columns % 1) - 0.5) < 0.499) & (numpy.abs((rows % 1) - 0.5) < 0.499)
+            expected = index[rows[clear].astype(int), columns[clear].astype(int), 0]
+            numpy.testing.assert_array_equal(values[known][clear], expected)
+            assert clear.sum() > 0.5 * 120 * 90 * (10 / float(resolution)) ** 2 and 1 in expected
+            assert (7 in expected) == (name != "gaps.tif")
+    dhm("warp", "--nearest", "shift.json", "palette.tif", "-o", "rgb.tif", "--background", "white")
+    with rasterio.open(dhm.path("rgb.tif")) as file:
+        found = set(map(tuple, file.read().reshape(3, -1).T.tolist()))
+    assert file.count == 3 and found == {(255, 255, 255), *(color[:3] for color in colors.values())}
+
+
+def test_palettes_with_no_data_become_transparent(dhm, same):
+    index = numpy.random.default_rng(6).integers(0, 3, (60, 80, 1)).astype("u1")
+    same(index, photometric="palette", nodata=1)
+    colors = numpy.array([[0, 0, 0], [255, 0, 0], [250, 200, 0]])
+    with rasterio.open(dhm.path("in.tif"), "r+") as file:
+        file.write_colormap(1, {k: tuple(color) for k, color in enumerate(colors.tolist())})
+    dhm("warp", "same.json", "in.tif", "-o", "out.tif")
+    with rasterio.open(dhm.path("out.tif")) as file:
+        assert [kind.name for kind in file.colorinterp] == ["red", "green", "blue", "alpha"] and file.nodata is None
+        out, known = numpy.moveaxis(file.read(), 0, 2), index[:, :, 0] != 1
+    numpy.testing.assert_array_equal(out[:, :, 3], numpy.where(known, 255, 0))
+    numpy.testing.assert_array_equal(out[known, :3], colors[index[:, :, 0]][known])
+
+
+def test_other_coordinate_reference_systems(dhm, shift):
+    rgb = numpy.zeros((20, 20, 3), "u1")
+    write_geotiff(dhm.path("rgb.tif"), rgb, 3384500, 6673000, 10)
+    words = ("warp", "shift.json", "rgb.tif", "-o")
+    write_geotiff(dhm.path("like.tif"), rgb, 384500, 6670000, 10, crs="EPSG:32635")
+    dhm.refuse(REFUSED, *words, "new.tif", "--like", "like.tif", says=("like.tif", "EPSG:32635", "EPSG:3067"))
+    dhm(*words, "like-out.tif", "--like", "like.tif", "--crs", "EPSG:32635")
+    Image.fromarray(rgb).save(dhm.path("plain.tif"))
+    dhm.refuse(USAGE, *words, "new.tif", "--like", "plain.tif", says=("plain.tif", "--like"))
+    assert "not converted" in dhm(*words, "other.tif", "--crs", "EPSG:4326").err
+    assert "not converted" not in dhm(*words, "own.tif", "--crs", "epsg:3067").err
 
 
 def test_geotiff_refusals(dhm, shift):

@@ -95,6 +95,7 @@ def command(inputs, output, columns, require_inside, inverse, crs, densify, jaco
     work.filter.SetComputeTriangleId(triangle_id)
     work.filter.SetTransformActiveAttributes(vectors != "none")
     work.filter.SetTransformAllInputVectors(vectors == "all")
+    pair.compare_crs(crs, inverse)
     source, target = pair.crs(inverse)
     process(work, output, columns, require_inside, inputs.other, inputs.format, densify,
             (source, target if crs is None else crs))

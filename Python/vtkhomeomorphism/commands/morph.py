@@ -53,15 +53,17 @@ def grid_between(grids, size, t):
     return replace(grids[0], width=size[0], height=size[1], first=first, steps=steps[0] + t * (steps[1] - steps[0]))
 
 
-def blend(first, second, masks, t):
+def blend(first, second, masks, t, has_alpha):
     """Pixels and mask. Where one of the images ends, the other is alone, except in the first and the last frame."""
     if first.dtype != second.dtype or first.shape != second.shape:
         raise Failure(f"The two images are not of the same kind: {first.shape[2]} bands of {first.dtype}, and "
                       f"{second.shape[2]} of {second.dtype}.")
     total = (1 - t) * masks[0] + t * masks[1]
     weight = (t * masks[1] / numpy.where(total > 0, total, 1))[:, :, None]
-    mixed = (1 - weight) * first.astype(float) + weight * second.astype(float)
-    return images.round_to(first.dtype, mixed), total > 0
+    mixed = images.round_to(first.dtype, (1 - weight) * first.astype(float) + weight * second.astype(float))
+    if has_alpha:
+        images.put_colors(mixed, (1 - weight) * images.weigh(first) + weight * images.weigh(second))
+    return mixed, total > 0
 
 
 @click.command("morph")
@@ -115,5 +117,5 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
                       for (pixels, mask), raster in zip(warped, rasters.values())]
             pixels, mask = warped[0]
             if len(warped) == 2:
-                pixels, mask = blend(pixels, warped[1][0], (mask, warped[1][1]), t)
-            images.write(images.finish(pixels, mask, has_alpha, color), frame, grid)
+                pixels, mask = blend(pixels, warped[1][0], (mask, warped[1][1]), t, has_alpha)
+            images.write(images.finish(pixels, mask, has_alpha, color), frame, grid, first.profile)

@@ -7,8 +7,9 @@ from dataclasses import replace
 import click
 
 from .. import images, options
-from ..files import PICTURES, USAGE, Failure
+from ..files import PICTURES, USAGE, Failure, quote
 from ..mapping import choose_system
+from ..pair import are_same_crs
 
 
 @click.command("warp")
@@ -18,10 +19,11 @@ from ..mapping import choose_system
 @click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
 @click.option("--resolution", type=options.POSITIVE, metavar="LENGTH", help="Pixel size of the result on the ground.")
 @click.option("--like", default="", metavar="FILE", help="Use the pixel grid of this GeoTIFF for the result.")
+@click.option("--nearest", is_flag=True, help="Take the value of the nearest pixel, do not interpolate (for classes).")
 @options.crs
 @options.background
 @options.pair_files("SOURCE [TARGET] IMAGE")
-def command(inputs, output, inverse, size, resolution, like, crs, background, **settings):
+def command(inputs, output, inverse, size, resolution, like, nearest, crs, background, **settings):
     """Warp an image from the source's domain to the target's.
 
     IMAGE is a .png .jpg .tif or .ppm file. Meshes are in pixel coordinates (the center of the lower left pixel is
@@ -30,11 +32,12 @@ def command(inputs, output, inverse, size, resolution, like, crs, background, **
 
     The value of each pixel is interpolated linearly at its exact preimage. Up to half a pixel beyond the centers of the
     pixels at the border, where the image ends, it is that of the border. If the result's pixels are at least twice as
-    wide, the image is reduced first, by averaging."""
+    wide, the image is reduced first, by averaging. With --nearest, it is the value of the pixel in whose area the
+    preimage is, and a GeoTIFF keeps its palette, unless it is to have a --background."""
     color = images.read_background(background, output.format)
     inputs.crs = None if inverse else crs
     order = slice(None, None, -1 if inverse else 1)
-    raster = images.read(inputs.other, inputs.format or "png")
+    raster = images.read(inputs.other, inputs.format or "png", nearest and not background)
     own, sized = raster.grid, images.Grid(*size) if size else None
     if own.placed:
         # On the ground there are no pixels of landmarks, but a scan has them.
@@ -60,13 +63,19 @@ def command(inputs, output, inverse, size, resolution, like, crs, background, **
                       f"from {expected}: reproject it first.")
     if like:
         grid = images.read(like).grid
+        if not grid.placed:
+            raise Failure(f"{like} is not georeferenced (--like).", USAGE)
     both.fit((own, grid)[order], {int(inverse): raster})
     grid = grid.hanging() if marks and not placed else grid
-    warp = images.Warp(both, settings, inverse)
+    warp = images.Warp(both, settings, inverse, nearest)
     if placed:
+        both.compare_crs(crs, inverse)
         known = both.crs(inverse)[1]
         crs = crs or (own.crs if known is None else known or None)
-        grid = replace(grid, crs=crs) if like else warp.fit_grid(raster, size, resolution, crs)
+        if like and grid.crs and crs and not are_same_crs(grid.crs, crs):
+            raise Failure(f"{like} (--like) is in the coordinate reference system {grid.crs.to_string()}, but the "
+                          f"result is in {quote(crs)}.")
+        grid = replace(grid, crs=crs or grid.crs) if like else warp.fit_grid(raster, size, resolution, crs)
     images.require_overlap(grid, "the result", both.meshes[not inverse], both.name_of(not inverse))
     with output.writing():
         images.write_warped(warp, raster, grid, output, color)
