@@ -4,6 +4,7 @@
 attributes and layers are kept."""
 
 import contextlib
+import copy
 import io
 
 import numpy
@@ -15,24 +16,56 @@ MARK = "outside"  # the column of features that are not within the domain; their
 
 
 def read(input):
-    """The layers of a file by name, GeoDataFrames."""
+    """The layers of a file by name, GeoDataFrames; tables without geometry may be DataFrames. With geopandas before
+    1.0, their attrs have the schema, because frames know less of the columns' types."""
     import geopandas
 
     try:
         if hasattr(geopandas, "list_layers"):
-            names = geopandas.list_layers(input.path)["name"]
-        else:
-            # Before geopandas 1.0.
-            import fiona
+            return {name: geopandas.read_file(input.path, layer=name)
+                    for name in geopandas.list_layers(input.path)["name"]}
+        import fiona
 
-            names = fiona.listlayers(input.path)
-        return {name: geopandas.read_file(input.path, layer=name) for name in names}
+        layers = {}
+        for name in fiona.listlayers(input.path):
+            layers[name] = geopandas.read_file(input.path, layer=name)
+            with fiona.open(input.path, layer=name) as file:
+                layers[name].attrs["schema"] = file.schema
+        return layers
     except Exception as error:
         input.fail_by(error)
 
 
+def is_table(layer):
+    """Whether a layer has no geometry, like the styles that QGIS adds to a GeoPackage."""
+    return not hasattr(layer, "geometry") or layer.attrs.get("schema", {}).get("geometry") == "None"
+
+
+def _write_layer(frame, path, driver, **options):
+    if not hasattr(frame, "geometry"):
+        import pyogrio
+
+        pyogrio.write_dataframe(frame, path, driver=driver, **options)
+        return
+    if "schema" in frame.attrs:
+        from geopandas.io.file import infer_schema
+
+        schema = frame.attrs["schema"]
+        is_empty = all(shape is None for shape in frame.geometry)
+        found = infer_schema(frame)
+        # Fiona reads some switches as integers.
+        switches = {name: kind for name, kind in found["properties"].items() if kind == "bool"}
+        options["schema"] = {"geometry": schema["geometry"] if is_empty else found["geometry"],
+                             "properties": {**schema["properties"], **switches}}
+    frame.to_file(path, driver=driver, index=False, **options)
+
+
 def write(layers, output):
     """Writes layers to one file; only GeoPackage holds several."""
+    tables = [name for name in layers if is_table(layers[name])]
+    if tables and output.format != "gpkg":
+        inform(f"{output.name} holds no tables without geometry: {', '.join(tables)} is left out.")
+        layers = {name: layer for name, layer in layers.items() if name not in tables}
     if len(layers) > 1 and output.format != "gpkg":
         raise Failure(f"{output.name} can hold one layer, not {len(layers)} ({', '.join(layers)}): write a .gpkg.")
     try:
@@ -40,7 +73,7 @@ def write(layers, output):
         with contextlib.redirect_stderr(io.StringIO()):
             for name, layer in layers.items():
                 options = {"layer": name} if output.format == "gpkg" else {}
-                layer.to_file(output.path, driver=DRIVERS[output.format], index=False, **options)
+                _write_layer(layer, output.path, DRIVERS[output.format], **options)
     except OSError:
         raise
     except Exception as error:
@@ -82,16 +115,21 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
         mapped = change(place, shape)
         return (type(shape)() if any(lost) else mapped), any(lost)
 
-    divided = {name: [change(collect, shape) for shape in layer.geometry] for name, layer in layers.items()}
+    divided = {name: [change(collect, shape) for shape in layer.geometry]
+               for name, layer in layers.items() if not is_table(layer)}
     images = map_points(numpy.vstack([numpy.empty((0, 3)), *collected]))
     parts = iter(numpy.split(images, numpy.cumsum([len(points) for points in collected])))
     result, outside = {}, 0
     for name, layer in layers.items():
+        if is_table(layer):
+            result[name] = layer
+            continue
         if source_crs and layer.crs and layer.crs != source_crs:
             inform(f"Layer {name}: its coordinate reference system is {layer.crs.to_string()}, but the map is from "
                    f"{source_crs}.")
         shapes, marks = zip(*map(map_shape, divided[name])) if divided[name] else ((), ())
         result[name] = layer.set_geometry(list(shapes), crs=layer.crs)
+        result[name].attrs = copy.deepcopy(layer.attrs)
         if target_crs is not None:
             result[name].crs = None
             try:
@@ -100,6 +138,9 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
                 raise Failure(f"The coordinate reference system {quote(target_crs)} is not known: give another "
                               "(--crs).", USAGE) from None
         if any(marks):
+            if MARK in layer.columns:
+                inform(f"Layer {name}: the column {MARK} is replaced.")
             result[name][MARK] = numpy.array(marks, int)
+            result[name].attrs.get("schema", {"properties": {}})["properties"][MARK] = "int"
             outside += sum(marks)
     return result, outside

@@ -3,6 +3,7 @@
 """dhm map on vector data, with geopandas, and GDAL's own ogrinfo, as independent readers."""
 
 import shutil
+import sqlite3
 import subprocess
 
 import numpy
@@ -82,6 +83,54 @@ def test_a_geopackage_there_and_back(dhm, shift, parcels):
         assert "Feature Count: 6" in text and 'ID["EPSG",3067]' in text and "number: Integer64" in text
         low, high = there.total_bounds[:2], there.total_bounds[2:]
         assert f"({low[0]:.6f}, {low[1]:.6f}) - ({high[0]:.6f}, {high[1]:.6f})" in text
+
+
+def test_tables_without_geometry_stay(dhm, shift, parcels):
+    """QGIS keeps the styles of a GeoPackage's layers in one."""
+    parcels.to_file(dhm.path("in.gpkg"), layer="parcels", driver="GPKG")
+    database = sqlite3.connect(dhm.path("in.gpkg"))
+    database.execute("create table layer_styles (id integer primary key, f_table_name text, rank integer, style text)")
+    database.execute("insert into layer_styles values (1, 'parcels', 7, '<qgis/>'), (2, 'other', null, null)")
+    database.execute("insert into gpkg_contents (table_name, data_type, identifier) "
+                     "values ('layer_styles', 'attributes', 'layer_styles')")
+    database.commit()
+    database.close()
+    dhm("map", "shift.json", "in.gpkg", "-o", "out.gpkg")
+    database = sqlite3.connect(dhm.path("out.gpkg"))
+    rows = database.execute("select f_table_name, rank, style from layer_styles").fetchall()
+    assert rows == [("parcels", 7, "<qgis/>"), ("other", None, None)]
+    kinds = dict(database.execute("select table_name, data_type from gpkg_contents").fetchall())
+    assert kinds == {"parcels": "features", "layer_styles": "attributes"}
+    database.close()
+    assert "layer_styles is left out" in dhm("map", "shift.json", "in.gpkg", "-o", "out.geojson").err
+
+
+def test_types_of_columns_and_of_empty_layers_stay(dhm, shift, parcels):
+    fiona = pytest.importorskip("fiona")
+    types = {"day": "date", "floors": "int32", "owner": "str:20", "flat": "bool"}
+    schema = {"geometry": "3D Polygon", "properties": types}
+    shape = geometry.mapping(geometry.Polygon([(x, y, 1.0) for x, y in box(3384700, 6672500, 90)]))
+    rows = [{"day": "2001-02-03", "floors": 3, "owner": "Österby", "flat": True},
+            {"day": None, "floors": None, "owner": None, "flat": False}]
+    for name, some in (("full", rows), ("empty", [])):
+        with fiona.open(dhm.path("in.gpkg"), "w", layer=name, driver="GPKG", schema=schema, crs="EPSG:2393") as file:
+            file.writerecords([{"type": "Feature", "geometry": shape, "properties": row} for row in some])
+    dhm("map", "shift.json", "in.gpkg", "-o", "out.gpkg")
+    for name, some in (("full", rows), ("empty", [])):
+        with fiona.open(dhm.path("in.gpkg"), layer=name) as first, fiona.open(dhm.path("out.gpkg"), layer=name) as file:
+            assert file.schema == first.schema and file.crs.to_epsg() == 3067
+            assert [dict(row["properties"]) for row in file] == [dict(row["properties"]) for row in first]
+            assert len(file) == len(some)
+    columns = sqlite3.connect(dhm.path("out.gpkg")).execute("pragma table_info(full)").fetchall()
+    assert {row[1]: row[2] for row in columns}["flat"] == "BOOLEAN"
+
+
+def test_a_column_that_is_replaced_is_named(dhm, shift, parcels):
+    parcels["outside"] = "a note"
+    parcels.geometry[0] = geometry.Point(0, 0)
+    parcels.to_file(dhm.path("in.gpkg"), driver="GPKG")
+    assert "column outside is replaced" in dhm("map", "shift.json", "in.gpkg", "-o", "out.gpkg").err
+    assert geopandas.read_file(dhm.path("out.gpkg"))["outside"].tolist() == [1, 0, 0, 0, 0, 0]
 
 
 def test_other_formats(dhm, shift, parcels):
