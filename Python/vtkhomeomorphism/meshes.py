@@ -29,8 +29,8 @@ def lists_of(cells):
 
 
 def _read_obj(input):
-    """Points and polygons."""
-    points, polygons = [], []
+    """Points, polygons, and what else there is."""
+    points, polygons, others = [], [], {}
     with open(input.path, encoding="utf-8-sig", errors="replace") as file:
         for number, line in enumerate(file, 1):
             kind, *words = line.split("#", 1)[0].split() or [""]
@@ -38,6 +38,7 @@ def _read_obj(input):
                 if kind == "v":
                     x, y, z = map(float, words[:3])
                     points.append((x, y, z))
+                    others.update({"colors": None} if len(words) >= 6 else {})
                 elif kind == "f":
                     ids = [int(word.partition("/")[0]) for word in words]
                     polygons.append([i - 1 if i >= 0 else i + len(points) for i in ids])
@@ -45,9 +46,11 @@ def _read_obj(input):
                         raise ValueError
                 elif not kind.isprintable() or "\ufffd" in kind:
                     raise ValueError
+                elif kind:
+                    others[kind] = None
             except ValueError:
                 input.fail(f"line {number}: expected coordinates or a face of 3 points, found {quote(line)}.")
-    return numpy.array(points).reshape(-1, 3), polygons
+    return numpy.array(points).reshape(-1, 3), polygons, list(others)
 
 
 @contextlib.contextmanager
@@ -64,7 +67,7 @@ def _quiet_meshio():
 
 
 def _read_meshio(input):
-    """Points and polygons."""
+    """Points, polygons, and what else there is."""
     try:
         with _quiet_meshio() as meshio, open(input.path, "rb") as file:
             if input.format != "ply":
@@ -82,15 +85,22 @@ def _read_meshio(input):
         raise
     except Exception as error:
         input.fail_by(error)
-    return mesh.points, [polygon for block in mesh.cells if block.type in ("triangle", "quad", "polygon")
-                         for polygon in numpy.asarray(block.data).tolist()]
+    polygons, others = [], [*mesh.point_data, *mesh.cell_data]
+    for block in mesh.cells:
+        if block.type in ("triangle", "quad", "polygon"):
+            polygons += numpy.asarray(block.data).tolist()
+        else:
+            others.append(block.type)
+    return mesh.points, polygons, others
 
 
-def read_data(input):
-    """The data object in a file of one of VTK's formats, or the mesh in another."""
+def read_data(input, tell=True):
+    """The data object in a file of one of VTK's formats, or the mesh in another. Says what is not read of it."""
     if input.format in vtkfiles.FORMATS:
         return vtkfiles.read(input)
-    points, polygons = _read_obj(input) if input.format == "obj" else _read_meshio(input)
+    points, polygons, others = _read_obj(input) if input.format == "obj" else _read_meshio(input)
+    if others and tell:
+        inform(f"{input.name}: points and polygons are read, but not {quote(', '.join(others))}.")
     for cell, polygon in enumerate(polygons):
         if not 0 <= min(polygon) <= max(polygon) < len(points):
             input.fail(f"cell {cell} has the points {quote(polygon)}, but there are {len(points)}, counted from 0.")
@@ -102,7 +112,7 @@ def read(input):
     if input.format not in READ:
         raise Failure(f"Cannot read {input.name} as a mesh or landmarks: meshes are {dotted(('json', 'mesh') + READ)}; "
                       "landmarks .points, .json or .csv with columns source_x, source_y, target_x, target_y.", USAGE)
-    mesh = read_data(input)
+    mesh = read_data(input, False)
     if isinstance(mesh, vtkUnstructuredGrid):
         grid, mesh = mesh, vtkPolyData()
         are_polygons = numpy.isin(vtk_to_numpy(grid.GetCellTypesArray()), (5, 7, 9))

@@ -313,6 +313,21 @@ def test_meshes_with_points_outside_are_not_written_where_they_cannot_be_marked(
     dhm("map", *MESHES, "d.off", "-o", "new.vtp")
 
 
+def test_parts_of_meshes_that_are_lost_are_named(dhm, pair):
+    text = "mtllib a.mtl\nv 0.2 0.2 0 1 0 0\nv 0.8 0.2 0 1 0 0\nv 0.5 0.8 0 1 0 0\nvt 0 0\nusemtl red\n"
+    dhm.path("d.obj").write_text(text + "f 1/1 2/1 3/1\nl 1 2\n")
+    assert "not mtllib, colors, vt, usemtl, l." in dhm("map", *MESHES, "d.obj", "-o", "out.obj").err
+    dhm.path("d.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+        "property uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0.2 0.2 0 9\n0.8 0.2 0 9\n0.5 0.8 0 9\n3 0 1 2\n")
+    assert "not red." in dhm("map", *MESHES, "d.ply", "-o", "out.ply").err
+    # Nothing is lost of plain meshes, nor of meshes of the pair.
+    assert "not" not in dhm("map", "-s", "linear", *MESHES, "a.off", "-o", "plain.off").err
+    dhm.path("b.obj").write_text("vt 0 0\nvn 0 0 1\n" + text + "f 1 2 3\n")
+    assert "not" not in dhm("check", "b.obj", "b.obj", "--quick").err
+
+
 def test_kinds_that_do_not_fit(dhm, pair):
     write_csv(dhm.path("p.csv"), [[0.5, 0.5]])
     for data, output, says in (
