@@ -21,8 +21,6 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
   const TriangleIndex count = topology.GetNumberOfTriangles();
   PlanarPair planar;
   this->Numbers.assign(count, -1);
-  // Parts that touch in a point may be mirrored independently: then the point is taken twice.
-  std::array<LargeVector<std::int32_t>, 2> pointNumbers;
   std::int32_t greatest = -1;
   for (TriangleIndex t = 0; t < count; ++t)
   {
@@ -35,28 +33,24 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
   planar.Triangles.reserve(static_cast<std::size_t>(count));
   this->Points.reserve(points);
   this->Triangles.reserve(static_cast<std::size_t>(count));
-  this->Mirrored.reserve(static_cast<std::size_t>(count));
   this->Reversed.reserve(static_cast<std::size_t>(count));
+  LargeVector<std::int32_t> numbers(points, -1);
   for (TriangleIndex t = 0; t < count; ++t)
   {
     if (topology.IsMasked(t))
     {
       continue;
     }
-    const bool mirrored = source.GetOrientation(t) != target.GetOrientation(t);
+    // The target mirrors all triangles of a valid pair, or none.
+    this->IsMirrored = source.GetOrientation(t) != target.GetOrientation(t);
     Triangulation::Corners corners = topology.GetCorners(t);
     const bool isReversed = source.GetOrientation(t) < 0;
     if (isReversed)
     {
       std::swap(corners[1], corners[2]);
     }
-    LargeVector<std::int32_t>& numbers = pointNumbers[mirrored ? 1 : 0];
     for (std::int32_t& corner : corners)
     {
-      if (numbers.empty())
-      {
-        numbers.assign(points, -1);
-      }
       std::int32_t& number = numbers[static_cast<std::size_t>(corner)];
       if (number < 0)
       {
@@ -64,14 +58,12 @@ CubicHomeomorphism::CubicHomeomorphism(const TriangulationPair& pair, CubicMapOp
         this->Points.push_back(corner);
         planar.Source.push_back(source.GetPlanePoint(corner));
         const Vector2& image = target.GetPlanePoint(corner);
-        planar.Target.push_back(mirrored ? Vector2{ -image.x, image.y } : image);
+        planar.Target.push_back(this->IsMirrored ? Vector2{ -image.x, image.y } : image);
       }
       corner = number;
     }
     this->Numbers[t] = static_cast<std::int32_t>(planar.Triangles.size());
     this->Triangles.push_back(t);
-    this->Mirrored.push_back(mirrored);
-    this->IsMirrored = this->IsMirrored || mirrored;
     this->Reversed.push_back(isReversed);
     planar.Triangles.push_back(corners);
   }
@@ -128,7 +120,7 @@ void CubicHomeomorphism::SetPoints(Domain from, TriangleIndex triangle, int begi
 {
   const std::int32_t number = this->Numbers[triangle];
   const bool isReversed = this->Reversed[number] != 0;
-  const bool isMirrored = from == Domain::Target && this->Mirrored[number] != 0;
+  const bool isMirrored = from == Domain::Target && this->IsMirrored;
   const double* const turned[3] = { l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] };
   SetRun(this->Pair.GetGeometry(from).GetPlaneFrame(triangle), isMirrored, turned, inFrame, begin,
     end, batch);
@@ -144,16 +136,10 @@ void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch, CubicTriangle
     return;
   }
   this->LeaveUncertified(batch);
-  // The map changes their triangles to those of the refined pair.
-  std::uint8_t isMirrored[CubicBatch::Capacity] = {};
-  for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
-  {
-    isMirrored[i] = batch.Triangles[i] < 0 ? 0 : this->Mirrored[batch.Triangles[i]];
-  }
   this->Map->MapPoints(batch, prepared);
   for (int i = 0; this->IsMirrored && i < batch.Count; ++i)
   {
-    batch.ImageX[i] = isMirrored[i] != 0 ? -batch.ImageX[i] : batch.ImageX[i];
+    batch.ImageX[i] = -batch.ImageX[i];
   }
 }
 
@@ -226,7 +212,7 @@ Matrix2 CubicHomeomorphism::Derive(
     return { { none, none }, { none, none } };
   }
   Matrix2 forward = this->Map->GetDerivative(number, point);
-  if (this->Mirrored[number] != 0)
+  if (this->IsMirrored)
   {
     forward.ImageOfX.x = -forward.ImageOfX.x;
     forward.ImageOfY.x = -forward.ImageOfY.x;

@@ -18,8 +18,8 @@ namespace homeomorphism
 {
 
 /// A CubicMap of a planar TriangulationPair, in both meshes' normalized coordinates. Triangles are
-/// turned counterclockwise for it, and parts that the target mirrors are mirrored back. Immutable;
-/// any number of threads may use it.
+/// turned counterclockwise for it, and a mirrored target is mirrored back. Immutable; any number of
+/// threads may use it.
 class CubicHomeomorphism
 {
 public:
@@ -86,8 +86,7 @@ private:
   LargeVector<std::int32_t> Numbers;
   LargeVector<std::int32_t> Triangles;
   LargeVector<std::int32_t> Points;
-  LargeVector<std::uint8_t> Mirrored;
-  /// Whether any is.
+  /// Whether the target is a mirror image.
   bool IsMirrored = false;
   /// Whether a triangle's corners 1 and 2 are exchanged in the map.
   LargeVector<std::uint8_t> Reversed;
