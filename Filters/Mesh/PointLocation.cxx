@@ -45,6 +45,16 @@ int Containment(
   return ab != 0 && bc != 0 && ca != 0 ? 1 : 0;
 }
 
+/// A box around a point with all triangles that are at most this far away, up to the rounding of
+/// distances: of equally near triangles, none may be missed.
+Box<3> BoxAround(const Vector3& point, double distance, double diagonal)
+{
+  constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
+  const double size =
+    distance + diagonal + std::abs(point[0]) + std::abs(point[1]) + std::abs(point[2]);
+  return Box<3>::Around(point, distance + rounding * size);
+}
+
 /// The best candidate so far: the nearest triangle, and the lowest number among equally near ones.
 struct Nearest
 {
@@ -749,10 +759,11 @@ SurfacePoint PointLocation::FindNearest(
     // The nearest triangle is at most this far away.
     offer(hint);
   }
-  Box<3> box = Box<3>::Around(normalized, nearest.Distance);
+  const double diagonal = this->Geometry.GetDiagonal();
+  Box<3> box = BoxAround(normalized, nearest.Distance, diagonal);
   this->SpaceTree.Search(box, [&](TriangleIndex t) {
     offer(t);
-    box = Box<3>::Around(normalized, nearest.Distance);
+    box = BoxAround(normalized, nearest.Distance, diagonal);
     return true;
   });
   if (nearest.Found.Triangle >= 0)

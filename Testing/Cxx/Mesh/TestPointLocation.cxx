@@ -443,4 +443,31 @@ TEST(PointLocation, PointsOfSurfaces)
   }
 }
 
+TEST(PointLocation, EquallyNearTrianglesOfSurfacesForEveryHint)
+{
+  // Roofs, whose ridges have coordinates of few digits. Points beside a ridge have the same
+  // distance from the triangles of both sides.
+  Random random(30);
+  for (int n = 0; n < 50; ++n)
+  {
+    const double height = random.Integer(1, 8);
+    const auto roof = MakeMesh(
+      { { -4, 0, 0 }, { -4, 8, 0 }, { 0, 0, height }, { 0, 8, height }, { 4, 0, 0 }, { 4, 8, 0 } },
+      { { 4, 5, 3 }, { 4, 3, 2 }, { 2, 3, 1 }, { 2, 1, 0 } });
+    const auto map = Make({ roof, nullptr });
+    for (int i = 0; i < 200; ++i)
+    {
+      const double up = random.Uniform(0.0, 0.1);
+      const Point p{ i % 2 ? 0.0 : random.Uniform(-0.2, 0.2) * up, random.Uniform(0.0, 8.0),
+        height + up };
+      const SurfacePoint location = Locate(*map, p, -1, 0.1);
+      ASSERT_GE(location.Triangle, 0);
+      for (const TriangleIndex hint : { 0, 1, 2, 3 })
+      {
+        ExpectSameLocation(location, Locate(*map, p, hint, 0.1));
+      }
+    }
+  }
+}
+
 } // namespace
