@@ -49,13 +49,19 @@ public:
   /// Pedigree ids of the source's points.
   std::vector<std::string> Names;
 
-  vtkIdType CellOf(const FigureProblem& problem) const
+  vtkIdType CellOf(const FigureProblem* problem) const
   {
-    if (problem.Line >= 0)
+    if (problem && problem->Line >= 0)
     {
-      return this->LineCells[static_cast<std::size_t>(problem.Line)];
+      return this->LineCells[static_cast<std::size_t>(problem->Line)];
     }
-    return problem.Loop >= 0 ? this->LoopCells[static_cast<std::size_t>(problem.Loop)] : -1;
+    return problem && problem->Loop >= 0 ? this->LoopCells[static_cast<std::size_t>(problem->Loop)]
+                                         : -1;
+  }
+
+  std::string MessageOf(const FigureProblem* problem) const
+  {
+    return problem ? problem->Message(this->Names) : "";
   }
 };
 
@@ -200,7 +206,8 @@ private:
   double InverseScale = 1.0;
 };
 
-std::vector<std::vector<int>> Cells(vtkCellArray* array)
+/// The points of cells; -1 for those that do not exist, like point @a count and those after it.
+std::vector<std::vector<int>> Cells(vtkCellArray* array, vtkIdType count)
 {
   std::vector<std::vector<int>> cells;
   vtkNew<vtkIdList> ids;
@@ -210,7 +217,8 @@ std::vector<std::vector<int>> Cells(vtkCellArray* array)
     cells.emplace_back();
     for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
     {
-      cells.back().push_back(static_cast<int>(ids->GetId(k)));
+      const vtkIdType id = ids->GetId(k);
+      cells.back().push_back(id >= 0 && id < count ? static_cast<int>(id) : -1);
     }
   }
   return cells;
@@ -220,9 +228,9 @@ std::vector<std::vector<int>> Cells(vtkCellArray* array)
 void ReadCells(vtkPolyData* figure, FigurePair& pair, std::vector<vtkIdType>& lineCells,
   std::vector<vtkIdType>& loopCells)
 {
-  const int n = static_cast<int>(figure->GetNumberOfPoints());
+  const vtkIdType n = figure->GetNumberOfPoints();
   const vtkIdType firstLine = figure->GetNumberOfVerts();
-  const std::vector<std::vector<int>> lines = Cells(figure->GetLines());
+  const std::vector<std::vector<int>> lines = Cells(figure->GetLines(), n);
   std::map<int, std::vector<int>> neighbors;
   std::map<int, vtkIdType> cellOf;
   for (std::size_t i = 0; i < lines.size(); ++i)
@@ -250,8 +258,7 @@ void ReadCells(vtkPolyData* figure, FigurePair& pair, std::vector<vtkIdType>& li
     for (std::size_t i = 0; i < component.size(); ++i)
     {
       const auto& next = neighbors[component[i]];
-      loop =
-        loop && next.size() == 2 && next[0] != next[1] && component[i] >= 0 && component[i] < n;
+      loop = loop && next.size() == 2 && next[0] != next[1] && component[i] >= 0;
       for (const int v : next)
       {
         if (inLoop.emplace(v, false).second)
@@ -287,7 +294,7 @@ void ReadCells(vtkPolyData* figure, FigurePair& pair, std::vector<vtkIdType>& li
     }
   }
   vtkIdType polygon = firstLine + figure->GetNumberOfLines();
-  for (const auto& corners : Cells(figure->GetPolys()))
+  for (const auto& corners : Cells(figure->GetPolys(), n))
   {
     pair.Loops.push_back(corners);
     loopCells.push_back(polygon++);
@@ -296,9 +303,29 @@ void ReadCells(vtkPolyData* figure, FigurePair& pair, std::vector<vtkIdType>& li
 
 bool HaveSameCells(vtkPolyData* source, vtkPolyData* target)
 {
-  return Cells(source->GetVerts()) == Cells(target->GetVerts()) &&
-    Cells(source->GetLines()) == Cells(target->GetLines()) &&
-    Cells(source->GetPolys()) == Cells(target->GetPolys());
+  const vtkIdType count = source->GetNumberOfPoints();
+  return Cells(source->GetVerts(), count) == Cells(target->GetVerts(), count) &&
+    Cells(source->GetLines(), count) == Cells(target->GetLines(), count) &&
+    Cells(source->GetPolys(), count) == Cells(target->GetPolys(), count);
+}
+
+/// Whether the offsets of the cells fit their points.
+bool IsSound(vtkPolyData* figure)
+{
+  return figure->GetVerts()->IsValid() && figure->GetLines()->IsValid() &&
+    figure->GetPolys()->IsValid();
+}
+
+/// One of a list of problems. Null and an error if there is none with this number.
+const FigureProblem* Find(vtkObject* self, const FigureProblems& problems, int number)
+{
+  if (number >= 0 && number < static_cast<int>(problems.size()))
+  {
+    return &problems[static_cast<std::size_t>(number)];
+  }
+  vtkErrorWithObjectMacro(
+    self, << "There is no number " << number << " in a list of " << problems.size() << ".");
+  return nullptr;
 }
 
 } // namespace
@@ -390,6 +417,14 @@ int vtkIsomorphicTriangulation::RequestData(
   {
     note(FigureProblem::Kind::PointCountsDiffer, -1, {});
     return refuse();
+  }
+  for (int d = 0; d < 2; ++d)
+  {
+    if (!IsSound(figures[static_cast<std::size_t>(d)]))
+    {
+      note(FigureProblem::Kind::BadCell, d, {});
+      return refuse();
+    }
   }
   if (!HaveSameCells(figures[0], figures[1]))
   {
@@ -574,37 +609,40 @@ int vtkIsomorphicTriangulation::GetNumberOfProblems()
 
 int vtkIsomorphicTriangulation::GetProblemKind(int problem)
 {
-  return static_cast<int>(this->Internal->Problems.at(static_cast<std::size_t>(problem)).What);
+  const FigureProblem* found = Find(this, this->Internal->Problems, problem);
+  return found ? static_cast<int>(found->What) : -1;
 }
 
 int vtkIsomorphicTriangulation::GetProblemDomain(int problem)
 {
-  return this->Internal->Problems.at(static_cast<std::size_t>(problem)).Domain;
+  const FigureProblem* found = Find(this, this->Internal->Problems, problem);
+  return found ? found->Domain : -1;
 }
 
 void vtkIsomorphicTriangulation::GetProblemPoints(int problem, vtkIdList* points)
 {
   points->Reset();
-  for (const int point : this->Internal->Problems.at(static_cast<std::size_t>(problem)).Points)
+  const FigureProblem* found = Find(this, this->Internal->Problems, problem);
+  for (std::size_t i = 0; found && i < found->Points.size(); ++i)
   {
-    points->InsertNextId(point);
+    points->InsertNextId(found->Points[i]);
   }
 }
 
 vtkIdType vtkIsomorphicTriangulation::GetProblemCell(int problem)
 {
-  return this->Internal->CellOf(this->Internal->Problems.at(static_cast<std::size_t>(problem)));
+  return this->Internal->CellOf(Find(this, this->Internal->Problems, problem));
 }
 
 int vtkIsomorphicTriangulation::GetProblemCount(int problem)
 {
-  return this->Internal->Problems.at(static_cast<std::size_t>(problem)).Count;
+  const FigureProblem* found = Find(this, this->Internal->Problems, problem);
+  return found ? found->Count : 0;
 }
 
 std::string vtkIsomorphicTriangulation::GetProblemMessage(int problem)
 {
-  return this->Internal->Problems.at(static_cast<std::size_t>(problem))
-    .Message(this->Internal->Names);
+  return this->Internal->MessageOf(Find(this, this->Internal->Problems, problem));
 }
 
 int vtkIsomorphicTriangulation::GetNumberOfLeftOutSegments()
@@ -614,13 +652,12 @@ int vtkIsomorphicTriangulation::GetNumberOfLeftOutSegments()
 
 vtkIdType vtkIsomorphicTriangulation::GetLeftOutCell(int segment)
 {
-  return this->Internal->CellOf(this->Internal->LeftOut.at(static_cast<std::size_t>(segment)));
+  return this->Internal->CellOf(Find(this, this->Internal->LeftOut, segment));
 }
 
 std::string vtkIsomorphicTriangulation::GetLeftOutMessage(int segment)
 {
-  return this->Internal->LeftOut.at(static_cast<std::size_t>(segment))
-    .Message(this->Internal->Names);
+  return this->Internal->MessageOf(Find(this, this->Internal->LeftOut, segment));
 }
 
 void vtkIsomorphicTriangulation::GetSuspiciousLandmarks(vtkIdList* points)

@@ -192,6 +192,7 @@ public:
   /// (at most 10; the ends of two crossing segments, or a point and the ends of its segment), the
   /// id of the cell that could not be drawn (-1 if there is none), the number of occurrences, and a
   /// message. Messages name points by the source's pedigree ids, if it has any, not by their ids.
+  /// For a number that is out of range: an error, and -1, no points, 0 and an empty message.
   int GetNumberOfProblems();
   int GetProblemKind(int problem);
   int GetProblemDomain(int problem);
@@ -202,7 +203,8 @@ public:
   ///@}
 
   ///@{
-  /// Segments that were left out: their number, the ids of their cells, and the reasons.
+  /// Segments that were left out: their number, the ids of their cells, and the reasons. For a
+  /// number that is out of range: an error, -1 and an empty message.
   int GetNumberOfLeftOutSegments();
   vtkIdType GetLeftOutCell(int segment);
   std::string GetLeftOutMessage(int segment);

@@ -5,6 +5,8 @@
 
 #include "vtkIsomorphicTriangulation.h"
 
+#include "vtkTypeInt64Array.h"
+
 namespace
 {
 
@@ -280,6 +282,51 @@ TEST(IsomorphicTriangulationRefusals, PointLimit)
   run.Pair->SetMaximumNumberOfAddedPoints(-1);
   run.Mesh();
   EXPECT_EQ(1, run.Pair->GetNumberOfAddedPoints());
+}
+
+TEST(IsomorphicTriangulationRefusals, NumbersOutOfRange)
+{
+  PairRun run(Square, With(5, { 3, NotANumber, 0 }), Outline);
+  EXPECT_EQ(Filter::NOT_FINITE, run.Refusal());
+  for (const int number : { -1, 1, VTK_INT_MAX })
+  {
+    EXPECT_EQ(-1, run.Pair->GetProblemKind(number));
+    EXPECT_TRUE(run.Log.HasError());
+    run.Log.Clear();
+    EXPECT_EQ(-1, run.Pair->GetProblemDomain(number));
+    EXPECT_EQ(-1, run.Pair->GetProblemCell(number));
+    EXPECT_EQ(0, run.Pair->GetProblemCount(number));
+    EXPECT_EQ("", run.Pair->GetProblemMessage(number));
+    EXPECT_EQ(Ids{}, run.Points(number));
+    EXPECT_EQ(-1, run.Pair->GetLeftOutCell(number));
+    EXPECT_EQ("", run.Pair->GetLeftOutMessage(number));
+  }
+}
+
+TEST(IsomorphicTriangulationRefusals, CorruptCells)
+{
+  // The lowest 32 bits of the last one name a point.
+  for (const vtkIdType noPoint : { vtkIdType(7), vtkIdType(-1), (vtkIdType(1) << 44) + 3 })
+  {
+    const Cells line = With({ { 4, noPoint } });
+    const Cells loop{ {}, { { 0, 1, 2, noPoint } } };
+    const Cells edges{ { { 0, 1 }, { 1, 2 }, { 2, noPoint }, { noPoint, 0 } }, {} };
+    for (const Cells& cells : { line, loop, edges })
+    {
+      PairRun run(Square, Square, cells);
+      EXPECT_EQ(Filter::BAD_CELL, run.Refusal()) << noPoint;
+    }
+  }
+  for (const bool ofLines : { false, true })
+  {
+    PairRun run(Square, Square, With({ { 4, 6 } }));
+    vtkNew<vtkCellArray> cells;
+    cells->SetData(RandomArray<vtkTypeInt64Array>("Offsets", 1, 3, 1),
+      RandomArray<vtkTypeInt64Array>("Points", 1, 3, 2));
+    ofLines ? run.Target->SetLines(cells) : run.Target->SetPolys(cells);
+    EXPECT_EQ(Filter::BAD_CELL, run.Refusal());
+    EXPECT_EQ(1, run.Pair->GetProblemDomain(0));
+  }
 }
 
 } // namespace
