@@ -19,6 +19,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 
 #include <array>
 
@@ -28,6 +29,22 @@ vtkStandardNewMacro(vtkRefinedTriangulationPair);
 
 namespace
 {
+
+/// The attributes without arrays of another length, from which VTK would read out of bounds.
+template <typename Attributes>
+vtkSmartPointer<Attributes> Complete(Attributes* attributes, vtkIdType tuples)
+{
+  auto complete = vtkSmartPointer<Attributes>::New();
+  complete->ShallowCopy(attributes);
+  for (int i = complete->GetNumberOfArrays() - 1; i >= 0; --i)
+  {
+    if (complete->GetAbstractArray(i)->GetNumberOfTuples() != tuples)
+    {
+      complete->RemoveArray(i);
+    }
+  }
+  return complete;
+}
 
 /// One of the finer meshes, made from the original one.
 void MakeMesh(vtkPolyData* original, const Triangulation& triangulation, const RefinedPair& refined,
@@ -44,11 +61,12 @@ void MakeMesh(vtkPolyData* original, const Triangulation& triangulation, const R
     original->GetPoint(i, p);
     points->SetPoint(i, p);
   }
+  const auto oldPointData = Complete(original->GetPointData(), oldPoints);
   vtkPointData* pointData = mesh->GetPointData();
-  pointData->InterpolateAllocate(original->GetPointData(), oldPoints + newPoints);
+  pointData->InterpolateAllocate(oldPointData, oldPoints + newPoints);
   for (vtkIdType i = 0; i < oldPoints; ++i)
   {
-    pointData->CopyData(original->GetPointData(), i, i);
+    pointData->CopyData(oldPointData, i, i);
   }
   vtkNew<vtkIdList> corners;
   corners->SetNumberOfIds(3);
@@ -62,22 +80,23 @@ void MakeMesh(vtkPolyData* original, const Triangulation& triangulation, const R
     {
       corners->SetId(k, triangulation.GetCorners(point.Triangle)[static_cast<std::size_t>(k)]);
     }
-    pointData->InterpolatePoint(original->GetPointData(), oldPoints + i, corners, weights.data());
+    pointData->InterpolatePoint(oldPointData, oldPoints + i, corners, weights.data());
   }
   vtkNew<vtkCellArray> triangles;
   vtkNew<vtkIdTypeArray> originals;
   originals->SetName("OriginalCellIds");
   const auto numberOfTriangles = static_cast<vtkIdType>(refined.Triangles.size());
   originals->SetNumberOfTuples(numberOfTriangles);
+  const auto oldCellData = Complete(original->GetCellData(), original->GetNumberOfCells());
   vtkCellData* cellData = mesh->GetCellData();
-  cellData->CopyAllocate(original->GetCellData(), numberOfTriangles);
+  cellData->CopyAllocate(oldCellData, numberOfTriangles);
   for (vtkIdType i = 0; i < numberOfTriangles; ++i)
   {
     const auto n = static_cast<std::size_t>(i);
     const vtkIdType cell = triangulation.GetCellId(refined.Originals[n]);
     triangles->InsertNextCell(3, refined.Triangles[n].data());
     originals->SetValue(i, cell);
-    cellData->CopyData(original->GetCellData(), cell, i);
+    cellData->CopyData(oldCellData, cell, i);
   }
   mesh->SetPoints(points);
   mesh->SetPolys(triangles);

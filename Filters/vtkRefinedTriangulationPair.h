@@ -21,7 +21,7 @@
  * original triangle. PROJ interpolates heights in the same way, so the heights of the finer pair
  * are the same functions of the point. Cell data is copied from the original triangle. The cell
  * array `OriginalCellIds` (vtkIdType) has the cell id of the original triangle. Cells that are not
- * triangles are dropped.
+ * triangles are dropped, and so are arrays that do not have one tuple for each point or cell.
  *
  * The error is measured at 595 points of each triangle, including its edges; it is not bounded
  * between these points. Triangles are measured in parallel (vtkSMPTools); results do not depend on

@@ -434,6 +434,13 @@ int vtkResampleThroughHomeomorphism::Execute(
   {
     return 1;
   }
+  const std::shared_ptr<const Homeomorphism> map = this->GetMap(source, target);
+  if (!map)
+  {
+    output->Initialize();
+    return 0;
+  }
+  // Of accepted meshes only: VTK does not check the points of cells when it computes bounds.
   if (grid)
   {
     output->CopyStructure(grid);
@@ -444,12 +451,6 @@ int vtkResampleThroughHomeomorphism::Execute(
              vtkImageData::SafeDownCast(output)))
   {
     return this->Fail(MESHES_REFUSED);
-  }
-  const std::shared_ptr<const Homeomorphism> map = this->GetMap(source, target);
-  if (!map)
-  {
-    output->Initialize();
-    return 0;
   }
 
   const vtkIdType count = output->GetNumberOfPoints();

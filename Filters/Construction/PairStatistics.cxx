@@ -138,7 +138,9 @@ PointCounts CountPoints(vtkPolyData* mesh)
   const vtkIdType count = mesh->GetNumberOfPoints();
   std::vector<bool> used(static_cast<std::size_t>(count), false);
   const auto cells = vtk::TakeSmartPointer(mesh->GetPolys()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  // The mesh may have been refused.
+  const bool isSound = mesh->GetPolys()->IsValid();
+  for (cells->GoToFirstCell(); isSound && !cells->IsDoneWithTraversal(); cells->GoToNextCell())
   {
     vtkIdType size;
     const vtkIdType* points;

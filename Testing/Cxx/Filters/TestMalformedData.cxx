@@ -7,6 +7,7 @@
 #include "Fixtures/FilterRuns.h"
 
 #include "vtkResampleThroughHomeomorphism.h"
+#include "vtkTriangulationPairReport.h"
 
 #include "vtkCellType.h"
 #include "vtkTypeInt64Array.h"
@@ -207,6 +208,35 @@ TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
     EXPECT_EQ(resample->GetErrorCode(),
       static_cast<unsigned long>(vtkResampleThroughHomeomorphism::DATA_REFUSED));
     EXPECT_EQ(resample->GetOutput()->GetNumberOfPoints(), 0);
+  }
+}
+
+TEST_F(MalformedData, CorruptMeshesAreRefusedBeforeTheyAreUsed)
+{
+  std::vector<vtkSmartPointer<vtkPolyData>> meshes;
+  for (const vtkIdType noPoint : NoPoints)
+  {
+    meshes.push_back(MakeDataPartlyOutside());
+    SetTriangles(meshes.back(), { { 0, 1, 2 }, { 0, noPoint, 2 } });
+  }
+  meshes.push_back(MakeDataPartlyOutside());
+  meshes.back()->GetPolys()->SetData(RandomArray<vtkTypeInt64Array>("Offsets", 1, 3, 1),
+    RandomArray<vtkTypeInt64Array>("Points", 1, 3, 2));
+  for (const auto& mesh : meshes)
+  {
+    // With the image that it lays over the mesh.
+    const auto resample = MakeAlgorithm<vtkResampleThroughHomeomorphism>({ mesh, mesh });
+    Messages messages(resample);
+    resample->SetSamplingDimensions(5, 5);
+    resample->Update();
+    EXPECT_TRUE(messages.HasError());
+    EXPECT_EQ(resample->GetErrorCode(),
+      static_cast<unsigned long>(vtkResampleThroughHomeomorphism::MESHES_REFUSED));
+    // It counts points of refused meshes, too.
+    const auto report = MakeAlgorithm<vtkTriangulationPairReport>({ mesh, mesh });
+    report->Update();
+    EXPECT_EQ(report->GetStatistic("Measured"), 0.0);
+    EXPECT_GE(report->GetStatistic("SourceUnusedPoints"), 3.0);
   }
 }
 

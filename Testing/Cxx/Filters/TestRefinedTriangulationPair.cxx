@@ -172,6 +172,23 @@ TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
   }
 }
 
+TEST(RefinedTriangulationPair, ArraysOfWrongLengthAreLeftOut)
+{
+  const MeshPair pair = MakePlanarPair(3, 53);
+  for (const vtkIdType tuples : { 0, 1, 15, 17, 18 })
+  {
+    pair.Source->GetPointData()->AddArray(RandomArray("Values", 3, tuples, 1));
+    pair.Source->GetCellData()->AddArray(RandomArray("Values", 3, tuples, 2));
+    const auto filter = MakeFilter(pair, 0.01);
+    filter->Update();
+    vtkPolyData* refined = filter->GetOutput();
+    EXPECT_GT(refined->GetNumberOfCells(), 18);
+    EXPECT_FALSE(PointArray(refined, "Values"));
+    EXPECT_EQ(CellArray(refined, "Values") != nullptr, tuples == 18);
+    EXPECT_TRUE(CellArray(refined, "OriginalCellIds"));
+  }
+}
+
 TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
 {
   const MeshPair pair = MakePlanarPair(3, 59);
