@@ -298,8 +298,9 @@ int vtkTriangulationPairReport::Execute(
   // What is left out is in the table of defects: no warnings.
   vtkNew<vtkCallbackCommand> ignore;
   ignore->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
-  const bool planar =
-    pair.GetGeometry(Domain::Source).IsPlanar() && pair.GetGeometry(Domain::Target).IsPlanar();
+  const bool hasCubic = pair.GetGeometry(Domain::Source).IsPlanar() &&
+    pair.GetGeometry(Domain::Target).IsPlanar() &&
+    options.Cubic.IsPossible(triangulation.GetNumberOfTriangles());
   for (int system = LINEAR; system <= CUBIC; ++system)
   {
     if (homeomorphism::ShouldAbort(this))
@@ -310,7 +311,7 @@ int vtkTriangulationPairReport::Execute(
     MapSamples samples;
     SecondDifference second;
     CubicStatistics cubic;
-    const bool exists = system != CUBIC || planar;
+    const bool exists = system != CUBIC || hasCubic;
     if (this->MeasureMaps && exists)
     {
       options.System = static_cast<homeomorphism::CoordinateSystem>(system);

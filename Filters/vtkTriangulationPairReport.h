@@ -64,7 +64,8 @@
  *   unit of the source, squared, NaN with CubicBending LOCAL, which does not minimize it (in the
  *   other systems it is infinite); `CubicUncertifiedTriangles`; `CubicExceptionalInteriorVertices`
  *   and `-BoundaryVertices`, the numbers of points without a derivative. All columns of Cubic are
- *   NaN or -1 for pairs that are not planar.
+ *   NaN or -1 for pairs that are not planar or have more than 2^26 triangles after
+ *   FairnessRefinement.
  *
  * Output port 3 is a vtkTable with one row for each kind of defect. Its columns, and the field data
  * array `Ids` with all cell ids, are described in Documentation/diagnostics.md.

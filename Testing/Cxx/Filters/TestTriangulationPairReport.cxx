@@ -241,6 +241,22 @@ TEST(TriangulationPairReport, DefectsAreDataAndNoErrors)
   EXPECT_EQ(none->GetErrorCode(), 0u);
 }
 
+TEST(TriangulationPairReport, WhatCubicCannotNumberIsNotMeasured)
+{
+  // More triangles than it can number after refinement, almost all of them invalid.
+  std::vector<Triangle> triangles = GridTriangles(1);
+  triangles.resize(std::size_t(1) << 18, Triangle{ 0, 0, 0 });
+  triangles.push_back({ 0, 0, 0 });
+  const auto mesh = MakeMesh(GridPoints(1, 0, 0.0), triangles);
+  const auto fine = MakeAlgorithm<vtkTriangulationPairReport>({ mesh, mesh });
+  fine->SetMeasureContinuity(false);
+  fine->SetFairnessRefinement(4);
+  fine->Update();
+  EXPECT_GT(fine->GetStatistic("SmoothSamples"), 0.0);
+  EXPECT_TRUE(std::isnan(fine->GetStatistic("CubicCertificate")));
+  EXPECT_EQ(fine->GetStatistic("CubicUncertifiedTriangles"), -1.0);
+}
+
 TEST(TriangulationPairReport, DoesNotDependOnThreadsUnitsOrReflections)
 {
   const MeshPair pair = MakePlanarPair(4, 23);
