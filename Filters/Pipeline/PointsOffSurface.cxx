@@ -3,9 +3,13 @@
 
 #include "PointsOffSurface.h"
 
+#include "Mesh/MeshValidation.h"
+
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkMath.h"
 #include "vtkObject.h"
+#include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -26,9 +30,12 @@ void WarnOfPointsOffSurface(vtkObject* self, const Homeomorphism& map, Domain do
     return;
   }
   std::vector<vtkIdType> outside;
+  // Hidden points count as outside wherever they are.
+  vtkUnsignedCharArray* ghosts = GhostsOf(data->GetPointData(), mask->GetNumberOfTuples());
   for (vtkIdType i = 0; i < mask->GetNumberOfTuples(); ++i)
   {
-    if (!mask->GetValue(i))
+    if (!mask->GetValue(i) &&
+      !(ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT)))
     {
       outside.push_back(i);
     }

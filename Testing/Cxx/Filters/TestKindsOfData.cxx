@@ -352,4 +352,17 @@ TEST(KindsOfData, PrecisionOfPoints)
   }
 }
 
+TEST(KindsOfData, HiddenPointsAreNotOffTheSurface)
+{
+  const MeshPair pair = MakeClosedPair(2, 5);
+  const auto cloud = MakeCloud(PointsOf(pair.Source));
+  cloud->GetPointData()->AddArray(
+    MakeGhosts(cloud->GetNumberOfPoints(), { 7 }, vtkDataSetAttributes::HIDDENPOINT));
+  const auto filter = MakeFilter(Smooth, pair, cloud);
+  Messages messages(filter);
+  EXPECT_FALSE(IsValid(Output(filter), 7));
+  EXPECT_TRUE(IsValid(Output(filter), 8));
+  EXPECT_EQ(messages.Warning(), "");
+}
+
 } // namespace
