@@ -173,6 +173,8 @@ class GdalRaster(Raster):
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         self.file = rasterio.open(input.path)
         self.bands, self.dtype, self.nodata = self.file.count, numpy.dtype(self.file.dtypes[0]), self.file.nodata
+        if self.dtype.kind == "c":
+            raise ValueError("its pixels are complex numbers")
         if not (self.nodata is None or can_hold(self.dtype, self.nodata)):
             self.nodata = None
         self.palette, kinds = None, [kind.name for kind in self.file.colorinterp]

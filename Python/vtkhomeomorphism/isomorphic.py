@@ -144,7 +144,8 @@ def isomorphic_triangulation(
         Corresponding points; in 3-space those of each in a plane. Or two vtkPolyData with the same cells: polygons and
         closed lines are outlines, other lines segments.
     outlines : sequence of sequences of int
-        Closed polygons of point ids: outlines, holes, islands in holes. Without, the domain is a frame around points.
+        Closed polygons of point ids: outlines, holes, islands in holes. The first point may be repeated at the end.
+        Without, the domain is a frame around points.
     segments : sequence of sequences of int
         Polygonal lines of point ids that must become edges.
     frame : pair of (least x, largest x, least y, largest y)
@@ -182,6 +183,8 @@ def isomorphic_triangulation(
             target_minimum_angle=target_minimum_angle, maximum_added_points=maximum_added_points,
             maximum_triangle_size=maximum_triangle_size,
             leave_out_conflicting_segments=leave_out_conflicting_segments, names=names))
+    # Rings may name their first point again at the end.
+    outlines = [ring[:-1] if len(ring) > 3 and ring[0] == ring[-1] else ring for ring in map(list, outlines)]
     if domain == "automatic" and not isinstance(source, vtkPolyData):
         domain = "outline" if len(outlines) else "frame"
     algorithm = vtkIsomorphicTriangulation()

@@ -19,6 +19,7 @@ import collections
 import contextlib
 import csv
 import functools
+import io
 import json
 import os
 import re
@@ -76,7 +77,7 @@ def _collect(rows, path: str, **facts) -> Landmarks:
 
 def _read_table(lines: List[str], path: str, columns: Sequence[str], header: Sequence[str] = ()):
     """The rows of a table, as _collect takes them. Without a header, that is the first row."""
-    first, result = next(line for line in lines if line.strip()), []
+    first, result = next((line for line in lines if line.strip()), ""), []
     try:
         for line, record in records(lines, next((s for s in ";\t" if first.count(s) >= 3), ",")):
             where, record = f"{path}, line {line}", list(map(str.strip, record))
@@ -138,6 +139,7 @@ def _read_iiif(text: str, path: str) -> Landmarks:
 
 
 def _read_csv(lines: List[str], path: str) -> Landmarks:
+    lines = ["\n" if line.startswith("#") else line for line in lines]
     start = next(i for i, line in enumerate(lines) if line.strip())
     first = [name.strip().lower() for name in re.split("[,;\t]", lines[start].replace('"', ""))]
     if len(first) == 6 and first[1] in ("true", "false"):
@@ -153,14 +155,23 @@ def _read_csv(lines: List[str], path: str) -> Landmarks:
     return _collect(_read_table(lines, path, _COLUMNS, header), path)
 
 
+def _read_text(path) -> str:
+    """The text of a file in UTF-8, or else in Latin-1, in which older programs write names."""
+    with open(path, "rb") as file:
+        data = file.read()
+    if b"\0" in data:
+        raise LandmarkFileError(f"{path}: not a text file in UTF-8 (byte {data.index(bytes(1))})")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    return io.StringIO(text, newline=None).read()
+
+
 def read_landmarks(path) -> Landmarks:
     """Reads a file of landmark pairs. Raises LandmarkFileError if the file is not one of the formats above or has fewer
     than three usable landmarks, and OSError if it cannot be read."""
-    try:
-        with open(path, encoding="utf-8-sig") as file:
-            text = file.read()
-    except UnicodeDecodeError as error:
-        raise LandmarkFileError(f"{path}: not a text file (byte {error.start})") from None
+    text = _read_text(path)
     content = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     if not content:
         raise LandmarkFileError(f"{path}: no landmarks")
@@ -174,16 +185,15 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
     """Reads constraint lines: one polyline a line, as identifiers of landmarks separated by blanks or commas. Returns
     indices into names."""
     index, lines = {name: i for i, name in enumerate(names)}, []
-    with open(path, encoding="utf-8-sig") as file:
-        for number, text in enumerate(file, 1):
-            ids = text.replace(",", " ").split()
-            if not ids or ids[0].startswith("#"):
-                continue
-            unknown = [i for i in ids if i not in index]
-            if unknown or len(ids) < 2:
-                what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs two landmarks"
-                raise LandmarkFileError(f"{path}, line {number}: {what}")
-            lines.append([index[i] for i in ids])
+    for number, text in enumerate(_read_text(path).splitlines(), 1):
+        ids = text.replace(",", " ").split()
+        if not ids or ids[0].startswith("#"):
+            continue
+        unknown = [i for i in ids if i not in index]
+        if unknown or len(ids) < 2:
+            what = f"there is no landmark {', '.join(unknown[:5])}" if unknown else "a line needs two landmarks"
+            raise LandmarkFileError(f"{path}, line {number}: {what}")
+        lines.append([index[i] for i in ids])
     return lines
 
 
@@ -196,7 +206,9 @@ def is_landmark_file(path) -> bool:
     with open(path, "rb") as file:
         start = file.read(1 << 20)
     if suffix == ".csv":
-        return max(map(start.split(b"\n", 1)[0].count, (b",", b";", b"\t"))) >= 3
+        lines = start.lstrip(b"\xef\xbb\xbf").splitlines()
+        first = next((line for line in lines if line.strip() and not line.startswith(b"#")), b"")
+        return max(map(first.count, (b",", b";", b"\t"))) >= 3
     words = (b"resourceCoords", b"pixelCoords", b"AnnotationPage")
     return b"FeatureCollection" in start and any(word in start for word in words)
 

@@ -596,5 +596,7 @@ def test_geotiff_refusals(dhm, shift):
         dhm.refuse(USAGE, "warp", "shift.json", "rgb.tif", "-o", "new.tif", "--resolution", tiny, says="--resolution")
     write_geotiff(dhm.path("other.tif"), rgb, 3384500, 6673000, 10, crs="EPSG:3067")
     dhm.refuse(REFUSED, "warp", "shift.json", "other.tif", "-o", "new.tif", says=("EPSG:3067", "EPSG:2393"))
+    write_geotiff(dhm.path("complex.tif"), rgb.astype("c8"), 3384500, 6673000, 10)
+    dhm.refuse(FILE, "warp", "shift.json", "complex.tif", "-o", "new.tif", says=("complex.tif", "complex numbers"))
     write_geotiff(dhm.path("away.tif"), rgb, 0, 0, 10)
     dhm.refuse(REFUSED, "warp", "shift.json", "away.tif", "-o", "new.tif", says="do not overlap")

@@ -81,6 +81,8 @@ def test_outlines_and_added_points():
     assert pair.added_points == 0
     for points in (pair.source, pair.target):
         assert numpy.isclose(_doubled_areas(points, pair.triangles).sum() / 2, 5)
+    closed = isomorphic_triangulation(outline, other, outlines=[[*range(6), 0]], maximum_added_points=0)
+    assert numpy.array_equal(closed.triangles, pair.triangles)
 
 
 def test_conflicting_segments_are_named_or_left_out():

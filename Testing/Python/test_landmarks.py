@@ -115,6 +115,9 @@ def test_bigwarp_leaves_out_and_names_points_set_on_one_side(tmp_path):
         ("g.json", "{", "not valid JSON"),
         ("h.json", "[" * 100000, "not valid JSON"),
         ("i.csv", "", "no landmarks"),
+        ("j.csv", "id,source_x,source_y,target_x,target_y\n", "0 usable"),
+        ("k.points", "mapX,mapY,pixelX,pixelY,enable\n", "0 usable"),
+        ("l.csv", "1,2,3,4\0", "not a text file"),
     ],
 )
 def test_refusals_name_file_and_line(tmp_path, name, text, where):
@@ -122,6 +125,20 @@ def test_refusals_name_file_and_line(tmp_path, name, text, where):
     with pytest.raises(LandmarkFileError) as refusal:
         read_landmarks(path)
     assert name in str(refusal.value) and where in str(refusal.value)
+
+
+def test_comments_and_names_in_other_encodings(tmp_path):
+    text = ("# of 1990\nid,source_x,source_y,target_x,target_y\n\nKöln,0.25,1.5,100,200\n# moved\n"
+            "b,10,2,110,190\nc,5,9,105,180\n")
+    for encoding in ("utf-8", "utf-8-sig", "latin-1"):
+        for ends in ("\n", "\r\n", "\r"):
+            path = write(tmp_path, "a.csv", text.replace("\n", ends), encoding)
+            assert is_landmark_file(path)
+            landmarks = read_landmarks(path)
+            expect_points(landmarks)
+            assert landmarks.names == ["Köln", "b", "c"]
+            lines = write(tmp_path, "lines.txt", "c Köln" + ends, encoding)
+            assert read_lines(lines, landmarks.names) == [[2, 0]]
 
 
 def test_lines_refer_to_landmarks_by_name(tmp_path):
