@@ -69,58 +69,28 @@ Vector<T> Apply(const Matrix2& m, const Vector<T>& v)
     T(m.ImageOfX.y) * v.x + T(m.ImageOfY.y) * v.y };
 }
 
-// From each corner to the centroid.
-template <typename T>
-std::array<Vector<T>, 3> ToCentroid(const std::array<Vector2, 3>& points)
+// The corners of an element and D's derivatives there, in the plane's axes or in the frame of the
+// right angle: in a thin element, the plane's coordinates would round the direction of the short
+// leg.
+struct ElementFrame
 {
-  const T third = T(1.0) / T(3.0);
-  std::array<Vector<T>, 3> toCentroid;
-  for (int i = 0; i < 3; ++i)
-  {
-    const Vector<T> here(points[i]);
-    toCentroid[i] = third *
-      ((Vector<T>(points[NextCorner(i)]) - here) + (Vector<T>(points[PreviousCorner(i)]) - here));
-  }
-  return toCentroid;
-}
+  std::array<Vector2, 3> Points;
+  /// By the axes.
+  std::array<Matrix2, 3> Gradients;
 
-template <typename T>
-CubicOrdinates<Vector<T>> MakeOrdinates(
-  const CubicElement& element, const std::array<Vector<T>, 3>& toCentroid)
-{
-  const T third = T(1.0) / T(3.0);
-  const T half = T(0.5);
-  CubicOrdinates<Vector<T>> b;
-  for (int i = 0; i < 3; ++i)
+  explicit ElementFrame(const CubicElement& element)
+    : Points(element.Points)
+    , Gradients(element.Gradients)
   {
-    b.Corner[i] = Vector<T>(element.Values[i]);
-    b.Inner[i] = b.Corner[i] + third * Apply(element.Gradients[i], toCentroid[i]);
+    const RightAngle& right = element.Right;
+    for (int i = 0; i < 3 && right.Corner >= 0; ++i)
+    {
+      this->Points[i] = { i == right.Start ? -right.AlongTangent : 0.0,
+        i == right.Start || i == right.Corner ? 0.0 : right.AlongNormal };
+      this->Gradients[i] = { right.ByTangent[i], right.ByNormal[i] };
+    }
   }
-  for (int k = 0; k < 3; ++k)
-  {
-    const int i = NextCorner(k);
-    const int j = PreviousCorner(k);
-    const Vector<T> edge = Vector<T>(element.Points[j]) - Vector<T>(element.Points[i]);
-    const Vector<T> slopes = Apply(element.Gradients[i], edge) + Apply(element.Gradients[j], edge);
-    b.AfterStart[k] = b.Corner[i] + third * Apply(element.Gradients[i], edge);
-    b.BeforeEnd[k] = b.Corner[j] - third * Apply(element.Gradients[j], edge);
-    // From the edge's midpoint to the centroid. In this direction the derivative at the midpoint is
-    // the mean of the normal derivatives at the ends plus the cubic's own derivative along the
-    // edge.
-    const Vector<T> toMiddle = toCentroid[i] - half * edge;
-    const T along = Dot(toMiddle, edge) / Dot(edge, edge);
-    b.Middle[k] = half * (b.AfterStart[k] + b.BeforeEnd[k]) +
-      half * third *
-        (Apply(element.Gradients[i], toMiddle) + Apply(element.Gradients[j], toMiddle)) +
-      along * ((b.Corner[j] - b.Corner[i]) - half * slopes);
-  }
-  for (int i = 0; i < 3; ++i)
-  {
-    b.Spoke[i] = third * (b.Inner[i] + b.Middle[NextCorner(i)] + b.Middle[PreviousCorner(i)]);
-  }
-  b.Center = third * (b.Spoke[0] + b.Spoke[1] + b.Spoke[2]);
-  return b;
-}
+};
 
 // A matrix by the images of two axes: the plane's, or those of a right angle.
 template <typename T>
@@ -535,20 +505,42 @@ Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>
 //------------------------------------------------------------------------------
 CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element)
 {
-  const CubicOrdinates<Vector<double>> b =
-    MakeOrdinates<double>(element, ToCentroid<double>(element.Points));
-  CubicOrdinates<Vector2> ordinates;
+  const ElementFrame frame(element);
+  constexpr double third = 1.0 / 3.0;
+  constexpr double half = 0.5;
+  std::array<Vector2, 3> toCentroid;
+  CubicOrdinates<Vector2> b;
   for (int i = 0; i < 3; ++i)
   {
-    ordinates.Corner[i] = element.Values[i];
-    ordinates.AfterStart[i] = { b.AfterStart[i].x, b.AfterStart[i].y };
-    ordinates.BeforeEnd[i] = { b.BeforeEnd[i].x, b.BeforeEnd[i].y };
-    ordinates.Inner[i] = { b.Inner[i].x, b.Inner[i].y };
-    ordinates.Middle[i] = { b.Middle[i].x, b.Middle[i].y };
-    ordinates.Spoke[i] = { b.Spoke[i].x, b.Spoke[i].y };
+    const Vector2& here = frame.Points[i];
+    toCentroid[i] =
+      third * ((frame.Points[NextCorner(i)] - here) + (frame.Points[PreviousCorner(i)] - here));
+    b.Corner[i] = element.Values[i];
+    b.Inner[i] = b.Corner[i] + third * (frame.Gradients[i] * toCentroid[i]);
   }
-  ordinates.Center = { b.Center.x, b.Center.y };
-  return ordinates;
+  for (int k = 0; k < 3; ++k)
+  {
+    const int i = NextCorner(k);
+    const int j = PreviousCorner(k);
+    const Vector2 edge = frame.Points[j] - frame.Points[i];
+    const Vector2 slopes = frame.Gradients[i] * edge + frame.Gradients[j] * edge;
+    b.AfterStart[k] = b.Corner[i] + third * (frame.Gradients[i] * edge);
+    b.BeforeEnd[k] = b.Corner[j] - third * (frame.Gradients[j] * edge);
+    // From the edge's midpoint to the centroid. In this direction the derivative at the midpoint is
+    // the mean of the normal derivatives at the ends plus the cubic's own derivative along the
+    // edge.
+    const Vector2 toMiddle = toCentroid[i] - half * edge;
+    const double along = Dot(toMiddle, edge) / Dot(edge, edge);
+    b.Middle[k] = half * (b.AfterStart[k] + b.BeforeEnd[k]) +
+      half * third * (frame.Gradients[i] * toMiddle + frame.Gradients[j] * toMiddle) +
+      along * ((b.Corner[j] - b.Corner[i]) - half * slopes);
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    b.Spoke[i] = third * (b.Inner[i] + b.Middle[NextCorner(i)] + b.Middle[PreviousCorner(i)]);
+  }
+  b.Center = third * (b.Spoke[0] + b.Spoke[1] + b.Spoke[2]);
+  return b;
 }
 
 //------------------------------------------------------------------------------

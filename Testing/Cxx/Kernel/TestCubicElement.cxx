@@ -349,8 +349,43 @@ TEST(CubicElement, RightAnglesChangeNothingButRounding)
     const Barycentric l = random.Weights();
     const Value one(element, l);
     const Value other(right, l);
-    EXPECT_LT(Norm(one.Point - other.Point), 1e-14);
+    EXPECT_LT(Norm(one.Point - other.Point), 1e-14 / std::min(1.0, height));
     EXPECT_LT(std::sqrt(SquaredNorm(one.Derivative - other.Derivative)), 1e-13 / height / height);
+  }
+}
+
+TEST(CubicElement, ThinRightAnglesReproduceQuadratics)
+{
+  Elements random(34);
+  for (int n = 0; n < 500; ++n)
+  {
+    const double leg = random.Uniform(0.5, 2.0);
+    const double height = std::exp2(random.Uniform(-60.0, 0.0));
+    const double angle = random.Uniform(-3.0, 3.0);
+    const Vector2 tangent{ std::cos(angle), std::sin(angle) };
+    const Vector2 normal{ -tangent.y, tangent.x };
+    // By t along the tangent and u along the normal, from 0 to 1: they change alike.
+    const Vector2 tt = random.Vector(1.0);
+    const Vector2 tu = random.Vector(1.0);
+    const Vector2 uu = random.Vector(1.0);
+    const double corners[3][2] = { { 0.0, 0.0 }, { leg, 0.0 }, { leg, 1.0 } };
+    const auto valueAt = [&](double t, double u) {
+      return (t * t) * tt + (t * u) * tu + (u * u) * uu;
+    };
+    CubicElement element{ {}, {}, {}, {}, {} };
+    element.Right = { 1, 0, tangent, normal, leg, height, {}, {} };
+    for (int i = 0; i < 3; ++i)
+    {
+      const auto [t, u] = corners[i];
+      element.Points[i] = t * tangent + (height * u) * normal;
+      element.Values[i] = valueAt(t, u);
+      element.Right.ByTangent[i] = (2.0 * t) * tt + u * tu;
+      element.Right.ByNormal[i] = (1.0 / height) * (t * tu + (2.0 * u) * uu);
+      element.Gradients[i] = OuterProduct(element.Right.ByTangent[i], tangent) +
+        OuterProduct(element.Right.ByNormal[i], normal);
+    }
+    const Barycentric l = random.Weights();
+    EXPECT_LT(Norm(Value(element, l).Point - valueAt(leg * (l[1] + l[2]), l[2])), 1e-13) << height;
   }
 }
 

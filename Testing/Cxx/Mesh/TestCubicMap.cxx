@@ -280,6 +280,55 @@ TEST(CubicMap, NeedlesAreCertified)
   }
 }
 
+TEST_P(CubicMaps, CertifiedTrianglesBesideOthersStayInTheTarget)
+{
+  // A triangle on the edge of another one, so thin in the source that often one of them is not
+  // certified.
+  std::mt19937_64 random(35);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int certified = 0;
+  for (int n = 0; n < 200; ++n)
+  {
+    const double turn = 6.283185307179586 * uniform(random);
+    const Vector2 shift{ uniform(random), uniform(random) };
+    const Vector2 along{ std::cos(turn), std::sin(turn) };
+    const auto place = [&](double x, double y) {
+      return shift + x * along + y * Vector2{ -along.y, along.x };
+    };
+    const double foot = uniform(random);
+    const double shear = n % 2 == 0 ? 2.0 : std::pow(10.0, -12.0 * uniform(random));
+    const double height = std::pow(10.0, n % 2 == 0 ? -8.0 : -7.0 - 9.0 * uniform(random));
+    const auto sheared = [&](double x) { return x + shear * (uniform(random) - 0.5); };
+    PlanarPair pair;
+    pair.Source = { place(0.0, 0.0), place(1.0, 0.0), place(foot, height), place(0.5, -1.0) };
+    pair.Target = { { 0.0, 0.0 }, { 1.0, 0.0 }, { sheared(foot), 0.5 + uniform(random) },
+      { sheared(0.5), -1.0 } };
+    pair.Triangles = { { 0, 1, 2 }, { 1, 0, 3 } };
+    pair.FindNeighbors();
+    const CubicMap map(pair, Options(GetParam()));
+    CubicTriangle prepared = map.Prepare();
+    for (const Sample& sample : RandomSamples(pair, static_cast<std::uint64_t>(n), 400))
+    {
+      if (!map.IsCertified(sample.Triangle))
+      {
+        continue;
+      }
+      ++certified;
+      const Vector2 image = map.MapPoint(sample.Triangle, sample.In(pair, pair.Source), prepared);
+      double outside = 1.0;
+      for (int t = 0; t < 2; ++t)
+      {
+        const Barycentric l =
+          ToBarycentric(pair.GetTargetCorners(t), image - pair.Target[pair.Triangles[t][0]]);
+        outside = std::min(outside, -std::min({ l[0], l[1], l[2] }));
+      }
+      // Rounding of the point, stretched as much as the thin triangle.
+      ASSERT_LT(outside, 1e-14 + 1e-13 / height) << n << " " << height;
+    }
+  }
+  EXPECT_GT(certified, 20000);
+}
+
 TEST(CubicMap, FarFromTheOrigin)
 {
   // Steps of 2^-28 there: the same differences.
