@@ -42,6 +42,24 @@ bool IsPositive(const PlanarPair& pair, int triangle)
   return isPositive(pair.GetSourceCorners(triangle)) && isPositive(pair.GetTargetCorners(triangle));
 }
 
+// Whether all elements of a triangle that is cut are thicker than the rounding of points: cubics
+// grow without bound where a point is taken far beyond its element.
+bool IsResolved(const CubicTemplate& cubicTemplate, int triangle)
+{
+  constexpr double leastUlps = 4.0;
+  const PlanarPair& pair = cubicTemplate.GetPair();
+  double coordinates = 0.0;
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+  {
+    const std::int32_t corner = pair.Triangles[triangle][k];
+    coordinates = std::max(coordinates, MaxNorm(pair.Source[corner]));
+    thinnest = std::min(
+      { thinnest, cubicTemplate.GetRadius(corner), cubicTemplate.GetHeights(triangle)[k] });
+  }
+  return thinnest >= leastUlps * std::numeric_limits<double>::epsilon() * coordinates;
+}
+
 // A cubic map on a triangle: ten control points, by weights of the corners.
 struct CubicPatch
 {
@@ -317,7 +335,8 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
       bool isPositive = true;
       for (int child = firstChild; child < firstChild + children; ++child)
       {
-        isPositive = isPositive && IsPositive(this->GetFine(), child);
+        isPositive = isPositive && IsPositive(this->GetFine(), child) &&
+          (this->IsWhole(child) || IsResolved(*this->Template, child));
       }
       if (!isPositive)
       {

@@ -329,6 +329,32 @@ TEST_P(CubicMaps, CertifiedTrianglesBesideOthersStayInTheTarget)
   EXPECT_GT(certified, 20000);
 }
 
+TEST_P(CubicMaps, TrianglesAsThinAsRoundingAreNotCertified)
+{
+  // Two neighbors in the middle of a grid are a few rounding units apart in the source.
+  for (const double ulps : { 1.0, 4.0, 30.0, 1000.0, 1e5 })
+  {
+    SCOPED_TRACE(ulps);
+    std::mt19937_64 random(36);
+    PlanarPair pair = JitteredGrid(random, 8, 0.0);
+    pair.Source[41].x = pair.Source[40].x + ulps * 0x1p-53;
+    const CubicMap map(pair, Options(GetParam()));
+    CubicTriangle prepared = map.Prepare();
+    for (Sample sample : RandomSamples(pair, 37, 300))
+    {
+      for (sample.Triangle = 0; sample.Triangle < pair.GetNumberOfTriangles(); ++sample.Triangle)
+      {
+        if (map.IsCertified(sample.Triangle))
+        {
+          const Vector2 image =
+            map.MapPoint(sample.Triangle, sample.In(pair, pair.Source), prepared);
+          ASSERT_LT(Norm(image - Vector2{ 0.5, 0.5 }), 0.8) << sample.Triangle;
+        }
+      }
+    }
+  }
+}
+
 TEST(CubicMap, FarFromTheOrigin)
 {
   // Steps of 2^-28 there: the same differences.
