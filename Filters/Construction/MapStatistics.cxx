@@ -112,10 +112,14 @@ MapSamples SampleMap(const Homeomorphism& map, const Homeomorphism& linear)
         notPositive[n] += !(determinant > 0.0);
         Vector3 image;
         Vector3 linearImage;
-        map.MapPoint(Domain::Source, point, image.data());
+        if (!map.MapPoint(Domain::Source, point, image.data()))
+        {
+          // Where a Cubic map is not certified.
+          continue;
+        }
         linear.MapPoint(Domain::Source, point, linearImage.data());
         const double deviation = Length(Difference(image, linearImage));
-        if (k == 0 || deviation > samples.Deviations[n])
+        if (!(deviation <= samples.Deviations[n]))
         {
           samples.Deviations[n] = deviation;
           farthest[n] = k;
@@ -185,10 +189,9 @@ SecondDifference MeasureSecondDifference(
       const TriangleIndex triangle = valid[static_cast<std::size_t>(at)];
       const SurfacePoint point = MakePoint(geometry, triangle, MakeWeights(i));
       Vector3 image;
-      map.MapPoint(Domain::Source, point, image.data());
       const Vector3 center = geometry.FromFrame(triangle, point.Point);
       std::array<Vector3, 3> seconds;
-      bool isInside = true;
+      bool isInside = map.MapPoint(Domain::Source, point, image.data());
       for (std::size_t k = 0; k < 3 && isInside; ++k)
       {
         Vector3 sum = Scaled(image, -2.0);
@@ -200,11 +203,11 @@ SecondDifference MeasureSecondDifference(
             position.data());
           const SurfacePoint neighbor =
             map.Locate(Domain::Source, position.data(), tolerance, triangle);
-          isInside = isInside && neighbor.Triangle >= 0;
+          Vector3 neighborImage;
+          isInside = isInside && neighbor.Triangle >= 0 &&
+            map.MapPoint(Domain::Source, neighbor, neighborImage.data());
           if (isInside)
           {
-            Vector3 neighborImage;
-            map.MapPoint(Domain::Source, neighbor, neighborImage.data());
             sum = Sum(sum, 1.0, neighborImage);
           }
         }

@@ -257,6 +257,17 @@ TEST(TriangulationPairReport, WhatCubicCannotNumberIsNotMeasured)
   EXPECT_EQ(fine->GetStatistic("CubicUncertifiedTriangles"), -1.0);
 }
 
+TEST(TriangulationPairReport, WhatCubicDoesNotCertifyHasNoImage)
+{
+  // Two neighbors in the middle of a grid are a rounding unit apart in the source.
+  std::vector<Point> source = GridPoints(8, 0, 0.0);
+  source[41][0] = std::nextafter(source[40][0], 8.0);
+  const auto report = Report({ MakeMesh(source, GridTriangles(8)), RegularGrid(8) });
+  EXPECT_GT(report->GetStatistic("CubicUncertifiedTriangles"), 0.0);
+  EXPECT_GT(report->GetStatistic("CubicNotPositive"), 0.0);
+  EXPECT_LT(report->GetStatistic("CubicDeviationFromLinear"), 1.0);
+}
+
 TEST(TriangulationPairReport, DoesNotDependOnThreadsUnitsOrReflections)
 {
   const MeshPair pair = MakePlanarPair(4, 23);
