@@ -49,13 +49,14 @@ public:
     thread_local const auto row = std::make_unique<MappedRow>();
     const std::uint64_t key =
       4 * this->Version + 2 * std::uint64_t(from) + std::uint64_t(std::is_same_v<Real, double>);
-    // A block keeps a Cubic map, which must not outlive the transform.
-    const int i = !this->Map || this->Map->GetCubic()
-      ? -1
-      : row->Find(point, key, [this, from](PointBlock& block, LocationHint& hint) {
-          this->Map->LocateBlock(from, block, this->GetTolerance<Real>(from), hint);
-          this->Map->MapBlock(from, block);
-        });
+    const int i =
+      !this->Map ? -1 : row->Find(point, key, [this, from](PointBlock& block, LocationHint& hint) {
+        this->Map->LocateBlock(from, block, this->GetTolerance<Real>(from), hint);
+        this->Map->MapBlock(from, block);
+        // The thread's block must not keep a map that the transform has given up.
+        block.PreparedCubics.reset();
+        block.Cubic.reset();
+      });
     if (i < 0)
     {
       this->MapPoint(from, in, out, nullptr);
