@@ -27,7 +27,16 @@
 namespace
 {
 
-const std::array<const char*, 3> systemNames{ "Linear", "Contour", "Smooth" };
+struct NamedSystem
+{
+  const char* Name;
+  int System;
+};
+
+const std::array<NamedSystem, 4> systems{ { { "Linear", vtkHomeomorphismTransform::LINEAR },
+  { "Contour", vtkHomeomorphismTransform::CONTOUR },
+  { "Smooth", vtkHomeomorphismTransform::SMOOTH },
+  { "CubicLeast", vtkHomeomorphismTransform::CUBIC } } };
 constexpr vtkIdType numberOfLandmarks = 200;
 
 void AddReslice(
@@ -71,13 +80,14 @@ vtkSmartPointer<vtkThinPlateSplineTransform> MakeSpline(const Workload& workload
 
 void AddImageRows(const Workload& workload, Rows& rows)
 {
-  for (int system = 0; system < 3; ++system)
+  for (const NamedSystem& system : systems)
   {
+    // Backwards: Cubic's inverse is not the map from the target mesh to the source mesh.
     vtkNew<vtkHomeomorphismTransform> transform;
-    transform->SetSource(workload.Source);
-    transform->SetTarget(workload.Target);
-    transform->SetCoordinateSystem(system);
-    AddReslice(workload, systemNames[system], transform, rows);
+    transform->SetSource(workload.Target);
+    transform->SetTarget(workload.Source);
+    transform->SetCoordinateSystem(system.System);
+    AddReslice(workload, system.Name, transform->GetInverse(), rows);
 
     // Here the target mesh covers the data, and the source mesh covers the grid.
     auto grid = vtkSmartPointer<vtkImageData>::New();
@@ -87,8 +97,8 @@ void AddImageRows(const Workload& workload, Rows& rows)
     resample->SetTargetData(workload.Source);
     resample->SetDataObject(workload.Image);
     resample->SetGridData(grid);
-    resample->SetCoordinateSystem(system);
-    Row& row = rows[std::string("resample/") + systemNames[system]];
+    resample->SetCoordinateSystem(system.System);
+    Row& row = rows[std::string("resample/") + system.Name];
     row.Before = [grid](Task&) { grid->Modified(); };
     row.Run = [resample](Task&) { resample->Update(); };
     row.After = [resample](Task& task) {

@@ -165,7 +165,7 @@ class Benchmark:
         print(f"image: {size} x {size}", flush=True)
         with Program(self.program, workload) as program:
             rows = [ProgramRow(program, f"{way}/{system}", threads, numpy.uint8)
-                    for threads in (1, 2) for way in ("reslice", "resample") for system in SYSTEMS]
+                    for threads in (1, 2) for way in ("reslice", "resample") for system in (*SYSTEMS, CUBIC[1])]
             rows += [ProgramRow(program, "reslice/ThinPlateSpline", threads, numpy.uint8) for threads in (1, 2)]
             rows.append(image_row(workload))
             measurements = measure(rows, {"image": size * size}, self.repetitions, "image")
@@ -175,7 +175,7 @@ class Benchmark:
         inside = (slice(2, -2), slice(2, -2))
         images = {name: m.result.reshape(size, size, 3)[inside].astype(float) for name, m in single.items()}
         images["warp/PiecewiseAffineTransform"] *= 255.0
-        for system in SYSTEMS:
+        for system in (*SYSTEMS, CUBIC[1]):
             self.compare_images(images, f"reslice/{system}", f"resample/{system}")
         self.compare_images(images, "reslice/Linear", "warp/PiecewiseAffineTransform")
 
