@@ -17,9 +17,10 @@ namespace homeomorphism
 namespace
 {
 
-/// What an open face costs: this for each edge, and something once, so that four edges make 1.
+/// What an open face costs: this for each edge but one, and something once, so that a triangle
+/// costs nothing.
 constexpr float EdgeCost = 0.5F;
-constexpr float FaceCost = 1.0F - 4.0F * EdgeCost;
+constexpr float FaceCost = -2.0F * EdgeCost;
 
 /// For each corner of a polygon the others that are visible from it, ascending: those to which a
 /// segment leads through the inside and meets no corner. Takes as many steps as triangles are
@@ -110,7 +111,6 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
     int Third = -1;
   };
   std::vector<std::vector<Part>> parts(size);
-  std::vector<std::vector<int>> startsByLength(size);
   std::vector<int> both;
   for (int i = 0; i < m; ++i)
   {
@@ -120,54 +120,49 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
     for (auto j = std::upper_bound(both.begin(), both.end(), i); j != both.end(); ++j)
     {
       parts[i].push_back({ *j });
-      startsByLength[*j - i].push_back(i);
     }
   }
-  const auto find = [&](int i, int j) -> Part* {
-    const auto at = std::lower_bound(parts[i].begin(), parts[i].end(), j,
-      [](const Part& part, int end) { return part.End < end; });
-    return at != parts[i].end() && at->End == j ? &*at : nullptr;
-  };
 
-  // The cost of the cheapest walks along chords from each corner to each later one.
+  // The cost of the cheapest walks along chords to each corner from each earlier one.
   std::vector<float> walks(size * size, std::numeric_limits<float>::infinity());
-  const auto walk = [&](int i, int j) -> float& { return walks[i * size + j]; };
-  for (int i = 0; i < m; ++i)
+  // Of each corner, the part between it and the current one, if there is a chord, and where the
+  // parts of later ones begin.
+  std::vector<Part*> ending(size, nullptr);
+  std::vector<std::size_t> passed(size, 0);
+  for (int j = 0; j < m; ++j)
   {
-    walk(i, i) = 0.0F;
-  }
-  for (int length = 1; length < m; ++length)
-  {
-    for (int i = 0; i + length < m; ++i)
+    float* const walk = &walks[static_cast<std::size_t>(j) * size];
+    walk[j] = 0.0F;
+    for (int i = j - 1; i >= 0; --i)
     {
-      float& best = walk(i, i + length);
-      for (const Part& part : parts[i])
+      Part* const first = parts[i].data();
+      Part* const last = first + passed[i];
+      for (const Part* part = first; part != last; ++part)
       {
-        if (part.End >= i + length)
-        {
-          break;
-        }
-        best = std::min(best, part.Cost + EdgeCost + walk(part.End, i + length));
+        walk[i] = std::min(walk[i], part->Cost + EdgeCost + walk[part->End]);
       }
-    }
-    for (const int i : startsByLength[length])
-    {
-      const int j = i + length;
-      Part& best = *find(i, j);
-      if (length > 1)
+      if (passed[i] == parts[i].size() || last->End != j)
       {
-        best.Cost = walk(i, j) + FaceCost;
+        ending[i] = nullptr;
+        continue;
+      }
+      Part& best = *last;
+      ++passed[i];
+      ending[i] = &best;
+      if (j - i > 1)
+      {
+        best.Cost = walk[i] + FaceCost;
         best.Quality = 0.0F;
-        for (const Part& first : parts[i])
+        for (const Part* part = first; part != last; ++part)
         {
-          const Part* second = first.End < j ? find(first.End, j) : nullptr;
+          const int k = part->End;
+          const Part* second = ending[k];
           if (!second)
           {
             continue;
           }
-          const int k = first.End;
-          const float cost = first.Cost + second->Cost;
-          const float least = std::min(first.Quality, second->Quality);
+          const float cost = part->Cost + second->Cost;
+          const float least = std::min(part->Quality, second->Quality);
           if (cost < best.Cost || (cost == best.Cost && least > best.Quality))
           {
             const float own2 = static_cast<float>(
@@ -182,10 +177,15 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
           }
         }
       }
-      walk(i, j) = std::min(walk(i, j), best.Cost + EdgeCost);
+      walk[i] = std::min(walk[i], best.Cost + EdgeCost);
     }
   }
 
+  const auto find = [&](int i, int j) -> const Part* {
+    const auto at = std::lower_bound(parts[i].begin(), parts[i].end(), j,
+      [](const Part& part, int end) { return part.End < end; });
+    return at != parts[i].end() && at->End == j ? &*at : nullptr;
+  };
   std::vector<std::array<int, 2>> chords;
   std::vector<std::array<int, 2>> open;
   if (find(0, m - 1))
@@ -218,7 +218,8 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
         {
           break;
         }
-        const float cost = edge.Cost + EdgeCost + walk(edge.End, j);
+        const float cost =
+          edge.Cost + EdgeCost + walks[static_cast<std::size_t>(j) * size + edge.End];
         if (cost < least)
         {
           least = cost;

@@ -292,6 +292,124 @@ TEST(FaceFilling, DissectionsAreCompleteWherePossible)
   EXPECT_LT(20, complete);
 }
 
+/// Whether a segment between corners leads through the inside of a polygon and meets no other
+/// corner.
+bool IsDiagonal(const std::vector<Vector2>& p, int i, int j)
+{
+  const int m = static_cast<int>(p.size());
+  bool inside = false;
+  const Vector2 middle = 0.5 * (p[i] + p[j]);
+  for (int a = 0; a < m; ++a)
+  {
+    const int b = (a + 1) % m;
+    const int fromA = Orientation(p[i], p[j], p[a]);
+    if (a != i && a != j && fromA == 0 && Dot(p[a] - p[i], p[a] - p[j]) < 0.0)
+    {
+      return false;
+    }
+    if (fromA * Orientation(p[i], p[j], p[b]) < 0 &&
+      Orientation(p[a], p[b], p[i]) * Orientation(p[a], p[b], p[j]) < 0)
+    {
+      return false;
+    }
+    const bool isAbove = p[a].y > middle.y;
+    if (isAbove != (p[b].y > middle.y) && (Orientation(p[a], p[b], middle) > 0) != isAbove)
+    {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+double CostOfFace(int corners)
+{
+  return 0.5 * (corners - 3);
+}
+
+/// What the faces of a dissection cost between the ends of a chord.
+double CostOfChords(const std::set<std::pair<int, int>>& chords, int i, int j)
+{
+  double cost = 0.0;
+  int corners = 1;
+  for (int at = i; at != j; ++corners)
+  {
+    int next = at == i ? j - 1 : j;
+    while (next > at + 1 && chords.count({ at, next }) == 0)
+    {
+      --next;
+    }
+    cost += next > at + 1 ? CostOfChords(chords, at, next) : 0.0;
+    at = next;
+  }
+  return cost + CostOfFace(corners);
+}
+
+/// The least that any dissection costs.
+double LeastCost(const PolygonPair& polygons)
+{
+  const int m = static_cast<int>(polygons[0].size());
+  constexpr double none = std::numeric_limits<double>::infinity();
+  std::vector<std::vector<double>> cheapest(m, std::vector<double>(m, none));
+  for (int length = 1; length < m; ++length)
+  {
+    for (int i = 0; i + length < m; ++i)
+    {
+      const int j = i + length;
+      if (length == 1)
+      {
+        cheapest[i][j] = 0.0;
+        continue;
+      }
+      if (length + 1 < m && !(IsDiagonal(polygons[0], i, j) && IsDiagonal(polygons[1], i, j)))
+      {
+        continue;
+      }
+      // By the number of chords from i to a corner.
+      std::vector<std::vector<double>> walks(length + 1, std::vector<double>(m, none));
+      walks[0][i] = 0.0;
+      for (int step = 0; step < length; ++step)
+      {
+        for (int a = i; a < j; ++a)
+        {
+          for (int b = a + 1; b <= j; ++b)
+          {
+            walks[step + 1][b] = std::min(walks[step + 1][b], walks[step][a] + cheapest[a][b]);
+          }
+        }
+      }
+      for (int steps = 2; steps <= length; ++steps)
+      {
+        cheapest[i][j] = std::min(cheapest[i][j], walks[steps][j] + CostOfFace(steps + 1));
+      }
+    }
+  }
+  return cheapest[0][m - 1];
+}
+
+TEST(FaceFilling, DissectionsLeaveTheLeast)
+{
+  Random random(6);
+  int open = 0;
+  for (int number = 0; number < 200; ++number)
+  {
+    const int corners = 6 + 2 * (number % 6);
+    CommonMap::Face face;
+    PolygonPair polygons;
+    ASSERT_TRUE(OnlyFace(Outline(RandomStar(corners, random),
+                           number % 3 == 0 ? Comb(corners, number) : RandomStar(corners, random)),
+      face, polygons));
+    std::set<std::pair<int, int>> chords;
+    for (const auto& chord : Dissect(polygons, face.Triangles, PairQuality::MinimumAngle))
+    {
+      chords.emplace(chord[0], chord[1]);
+    }
+    const double least = LeastCost(polygons);
+    EXPECT_EQ(least, CostOfChords(chords, 0, static_cast<int>(polygons[0].size()) - 1)) << number;
+    open += least > 0.0 ? 1 : 0;
+  }
+  EXPECT_LT(50, open);
+}
+
 /// A hexagon, its center, and six points between them, which may be displaced; points from a number
 /// on are added ones.
 PairMesh Rings(int firstAdded, const std::vector<std::array<int, 2>>& fixed, double displacement)
