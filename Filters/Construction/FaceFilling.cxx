@@ -399,9 +399,10 @@ bool FillWithFewPoints(const PolygonPair& polygons, const QualityMeasure& qualit
       }
       for (int k = i + 1; k < j && best.Points > 1; ++k)
       {
-        for (int l = k + 1; l < j; ++l)
+        const int before = 1 + part(i, k).Points;
+        for (int l = k + 1; l < j && before < best.Points; ++l)
         {
-          const int points = 1 + part(i, k).Points + part(k, l).Points + part(l, j).Points;
+          const int points = before + part(k, l).Points + part(l, j).Points;
           if (points < best.Points && isSimple(0, i, k, l, j) && isSimple(1, i, k, l, j))
           {
             best = { points, 0.0, { k, l } };

@@ -20,6 +20,10 @@ namespace homeomorphism
 namespace
 {
 
+/// Corners of a region up to which it is filled again, which takes up to the fourth power of their
+/// number of steps.
+constexpr std::size_t MostCorners = 250;
+
 /// An edge with a triangle of the region on its left.
 using HalfEdge = std::array<int, 2>;
 
@@ -202,6 +206,10 @@ bool RefillRegion(PairMesh& mesh, int vertex, int size, int turn)
     return false;
   }
   std::vector<int> corners = Walk(mesh, region, slit);
+  if (corners.size() > MostCorners)
+  {
+    return false;
+  }
   PolygonPair polygons;
   for (int d = 0; d < 2; ++d)
   {
