@@ -114,7 +114,9 @@ set(figure_sources
   Construction/ConstrainedTriangulation.cxx
   Construction/FaceDissection.cxx
   Construction/FaceFilling.cxx
+  Construction/FigureBoundary.cxx
   Construction/FigurePair.cxx
+  Construction/GridFilling.cxx
   Construction/IsomorphicTriangulation.cxx
   Construction/JointOptimization.cxx
   Construction/LandmarkResiduals.cxx
@@ -126,7 +128,9 @@ set(figure_headers
   Construction/ConstrainedTriangulation.h
   Construction/FaceDissection.h
   Construction/FaceFilling.h
+  Construction/FigureBoundary.h
   Construction/FigurePair.h
+  Construction/GridFilling.h
   Construction/IsomorphicTriangulation.h
   Construction/JointOptimization.h
   Construction/LandmarkResiduals.h

@@ -538,7 +538,7 @@ int vtkIsomorphicTriangulation::RequestData(
     });
   internal.Suspicious.resize(listed);
 
-  const PairStatistics statistics = MeasurePair(result.Points, result.Triangles);
+  const PairQualities statistics = MeasureQualities(result.Points, result.Triangles);
   vtkNew<vtkDoubleArray> angles;
   angles->SetName("MinimumAngle");
   vtkNew<vtkDoubleArray> distortions;

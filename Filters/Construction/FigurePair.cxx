@@ -160,4 +160,18 @@ std::string FigureProblem::Message(const std::vector<std::string>& names) const
   return text + Words(this->GetRemedy());
 }
 
+FigureProblem MakeProblem(
+  FigureProblem::Kind kind, int domain, std::vector<int> points, int line, int loop)
+{
+  FigureProblem problem;
+  problem.What = kind;
+  problem.Domain = domain;
+  problem.Count = static_cast<int>(points.size());
+  problem.Points = std::move(points);
+  problem.Points.resize(std::min<std::size_t>(problem.Points.size(), 10));
+  problem.Line = line;
+  problem.Loop = loop;
+  return problem;
+}
+
 } // namespace homeomorphism

@@ -113,6 +113,10 @@ struct FigureProblem
 
 using FigureProblems = std::vector<FigureProblem>;
 
+/// A problem that concerns some points: all are counted, and the first 10 are listed.
+FigureProblem MakeProblem(
+  FigureProblem::Kind kind, int domain, std::vector<int> points, int line = -1, int loop = -1);
+
 } // namespace homeomorphism
 
 #endif

@@ -6,6 +6,7 @@
 #include "CommonMap.h"
 #include "FaceDissection.h"
 #include "FaceFilling.h"
+#include "GridFilling.h"
 #include "JointOptimization.h"
 #include "Kernel/ExactSign.h"
 #include "PairMesh.h"
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <tuple>
@@ -54,154 +56,6 @@ constexpr int UnrelatedFew = 20;
 constexpr double Thin = 5.0;
 /// One that calls for points before other qualities do.
 constexpr double VeryThin = 1.0;
-/// How many ids a problem lists.
-constexpr std::size_t ListedIds = 10;
-
-struct Affine
-{
-  Vector2 SourceCenter;
-  Vector2 TargetCenter;
-  // Images of the unit vectors.
-  Vector2 X;
-  Vector2 Y;
-
-  Vector2 operator()(const Vector2& p) const
-  {
-    const Vector2 q = p - this->SourceCenter;
-    return this->TargetCenter + q.x * this->X + q.y * this->Y;
-  }
-};
-
-Vector2 Center(const std::vector<Vector2>& points)
-{
-  Vector2 center;
-  for (const Vector2& p : points)
-  {
-    center = center + (1.0 / static_cast<double>(points.size())) * p;
-  }
-  return center;
-}
-
-/// The affine map that fits best in the sense of least squares.
-Affine FitAffine(const std::array<std::vector<Vector2>, 2>& points)
-{
-  Affine fit{ Center(points[0]), Center(points[1]), {}, {} };
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  Vector2 x;
-  Vector2 y;
-  for (std::size_t i = 0; i < points[0].size(); ++i)
-  {
-    const Vector2 p = points[0][i] - fit.SourceCenter;
-    const Vector2 q = points[1][i] - fit.TargetCenter;
-    xx += p.x * p.x;
-    xy += p.x * p.y;
-    yy += p.y * p.y;
-    x = x + p.x * q;
-    y = y + p.y * q;
-  }
-  const double determinant = DifferenceOfProducts(xx, yy, xy, xy);
-  fit.X = (1.0 / determinant) * (yy * x - xy * y);
-  fit.Y = (1.0 / determinant) * (xx * y - xy * x);
-  return fit;
-}
-
-std::array<Vector2, 2> Bounds(const std::vector<Vector2>& points)
-{
-  std::array<Vector2, 2> bounds{ { points[0], points[0] } };
-  for (const Vector2& p : points)
-  {
-    bounds[0] = { std::min(bounds[0].x, p.x), std::min(bounds[0].y, p.y) };
-    bounds[1] = { std::max(bounds[1].x, p.x), std::max(bounds[1].y, p.y) };
-  }
-  return bounds;
-}
-
-std::array<Vector2, 2> Enlarged(const std::array<Vector2, 2>& bounds, double margin)
-{
-  return { { { bounds[0].x - margin, bounds[0].y - margin },
-    { bounds[1].x + margin, bounds[1].y + margin } } };
-}
-
-/// The typical distance between points: that of as many points spread over their bounds.
-double Spacing(const std::vector<Vector2>& points)
-{
-  const std::array<Vector2, 2> bounds = Bounds(points);
-  const Vector2 size = bounds[1] - bounds[0];
-  const double n = static_cast<double>(points.size());
-  return std::max(std::sqrt(size.x / n * size.y), std::max(size.x, size.y) / n);
-}
-
-std::vector<Vector2> Corners(const std::array<Vector2, 2>& r)
-{
-  return { r[0], { r[1].x, r[0].y }, r[1], { r[0].x, r[1].y } };
-}
-
-bool IsInside(const Vector2& p, const std::vector<Vector2>& convex, int sense)
-{
-  for (std::size_t i = 0; i < convex.size(); ++i)
-  {
-    if (sense * Orientation(convex[i], convex[(i + 1) % convex.size()], p) <= 0)
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Whether p, on the line of a and b, lies strictly between them.
-bool IsBetween(const Vector2& p, const Vector2& a, const Vector2& b)
-{
-  return std::make_pair(std::min(a.x, b.x), std::min(a.y, b.y)) <= std::make_pair(p.x, p.y) &&
-    (p.x != a.x || p.y != a.y) && (p.x != b.x || p.y != b.y) && p.x <= std::max(a.x, b.x) &&
-    p.x >= std::min(a.x, b.x) && p.y >= std::min(a.y, b.y) && p.y <= std::max(a.y, b.y);
-}
-
-/// All points on the boundary of the convex hull, counterclockwise from the least x.
-std::vector<int> Hull(const std::vector<Vector2>& points)
-{
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return std::make_pair(points[a].x, points[a].y) < std::make_pair(points[b].x, points[b].y);
-  });
-  std::vector<int> hull;
-  for (int pass = 0; pass < 2; ++pass)
-  {
-    const std::size_t first = hull.size();
-    for (const int i : order)
-    {
-      while (hull.size() >= first + 2 &&
-        Orientation(points[hull[hull.size() - 2]], points[hull.back()], points[i]) < 0)
-      {
-        hull.pop_back();
-      }
-      hull.push_back(i);
-    }
-    hull.pop_back();
-    std::reverse(order.begin(), order.end());
-  }
-  return hull;
-}
-
-/// 1 or -1 as a simple polygon runs counterclockwise or clockwise, 0 if it is not simple.
-int Sense(const std::vector<Vector2>& points, const std::vector<int>& loop)
-{
-  std::size_t least = 0;
-  for (std::size_t i = 1; i < loop.size(); ++i)
-  {
-    const Vector2& p = points[loop[i]];
-    const Vector2& q = points[loop[least]];
-    if (std::make_pair(p.x, p.y) < std::make_pair(q.x, q.y))
-    {
-      least = i;
-    }
-  }
-  const std::size_t n = loop.size();
-  return Orientation(
-    points[loop[(least + n - 1) % n]], points[loop[least]], points[loop[(least + 1) % n]]);
-}
 
 /// The construction from the checked figure to the mesh. Works on points in an order of its own,
 /// which depends on positions alone, and on the domain whose coordinates come first in the order of
@@ -209,21 +63,22 @@ int Sense(const std::vector<Vector2>& points, const std::vector<int>& loop)
 class Builder
 {
 public:
-  /// @param frameMargin how far an automatic frame is from the points, in their spacings
-  /// @param dividesFrame whether an automatic frame gets points on its edges
   Builder(const FigurePair& figure, const IsomorphicTriangulationOptions& options,
-    double frameMargin, bool dividesFrame)
-    : Figure(figure)
-    , Options(options)
-    , FrameMargin(frameMargin)
-    , DividesFrame(dividesFrame)
+    const BoundaryOptions& boundary)
+    : Options(options)
+    , Given(figure.Points[0].size())
+    , Figure(FindBoundary(figure, boundary))
+    , Lines(figure.Lines)
   {
+    this->Result.Problems = this->Figure.Problems;
+    this->Result.Mirrored = this->Figure.Mirrored;
+    this->Result.NumberOfFramePoints = this->Figure.NumberOfFramePoints;
   }
 
   /// Makes the best pair that needs few added points. False if the figure was refused.
   bool Prepare()
   {
-    if (!this->CheckInput() || !this->ChooseDomain())
+    if (!this->Result.Problems.empty())
     {
       return false;
     }
@@ -336,27 +191,19 @@ public:
     return this->CountAdded() > enough && this->Order.size() <= SeveralOrders && !this->Stopped;
   }
 
-  bool HasAutomaticFrame() const { return this->AutomaticFrame; }
+  bool HasAutomaticFrame() const { return this->Figure.HasAutomaticFrame; }
   /// Whether the points on an automatic frame's edges prevented a result, or perhaps a better one.
   bool MayNeedPlainFrame() const
   {
     return this->NeedsPlainFrame ||
-      (this->FrameIsDivided && this->Best && this->CountAdded() > ManyPoints);
+      (this->Figure.FrameIsDivided && this->Best && this->CountAdded() > ManyPoints);
   }
   IsomorphicTriangulationResult& GetResult() { return this->Result; }
 
 private:
-  void Refuse(Kind kind, int domain, std::vector<int> points, int line = -1, int loop = -1)
+  void Refuse(Kind kind, int domain, std::vector<int> points)
   {
-    FigureProblem problem;
-    problem.What = kind;
-    problem.Domain = domain;
-    problem.Count = static_cast<int>(points.size());
-    points.resize(std::min(points.size(), ListedIds));
-    problem.Points = std::move(points);
-    problem.Line = line;
-    problem.Loop = loop;
-    this->Result.Problems.push_back(std::move(problem));
+    this->Result.Problems.push_back(MakeProblem(kind, domain, std::move(points)));
   }
 
   bool Proceed(double progress)
@@ -366,389 +213,6 @@ private:
       this->Refuse(Kind::Aborted, -1, {});
       return false;
     }
-    return true;
-  }
-
-  bool CheckInput()
-  {
-    const auto& points = this->Figure.Points;
-    if (points[0].size() != points[1].size())
-    {
-      this->Refuse(Kind::PointCountsDiffer, -1, {});
-      return false;
-    }
-    const int n = static_cast<int>(points[0].size());
-    if (n < 3)
-    {
-      this->Refuse(Kind::Empty, -1, {});
-      return false;
-    }
-    for (int kind = 0; kind < 2; ++kind)
-    {
-      const auto& cells = kind == 0 ? this->Figure.Loops : this->Figure.Lines;
-      for (std::size_t i = 0; i < cells.size(); ++i)
-      {
-        bool good = cells[i].size() >= (kind == 0 ? 3u : 2u);
-        for (std::size_t k = 0; k < cells[i].size() && good; ++k)
-        {
-          const bool last = k + 1 == cells[i].size();
-          good = cells[i][k] >= 0 && cells[i][k] < n &&
-            ((last && kind == 1) || cells[i][k] != cells[i][last ? 0 : k + 1]);
-        }
-        if (!good)
-        {
-          this->Refuse(Kind::BadCell, -1, cells[i], kind == 1 ? static_cast<int>(i) : -1,
-            kind == 0 ? static_cast<int>(i) : -1);
-        }
-      }
-    }
-    for (int d = 0; d < 2; ++d)
-    {
-      std::vector<int> bad;
-      for (int i = 0; i < n; ++i)
-      {
-        if (!(std::abs(points[d][i].x) < 1e150 && std::abs(points[d][i].y) < 1e150))
-        {
-          bad.push_back(i);
-        }
-      }
-      if (!bad.empty())
-      {
-        this->Refuse(Kind::NotFinite, d, bad);
-        continue;
-      }
-      std::vector<int> order(n);
-      std::iota(order.begin(), order.end(), 0);
-      const auto key = [&](int i) { return std::make_tuple(points[d][i].x, points[d][i].y, i); };
-      std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-      for (int i = 0; i + 1 < n; ++i)
-      {
-        const Vector2& p = points[d][order[i]];
-        const Vector2& q = points[d][order[i + 1]];
-        if (p.x == q.x && p.y == q.y)
-        {
-          if (bad.empty() || bad.back() != order[i])
-          {
-            bad.push_back(order[i]);
-          }
-          bad.push_back(order[i + 1]);
-        }
-      }
-      if (!bad.empty())
-      {
-        this->Refuse(Kind::Coincident, d, bad);
-      }
-    }
-    return this->Result.Problems.empty();
-  }
-
-  /// The loops that bound the domain, and whether the drawings are mirror images.
-  bool ChooseDomain()
-  {
-    this->Points = this->Figure.Points;
-    this->Loops = this->Figure.Loops;
-    FigureDomain domain = this->Options.Domain;
-    if (domain == FigureDomain::Automatic)
-    {
-      domain = this->Loops.empty() ? FigureDomain::Frame : FigureDomain::Outline;
-    }
-    const auto& frames = this->Options.Frames;
-    const bool framesGiven = !frames[0].empty() || !frames[1].empty();
-    bool mirrored = false;
-    if (!this->Loops.empty())
-    {
-      mirrored =
-        Sense(this->Points[0], this->Loops[0]) * Sense(this->Points[1], this->Loops[0]) < 0;
-      for (std::size_t i = 1; i < this->Loops.size(); ++i)
-      {
-        const int senses =
-          Sense(this->Points[0], this->Loops[i]) * Sense(this->Points[1], this->Loops[i]);
-        if (senses != 0 && (senses < 0) != mirrored)
-        {
-          this->Refuse(Kind::LoopSense, -1, this->Loops[i], -1, static_cast<int>(i));
-        }
-      }
-    }
-    else
-    {
-      for (int d = 0; d < 2 && (domain != FigureDomain::Frame || !framesGiven); ++d)
-      {
-        const auto& p = this->Points[d];
-        // The point farthest from the first, and the whole on the line of the two?
-        std::size_t far = 0;
-        for (std::size_t i = 1; i < p.size(); ++i)
-        {
-          far = Dot(p[i] - p[0], p[i] - p[0]) > Dot(p[far] - p[0], p[far] - p[0]) ? i : far;
-        }
-        if (std::all_of(p.begin(), p.end(),
-              [&](const Vector2& q) { return Orientation(p[0], p[far], q) == 0; }))
-        {
-          this->Refuse(Kind::Collinear, d, {});
-        }
-      }
-    }
-    if (!this->Result.Problems.empty())
-    {
-      return false;
-    }
-    if (domain == FigureDomain::Frame)
-    {
-      if (framesGiven)
-      {
-        std::vector<int> corners(frames[0].size());
-        std::iota(corners.begin(), corners.end(), 0);
-        std::array<int, 2> senses{ { 0, 0 } };
-        for (int d = 0; d < 2; ++d)
-        {
-          const std::size_t n = frames[d].size();
-          bool good = n >= 3 && n == frames[0].size();
-          for (const Vector2& p : frames[d])
-          {
-            good = good && std::abs(p.x) < 1e150 && std::abs(p.y) < 1e150;
-          }
-          for (std::size_t i = 0; i < n && good; ++i)
-          {
-            const int sign =
-              Orientation(frames[d][i], frames[d][(i + 1) % n], frames[d][(i + 2) % n]);
-            good = sign != 0 && (i == 0 || sign == senses[d]);
-            senses[d] = sign;
-          }
-          if (!good)
-          {
-            this->Refuse(Kind::BadFrame, d, {});
-            return false;
-          }
-        }
-        if (this->Loops.empty())
-        {
-          mirrored = senses[0] != senses[1];
-        }
-        return this->AddFrame(frames, mirrored);
-      }
-      const Affine fit = FitAffine(this->Points);
-      if (this->Loops.empty())
-      {
-        mirrored = Cross(fit.X, fit.Y) < 0.0;
-      }
-      this->AutomaticFrame = true;
-      if (!this->AddFrame(this->AutomaticFrames(fit), mirrored))
-      {
-        return false;
-      }
-      if (this->DividesFrame)
-      {
-        this->DivideFrame();
-      }
-      return true;
-    }
-    if (domain == FigureDomain::ConvexHull)
-    {
-      return this->AddHull();
-    }
-    if (this->Loops.empty())
-    {
-      this->Refuse(Kind::BadCell, -1, {});
-      return false;
-    }
-    this->Result.Mirrored = mirrored;
-    return true;
-  }
-
-  std::array<std::vector<Vector2>, 2> AutomaticFrames(const Affine& fit) const
-  {
-    const std::array<Vector2, 2> bounds = Bounds(this->Points[0]);
-    const int sense = Cross(fit.X, fit.Y) < 0.0 ? -1 : 1;
-    const double least = this->FrameMargin * Spacing(this->Points[0]);
-    const double most =
-      least + 0.5 * std::max(bounds[1].x - bounds[0].x, bounds[1].y - bounds[0].y);
-    const auto images = [&](const std::vector<Vector2>& corners) {
-      std::vector<Vector2> mapped;
-      mapped.reserve(corners.size());
-      for (const Vector2& corner : corners)
-      {
-        mapped.push_back(fit(corner));
-      }
-      return mapped;
-    };
-    double margin = least;
-    while (margin < most)
-    {
-      // Points nearer to the image than half the margin would make thin triangles.
-      const std::vector<Vector2> inner = images(Corners(Enlarged(bounds, margin - 0.5 * least)));
-      if (std::all_of(this->Points[1].begin(), this->Points[1].end(),
-            [&](const Vector2& p) { return IsInside(p, inner, sense); }))
-      {
-        const std::vector<Vector2> corners = Corners(Enlarged(bounds, margin));
-        return { corners, images(corners) };
-      }
-      margin *= 1.5;
-    }
-    return MatchRectangles(this->Figure, Enlarged(bounds, least),
-      Enlarged(Bounds(this->Points[1]), this->FrameMargin * Spacing(this->Points[1])));
-  }
-
-  /// Puts points on the edges of an automatic frame, about two spacings of the points apart: long
-  /// edges would make thin triangles with the points along them.
-  void DivideFrame()
-  {
-    const std::vector<Vector2>& given = this->Figure.Points[0];
-    const std::array<Vector2, 2> bounds = Bounds(given);
-    const Vector2 size = bounds[1] - bounds[0];
-    const double step = 2.0 * Spacing(given);
-    std::vector<int> loop;
-    for (std::size_t k = 0; k < 4; ++k)
-    {
-      const std::array<int, 2> ends{ { this->Loops[0][k], this->Loops[0][(k + 1) % 4] } };
-      const int pieces = 1 + static_cast<int>((k % 2 == 0 ? size.x : size.y) / step);
-      loop.push_back(ends[0]);
-      for (int i = 1; i < pieces; ++i)
-      {
-        loop.push_back(static_cast<int>(this->Points[0].size()));
-        ++this->Result.NumberOfFramePoints;
-        for (auto& points : this->Points)
-        {
-          const Vector2 start = points[ends[0]];
-          points.push_back(start + (static_cast<double>(i) / pieces) * (points[ends[1]] - start));
-        }
-      }
-    }
-    this->FrameIsDivided = loop.size() > 4;
-    this->Loops[0] = loop;
-  }
-
-  bool AddFrame(const std::array<std::vector<Vector2>, 2>& frames, bool mirrored)
-  {
-    const int n = static_cast<int>(this->Points[0].size());
-    const int corners = static_cast<int>(frames[0].size());
-    std::vector<int> loop;
-    // Landmarks at a corner or on an edge of both frames belong to the loop.
-    std::array<std::vector<int>, 2> outside;
-    std::array<std::vector<int>, 2> edgeOf;
-    std::vector<int> cornerIds(corners, -1);
-    for (int d = 0; d < 2; ++d)
-    {
-      const auto& frame = frames[d];
-      const int sense = Orientation(frame[0], frame[1], frame[2]);
-      edgeOf[d].assign(n, -1);
-      for (int i = 0; i < n; ++i)
-      {
-        const Vector2& p = this->Points[d][i];
-        for (int k = 0; k < corners; ++k)
-        {
-          const int sign = sense * Orientation(frame[k], frame[(k + 1) % corners], p);
-          if (p.x == frame[k].x && p.y == frame[k].y)
-          {
-            edgeOf[d][i] = corners + k;
-            break;
-          }
-          if (sign < 0)
-          {
-            outside[d].push_back(i);
-            break;
-          }
-          if (sign == 0 && IsBetween(p, frame[k], frame[(k + 1) % corners]))
-          {
-            edgeOf[d][i] = k;
-          }
-        }
-      }
-      if (!outside[d].empty())
-      {
-        this->Refuse(Kind::OutsideDomain, d, outside[d]);
-      }
-    }
-    if (!this->Result.Problems.empty())
-    {
-      return false;
-    }
-    for (int d = 0; d < 2; ++d)
-    {
-      std::vector<int> onOne;
-      for (int i = 0; i < n; ++i)
-      {
-        if (edgeOf[d][i] >= 0 && edgeOf[1 - d][i] != edgeOf[d][i])
-        {
-          onOne.push_back(i);
-        }
-        else if (edgeOf[d][i] >= corners)
-        {
-          cornerIds[edgeOf[d][i] - corners] = i;
-        }
-      }
-      if (!onOne.empty())
-      {
-        this->Refuse(Kind::PointOnSegment, d, onOne);
-        return false;
-      }
-    }
-    for (int k = 0; k < corners; ++k)
-    {
-      if (cornerIds[k] < 0)
-      {
-        cornerIds[k] = static_cast<int>(this->Points[0].size());
-        this->Points[0].push_back(frames[0][k]);
-        this->Points[1].push_back(frames[1][k]);
-        ++this->Result.NumberOfFramePoints;
-      }
-    }
-    for (int k = 0; k < corners; ++k)
-    {
-      std::vector<std::pair<double, int>> between;
-      for (int i = 0; i < n; ++i)
-      {
-        if (edgeOf[0][i] == k)
-        {
-          const Vector2 p = this->Points[0][i] - frames[0][k];
-          between.emplace_back(Dot(p, p), i);
-        }
-      }
-      std::sort(between.begin(), between.end());
-      loop.push_back(cornerIds[k]);
-      for (const auto& entry : between)
-      {
-        loop.push_back(entry.second);
-      }
-    }
-    // Loops given beside a frame are constraints only.
-    for (const auto& given : this->Figure.Loops)
-    {
-      this->ClosedLines.push_back(given);
-    }
-    this->Loops.assign(1, loop);
-    this->Result.Mirrored = mirrored;
-    return true;
-  }
-
-  bool AddHull()
-  {
-    std::array<std::vector<int>, 2> hulls{ { Hull(this->Points[0]), Hull(this->Points[1]) } };
-    for (auto& hull : hulls)
-    {
-      std::rotate(hull.begin(), std::min_element(hull.begin(), hull.end()), hull.end());
-    }
-    bool mirrored = false;
-    if (hulls[0] != hulls[1])
-    {
-      std::reverse(hulls[1].begin() + 1, hulls[1].end());
-      mirrored = true;
-    }
-    if (hulls[0] != hulls[1])
-    {
-      std::array<std::vector<int>, 2> sorted = hulls;
-      std::sort(sorted[0].begin(), sorted[0].end());
-      std::sort(sorted[1].begin(), sorted[1].end());
-      std::vector<int> difference;
-      std::set_symmetric_difference(sorted[0].begin(), sorted[0].end(), sorted[1].begin(),
-        sorted[1].end(), std::back_inserter(difference));
-      this->Refuse(Kind::HullsDiffer, -1, difference);
-      return false;
-    }
-    for (const auto& given : this->Figure.Loops)
-    {
-      this->ClosedLines.push_back(given);
-    }
-    this->Loops.assign(1, hulls[0]);
-    this->Result.Mirrored = mirrored;
     return true;
   }
 
@@ -764,15 +228,15 @@ private:
       std::sort(keys.begin(), keys.end());
       return keys;
     };
-    this->First = sorted(this->Points[1]) < sorted(this->Points[0]) ? 1 : 0;
-    this->Order = HilbertOrder(this->Points[this->First]);
+    this->First = sorted(this->Figure.Points[1]) < sorted(this->Figure.Points[0]) ? 1 : 0;
+    this->Order = HilbertOrder(this->Figure.Points[this->First]);
     this->Vertex.resize(this->Order.size());
     for (std::size_t i = 0; i < this->Order.size(); ++i)
     {
       this->Vertex[this->Order[i]] = static_cast<int>(i) + ConstrainedTriangulation::BoxCorners;
       for (int d = 0; d < 2; ++d)
       {
-        Vector2 p = this->Points[d == 0 ? this->First : 1 - this->First][this->Order[i]];
+        Vector2 p = this->Figure.Points[d == 0 ? this->First : 1 - this->First][this->Order[i]];
         if (d == 1 && this->Result.Mirrored)
         {
           p.y = -p.y;
@@ -852,7 +316,6 @@ private:
       case CommonMap::Refusal::Separates:
         problem.What = Kind::OtherFace;
         problem.Points = this->PointsOf(answer.Vertices);
-        problem.Count = static_cast<int>(problem.Points.size());
         for (const int p : problem.Points)
         {
           if (!this->LoopOf.empty() && this->LoopOf[p] >= 0)
@@ -861,7 +324,7 @@ private:
             problem.Loop = this->LoopOf[p];
           }
         }
-        problem.Points.resize(std::min(problem.Points.size(), ListedIds));
+        problem = MakeProblem(problem.What, problem.Domain, problem.Points, -1, problem.Loop);
         break;
     }
     return { problem };
@@ -951,7 +414,7 @@ private:
     {
       this->Map->Add(edge[0], edge[1]);
     }
-    if (this->FrameIsDivided && this->AreUnrelated())
+    if (this->Figure.FrameIsDivided && this->AreUnrelated())
     {
       // A grid needs a frame of four corners.
       this->NeedsPlainFrame = true;
@@ -960,7 +423,7 @@ private:
     std::array<std::vector<Vector2>, 2> points;
     std::vector<std::array<int, 3>> triangles;
     if (!this->Proceed(0.3) ||
-      (!(this->AreUnrelated() && this->FillByGrid(points, triangles)) &&
+      (!(this->AreUnrelated() && this->FillGrid(points, triangles)) &&
         (!this->BridgeComponents() || !this->Triangulate(points, triangles))) ||
       !this->Proceed(0.5))
     {
@@ -990,10 +453,10 @@ private:
 
   bool DrawFigure()
   {
-    this->LoopOf.assign(this->Points[0].size(), -1);
-    for (std::size_t i = 0; i < this->Loops.size(); ++i)
+    this->LoopOf.assign(this->Figure.Points[0].size(), -1);
+    for (std::size_t i = 0; i < this->Figure.Loops.size(); ++i)
     {
-      for (const int p : this->Loops[i])
+      for (const int p : this->Figure.Loops[i])
       {
         this->LoopOf[p] = static_cast<int>(i);
       }
@@ -1007,9 +470,9 @@ private:
         problems.push_back(problem);
       }
     };
-    for (std::size_t i = 0; i < this->Loops.size(); ++i)
+    for (std::size_t i = 0; i < this->Figure.Loops.size(); ++i)
     {
-      const auto& loop = this->Loops[i];
+      const auto& loop = this->Figure.Loops[i];
       for (std::size_t k = 0; k < loop.size(); ++k)
       {
         note(this->Draw(
@@ -1023,7 +486,7 @@ private:
     }
     this->Map->MarkOutside(this->LoopEdges);
     std::vector<int> outside;
-    for (int p = 0; p < static_cast<int>(this->Figure.Points[0].size()); ++p)
+    for (int p = 0; p < static_cast<int>(this->Given); ++p)
     {
       if (this->Map->IsOutside(this->Vertex[p], 0))
       {
@@ -1055,11 +518,11 @@ private:
           this->Map->ScaledLength(a, b), ends, line });
       }
     };
-    for (std::size_t i = 0; i < this->Figure.Lines.size(); ++i)
+    for (std::size_t i = 0; i < this->Lines.size(); ++i)
     {
-      collect(this->Figure.Lines[i], static_cast<int>(i), false);
+      collect(this->Lines[i], static_cast<int>(i), false);
     }
-    for (const auto& line : this->ClosedLines)
+    for (const auto& line : this->Figure.ClosedLines)
     {
       collect(line, -1, true);
     }
@@ -1143,14 +606,33 @@ private:
       const auto& walk = face.Walks[0];
       if (walk.size() <= LargestDissection)
       {
-        for (const auto& chord :
-          Dissect(this->Polygons(face), face.Triangles, this->Options.Quality))
+        for (const auto& chord : this->DissectFace(face))
         {
           this->Map->Add(walk[chord[0]], walk[chord[1]]);
         }
       }
     }
     return this->Proceed(0.45);
+  }
+
+  /// Large faces are usually the same in all orders.
+  const std::vector<std::array<int, 2>>& DissectFace(const CommonMap::Face& face)
+  {
+    const PolygonPair polygons = this->Polygons(face);
+    std::vector<double> key;
+    for (const auto& polygon : polygons)
+    {
+      for (const Vector2& p : polygon)
+      {
+        key.insert(key.end(), { p.x, p.y });
+      }
+    }
+    const auto [known, isNew] = this->Dissections.try_emplace(std::move(key));
+    if (isNew)
+    {
+      known->second = Dissect(polygons, face.Triangles, this->Options.Quality);
+    }
+    return known->second;
   }
 
   /// Tries all pairs of corners of the open faces.
@@ -1266,34 +748,26 @@ private:
       (components > UnrelatedFew && 5 * static_cast<std::size_t>(components) > this->Order.size());
   }
 
-  /// For points in frames whose positions have little to do with each other. A line runs through
-  /// each point in both domains: in the first along one direction of the frame, in the order of the
-  /// points along the other; in the second these lines pass each other point on the right side of
-  /// it. With the lines that are straight in the second domain they make a grid of (n + 2)^2 points
-  /// whose cells are convex in both domains. False if the figure has other parts, or rounding does
-  /// not allow it.
-  bool FillByGrid(
-    std::array<std::vector<Vector2>, 2>& points, std::vector<std::array<int, 3>>& triangles)
+  /// For points in frames whose positions have little to do with each other; false if the figure
+  /// has other parts.
+  bool FillGrid(
+    std::array<std::vector<Vector2>, 2>& points, std::vector<std::array<int, 3>>& triangles) const
   {
-    if (this->Loops.size() != 1 || this->Loops[0].size() != 4 || !this->Segments.empty() ||
-      this->Result.NumberOfFramePoints != 4)
+    if (this->Figure.Loops.size() != 1 || this->Figure.Loops[0].size() != 4 ||
+      !this->Segments.empty() || this->Result.NumberOfFramePoints != 4)
     {
       return false;
+    }
+    std::array<int, 4> corners;
+    for (int k = 0; k < 4; ++k)
+    {
+      corners[k] = this->Vertex[this->Figure.Loops[0][k]];
     }
     constexpr int box = ConstrainedTriangulation::BoxCorners;
     points = { { this->Map->GetPoints(0), this->Map->GetPoints(1) } };
     for (auto& p : points)
     {
       p.resize(this->Order.size() + box);
-    }
-    std::array<int, 4> corners;
-    for (int k = 0; k < 4; ++k)
-    {
-      corners[k] = this->Vertex[this->Loops[0][k]];
-    }
-    if (Orientation(points[0][corners[0]], points[0][corners[1]], points[0][corners[2]]) < 0)
-    {
-      std::swap(corners[1], corners[3]);
     }
     std::vector<int> landmarks;
     for (int v = box; v < static_cast<int>(points[0].size()); ++v)
@@ -1303,126 +777,7 @@ private:
         landmarks.push_back(v);
       }
     }
-    // Coordinates in the parallelogram of three corners, from 0 to 1.
-    const std::size_t n = landmarks.size();
-    std::array<std::vector<Vector2>, 2> unit;
-    double margin = 0.5;
-    for (int d = 0; d < 2; ++d)
-    {
-      const Vector2 origin = points[d][corners[0]];
-      const Vector2 x = points[d][corners[1]] - origin;
-      const Vector2 y = points[d][corners[3]] - origin;
-      for (const int v : landmarks)
-      {
-        const Vector2 p = points[d][v] - origin;
-        const Vector2 u{ Cross(p, y) / Cross(x, y), Cross(x, p) / Cross(x, y) };
-        unit[d].push_back(u);
-        margin = std::min({ margin, u.x, u.y, 1.0 - u.x, 1.0 - u.y });
-      }
-    }
-    if (!(margin > 1e-6))
-    {
-      return false;
-    }
-    // Slightly inclined, so that no two points are on one line. The second domain's axes are
-    // exchanged, so that in both the lines are those of constant x.
-    const double slope = 0.31 * margin;
-    std::array<std::vector<int>, 2> order;
-    std::array<std::vector<int>, 2> rank;
-    for (int d = 0; d < 2; ++d)
-    {
-      for (Vector2& u : unit[d])
-      {
-        u = d == 0 ? u : Vector2{ u.y, u.x };
-        u.x += slope * u.y;
-      }
-      order[d].resize(n);
-      rank[d].resize(n);
-      std::iota(order[d].begin(), order[d].end(), 0);
-      std::sort(order[d].begin(), order[d].end(),
-        [&](int a, int b) { return unit[d][a].x < unit[d][b].x; });
-      for (std::size_t i = 0; i < n; ++i)
-      {
-        rank[d][order[d][i]] = static_cast<int>(i) + 1;
-      }
-    }
-    const int side = static_cast<int>(n) + 2;
-    const int first = static_cast<int>(points[0].size());
-    std::vector<int> node(static_cast<std::size_t>(side) * side, -1);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      node[static_cast<std::size_t>(rank[0][i]) * side + rank[1][i]] = landmarks[i];
-    }
-    int count = first;
-    for (int& v : node)
-    {
-      v = v < 0 ? count++ : v;
-    }
-    const double low = 0.5 * margin;
-    for (int d = 0; d < 2; ++d)
-    {
-      points[d].resize(static_cast<std::size_t>(count));
-      const Vector2 origin = points[d][corners[0]];
-      const Vector2 x = points[d][corners[1]] - origin;
-      const Vector2 y = points[d][corners[3]] - origin;
-      for (int line = 0; line < side; ++line)
-      {
-        const bool inside = line > 0 && line + 1 < side;
-        const int landmark = inside ? order[d][line - 1] : -1;
-        const double at = inside ? unit[d][landmark].x : (line == 0 ? low : 1.0 - low + slope);
-        const int middle = inside ? rank[1 - d][landmark] : side - 1;
-        const double height = inside ? unit[d][landmark].y : 1.0 - low;
-        for (int k = 0; k < side; ++k)
-        {
-          const double along = k <= middle
-            ? low + (height - low) * k / middle
-            : height + (1.0 - low - height) * (k - middle) / (side - 1 - middle);
-          const int v = d == 0 ? node[static_cast<std::size_t>(line) * side + k]
-                               : node[static_cast<std::size_t>(k) * side + line];
-          if (v >= first)
-          {
-            const double across = at - slope * along;
-            points[d][v] =
-              d == 0 ? origin + across * x + along * y : origin + along * x + across * y;
-          }
-        }
-      }
-    }
-    const auto at = [&](int line, int level) {
-      return node[static_cast<std::size_t>(line) * side + level];
-    };
-    const auto quality = [&](const std::array<int, 3>& t) {
-      return QualityOf(PairQuality::MinimumAngle,
-        { points[0][t[0]], points[0][t[1]], points[0][t[2]] },
-        { points[1][t[0]], points[1][t[1]], points[1][t[2]] });
-    };
-    const auto add = [&](int a, int b, int c) {
-      triangles.push_back({ a, b, c });
-      return quality(triangles.back()) >= 0.0;
-    };
-    const int last = side - 1;
-    bool good = add(corners[0], corners[1], at(last, 0)) &&
-      add(corners[1], corners[2], at(last, last)) && add(corners[2], corners[3], at(0, last)) &&
-      add(corners[3], corners[0], at(0, 0));
-    for (int a = 0; a < last && good; ++a)
-    {
-      good = add(corners[0], at(a + 1, 0), at(a, 0)) &&
-        add(corners[1], at(last, a + 1), at(last, a)) &&
-        add(corners[2], at(a, last), at(a + 1, last)) && add(corners[3], at(0, a), at(0, a + 1));
-      for (int b = 0; b < last && good; ++b)
-      {
-        const std::array<int, 4> q{ { at(a, b), at(a + 1, b), at(a + 1, b + 1), at(a, b + 1) } };
-        const bool rising = std::min(quality({ q[0], q[1], q[2] }), quality({ q[0], q[2], q[3] })) >
-          std::min(quality({ q[0], q[1], q[3] }), quality({ q[1], q[2], q[3] }));
-        good = rising ? add(q[0], q[1], q[2]) && add(q[0], q[2], q[3])
-                      : add(q[0], q[1], q[3]) && add(q[1], q[2], q[3]);
-      }
-    }
-    if (!good)
-    {
-      triangles.clear();
-    }
-    return good;
+    return FillByGrid(corners, landmarks, points, triangles);
   }
 
   /// Fills the faces that are still open, with added points where they are necessary.
@@ -1497,10 +852,10 @@ private:
 
   void Output(const PairMesh& mesh)
   {
-    const int given = static_cast<int>(this->Figure.Points[0].size());
-    const int known = static_cast<int>(this->Points[0].size());
+    const int given = static_cast<int>(this->Given);
+    const int known = static_cast<int>(this->Figure.Points[0].size());
     auto& result = this->Result;
-    result.Points = this->Points;
+    result.Points = this->Figure.Points;
     std::vector<int> number(mesh.GetNumberOfPoints(), -1);
     for (int p = 0; p < known; ++p)
     {
@@ -1549,22 +904,19 @@ private:
     }
   }
 
-  const FigurePair& Figure;
   const IsomorphicTriangulationOptions& Options;
-  double FrameMargin;
+  /// The number of points that are not the frame's.
+  std::size_t Given;
+  BoundedFigure Figure;
+  const std::vector<std::vector<int>>& Lines;
   IsomorphicTriangulationResult Result;
   std::unique_ptr<PairMesh> Best;
-  bool DividesFrame;
-  bool AutomaticFrame = false;
-  bool FrameIsDivided = false;
   bool NeedsPlainFrame = false;
   bool Refused = false;
-
-  // The figure's points, then the frame's corners.
-  std::array<std::vector<Vector2>, 2> Points;
-  std::vector<std::vector<int>> Loops;
-  std::vector<std::vector<int>> ClosedLines;
+  /// Of faces by their corners' coordinates.
+  std::map<std::vector<double>, std::vector<std::array<int, 2>>> Dissections;
   std::vector<int> LoopOf;
+
   // Which domain comes first, the points in their order, and what vertex of the map each is.
   int First = 0;
   std::vector<int> Order;
@@ -1586,13 +938,17 @@ IsomorphicTriangulationResult MakeIsomorphicTriangulation(
 {
   // An automatic frame that is too near the points can require points that a wider one does not.
   std::unique_ptr<Builder> best;
+  BoundaryOptions boundary{ options.Domain, options.Frames };
   for (const double margin : { 0.5, 1.5, 4.0 })
   {
-    auto builder = std::make_unique<Builder>(figure, options, margin, true);
+    boundary.FrameMargin = margin;
+    boundary.DividesFrame = true;
+    auto builder = std::make_unique<Builder>(figure, options, boundary);
     bool made = builder->Prepare();
     if (builder->MayNeedPlainFrame())
     {
-      auto plain = std::make_unique<Builder>(figure, options, margin, false);
+      boundary.DividesFrame = false;
+      auto plain = std::make_unique<Builder>(figure, options, boundary);
       const bool madePlain = plain->Prepare();
       if (!made || (madePlain && plain->CountAdded() < builder->CountAdded()))
       {
@@ -1615,108 +971,6 @@ IsomorphicTriangulationResult MakeIsomorphicTriangulation(
     best->Finish();
   }
   return std::move(best->GetResult());
-}
-
-std::array<std::vector<Vector2>, 2> MatchRectangles(const FigurePair& figure,
-  const std::array<Vector2, 2>& source, const std::array<Vector2, 2>& target)
-{
-  std::array<std::vector<Vector2>, 2> frames{ { Corners(source), Corners(target) } };
-  const Affine fit = FitAffine(figure.Points);
-  if (Cross(fit.X, fit.Y) < 0.0)
-  {
-    std::reverse(frames[1].begin(), frames[1].end());
-  }
-  // Of the four rotations the one whose corners lie in the directions of the affine images.
-  const Vector2 center = 0.5 * (target[0] + target[1]);
-  const Vector2 sourceCenter = 0.5 * (source[0] + source[1]);
-  double best = -std::numeric_limits<double>::infinity();
-  std::vector<Vector2> bestFrame;
-  for (int turn = 0; turn < 4; ++turn)
-  {
-    double sum = 0.0;
-    for (int k = 0; k < 4; ++k)
-    {
-      const Vector2 q = frames[0][k] - sourceCenter;
-      const Vector2 image = q.x * fit.X + q.y * fit.Y;
-      const Vector2 corner = frames[1][k] - center;
-      const double lengths = std::sqrt(Dot(image, image) * Dot(corner, corner));
-      sum += lengths > 0.0 ? Dot(image, corner) / lengths : 0.0;
-    }
-    if (sum > best)
-    {
-      best = sum;
-      bestFrame = frames[1];
-    }
-    std::rotate(frames[1].begin(), frames[1].begin() + 1, frames[1].end());
-  }
-  frames[1] = bestFrame;
-  return frames;
-}
-
-PairStatistics MeasurePair(const std::array<std::vector<Vector2>, 2>& points,
-  const std::vector<std::array<int, 3>>& triangles)
-{
-  PairStatistics statistics;
-  statistics.MinimumAngle = { { 180.0, 180.0 } };
-  int obtuse = 0;
-  int discordant = 0;
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
-  {
-    std::array<TrianglePoints, 2> p;
-    bool isObtuse = false;
-    bool isDiscordant = false;
-    double smallest = 180.0;
-    for (int d = 0; d < 2; ++d)
-    {
-      for (int k = 0; k < 3; ++k)
-      {
-        p[d][k] = points[d][triangles[t][k]];
-      }
-      if (Cross(p[d][1] - p[d][0], p[d][2] - p[d][0]) < 0.0)
-      {
-        for (Vector2& corner : p[d])
-        {
-          corner.y = -corner.y;
-        }
-      }
-      for (const double angle : Angles(p[d]))
-      {
-        for (int i = 0; i < 3; ++i)
-        {
-          statistics.SharesBelow[d][i] += angle < 10.0 + 5.0 * i ? 1.0 : 0.0;
-        }
-        isObtuse = isObtuse || angle > 90.0;
-        smallest = std::min(smallest, angle);
-        if (angle < statistics.MinimumAngle[d])
-        {
-          statistics.MinimumAngle[d] = angle;
-          statistics.MinimumAngleTriangle[d] = t;
-        }
-      }
-      isDiscordant = isDiscordant || !IsConcordant(&p[d][0].x, &p[d][1].x, &p[d][2].x, 2);
-    }
-    obtuse += isObtuse ? 1 : 0;
-    discordant += isDiscordant ? 1 : 0;
-    const double distortion = Distortion(p[0], p[1]);
-    statistics.MinimumAngles.push_back(smallest);
-    statistics.Distortions.push_back(distortion);
-    if (statistics.LargestDistortionTriangle < 0 || distortion > statistics.LargestDistortion)
-    {
-      statistics.LargestDistortion = distortion;
-      statistics.LargestDistortionTriangle = t;
-    }
-  }
-  const double n = static_cast<double>(std::max<std::size_t>(triangles.size(), 1));
-  for (auto& shares : statistics.SharesBelow)
-  {
-    for (double& share : shares)
-    {
-      share /= 3.0 * n;
-    }
-  }
-  statistics.ObtuseShare = obtuse / n;
-  statistics.DiscordantShare = discordant / n;
-  return statistics;
 }
 
 } // namespace homeomorphism

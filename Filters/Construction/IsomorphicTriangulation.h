@@ -7,39 +7,22 @@
 #ifndef homeomorphism_IsomorphicTriangulation_h
 #define homeomorphism_IsomorphicTriangulation_h
 
-#include "FigurePair.h"
+#include "FigureBoundary.h"
 #include "PairQuality.h"
 
 #include <array>
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace homeomorphism
 {
 
-/// What is triangulated.
-enum class FigureDomain
-{
-  /// The inside of the loops if there are any, else a frame.
-  Automatic,
-  /// The inside of the loops.
-  Outline,
-  /// A frame around the points.
-  Frame,
-  /// The convex hulls, if they have the same points in the same order.
-  ConvexHull
-};
-
 struct IsomorphicTriangulationOptions
 {
   FigureDomain Domain = FigureDomain::Automatic;
-  /// Corresponding corners of two convex polygons around the points; both empty: the source's
-  /// bounds, enlarged by half the points' spacing (that of as many points spread evenly over their
-  /// bounds), and their image by the affine map that fits best, enlarged further until all points
-  /// are inside, or where that would have to be much larger the target's bounds. Such frames have
-  /// points on their edges, about two spacings apart, so that triangles between the frame and the
-  /// points are not thin; unless the two domains' positions are unrelated.
+  /// As in BoundaryOptions. An automatic frame half a spacing from the points has points on its
+  /// edges, so that triangles between it and the points are not thin, unless the two domains'
+  /// positions are unrelated. Frames farther away are tried where points have to be added.
   std::array<std::vector<Vector2>, 2> Frames;
   /// With Concordance and NonObtuse, no angle gets smaller than half the smallest angle, or half of
   /// 5 degrees if that is less, of the pair with the necessary points alone: such a pair is not
@@ -91,34 +74,6 @@ struct IsomorphicTriangulationResult
 
 IsomorphicTriangulationResult MakeIsomorphicTriangulation(
   const FigurePair& figure, const IsomorphicTriangulationOptions& options);
-
-/// Corners of two rectangles, given as the lower and the upper corner, so that corners of the same
-/// number correspond under the affine map that fits the points best. The target's run the other way
-/// round if that map is a reflection.
-std::array<std::vector<Vector2>, 2> MatchRectangles(const FigurePair& figure,
-  const std::array<Vector2, 2>& source, const std::array<Vector2, 2>& target);
-
-/// What a user is told of a pair of triangulations.
-struct PairStatistics
-{
-  std::array<double, 2> MinimumAngle{ { 0.0, 0.0 } };
-  /// The triangle where it is.
-  std::array<int, 2> MinimumAngleTriangle{ { -1, -1 } };
-  /// Shares of the angles of each domain below 10, 15 and 20 degrees.
-  std::array<std::array<double, 3>, 2> SharesBelow{};
-  /// Shares of the triangles that are obtuse, or discordant, in at least one domain.
-  double ObtuseShare = 0.0;
-  double DiscordantShare = 0.0;
-  /// The largest ratio of singular values, and its triangle.
-  double LargestDistortion = 1.0;
-  int LargestDistortionTriangle = -1;
-  /// For each triangle.
-  std::vector<double> MinimumAngles;
-  std::vector<double> Distortions;
-};
-
-PairStatistics MeasurePair(const std::array<std::vector<Vector2>, 2>& points,
-  const std::vector<std::array<int, 3>>& triangles);
 
 } // namespace homeomorphism
 

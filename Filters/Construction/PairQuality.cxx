@@ -187,4 +187,70 @@ int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
   return count;
 }
 
+PairQualities MeasureQualities(const std::array<std::vector<Vector2>, 2>& points,
+  const std::vector<std::array<int, 3>>& triangles)
+{
+  PairQualities qualities;
+  qualities.MinimumAngle = { { 180.0, 180.0 } };
+  int obtuse = 0;
+  int discordant = 0;
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
+  {
+    std::array<TrianglePoints, 2> p;
+    bool isObtuse = false;
+    bool isDiscordant = false;
+    double smallest = 180.0;
+    for (int d = 0; d < 2; ++d)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        p[d][k] = points[d][triangles[t][k]];
+      }
+      if (Cross(p[d][1] - p[d][0], p[d][2] - p[d][0]) < 0.0)
+      {
+        for (Vector2& corner : p[d])
+        {
+          corner.y = -corner.y;
+        }
+      }
+      for (const double angle : Angles(p[d]))
+      {
+        for (int i = 0; i < 3; ++i)
+        {
+          qualities.SharesBelow[d][i] += angle < 10.0 + 5.0 * i ? 1.0 : 0.0;
+        }
+        isObtuse = isObtuse || angle > 90.0;
+        smallest = std::min(smallest, angle);
+        if (angle < qualities.MinimumAngle[d])
+        {
+          qualities.MinimumAngle[d] = angle;
+          qualities.MinimumAngleTriangle[d] = t;
+        }
+      }
+      isDiscordant = isDiscordant || !IsConcordant(&p[d][0].x, &p[d][1].x, &p[d][2].x, 2);
+    }
+    obtuse += isObtuse ? 1 : 0;
+    discordant += isDiscordant ? 1 : 0;
+    const double distortion = Distortion(p[0], p[1]);
+    qualities.MinimumAngles.push_back(smallest);
+    qualities.Distortions.push_back(distortion);
+    if (qualities.LargestDistortionTriangle < 0 || distortion > qualities.LargestDistortion)
+    {
+      qualities.LargestDistortion = distortion;
+      qualities.LargestDistortionTriangle = t;
+    }
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(triangles.size(), 1));
+  for (auto& shares : qualities.SharesBelow)
+  {
+    for (double& share : shares)
+    {
+      share /= 3.0 * n;
+    }
+  }
+  qualities.ObtuseShare = obtuse / n;
+  qualities.DiscordantShare = discordant / n;
+  return qualities;
+}
+
 } // namespace homeomorphism

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PairQuality.h
-/// How good a triangle of a pair of triangulations is.
+/// How good the triangles of a pair of triangulations are.
 
 #ifndef homeomorphism_PairQuality_h
 #define homeomorphism_PairQuality_h
@@ -10,6 +10,7 @@
 #include "Kernel/Geometry.h"
 
 #include <array>
+#include <vector>
 
 namespace homeomorphism
 {
@@ -76,6 +77,28 @@ struct QualityTerm
 /// Returns the number of terms, 0 if the triangle is not counterclockwise.
 int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
   const TrianglePoints& other, std::array<QualityTerm, 9>& terms);
+
+/// The shapes of the triangles of a pair of triangulations.
+struct PairQualities
+{
+  std::array<double, 2> MinimumAngle{ { 0.0, 0.0 } };
+  /// The triangle where it is.
+  std::array<int, 2> MinimumAngleTriangle{ { -1, -1 } };
+  /// Shares of the angles of each domain below 10, 15 and 20 degrees.
+  std::array<std::array<double, 3>, 2> SharesBelow{};
+  /// Shares of the triangles that are obtuse, or discordant, in at least one domain.
+  double ObtuseShare = 0.0;
+  double DiscordantShare = 0.0;
+  /// The largest ratio of singular values, and its triangle.
+  double LargestDistortion = 1.0;
+  int LargestDistortionTriangle = -1;
+  /// For each triangle.
+  std::vector<double> MinimumAngles;
+  std::vector<double> Distortions;
+};
+
+PairQualities MeasureQualities(const std::array<std::vector<Vector2>, 2>& points,
+  const std::vector<std::array<int, 3>>& triangles);
 
 } // namespace homeomorphism
 

@@ -179,7 +179,7 @@ int Curve(const std::string& name, int maximum, int step)
       {
         return 1;
       }
-      const auto s = MeasurePair(result.Points, result.Triangles);
+      const auto s = MeasureQualities(result.Points, result.Triangles);
       std::cout << name << "," << static_cast<int>(quality) << "," << count << ","
                 << s.MinimumAngle[0] << "," << s.MinimumAngle[1] << "," << s.ObtuseShare << ","
                 << s.DiscordantShare << "," << seconds << std::endl;

@@ -271,7 +271,7 @@ inline bool Read(const std::string& name, FigurePair& figure, bool withLines)
 /// The smallest angle of a complete result, in degrees.
 inline double SmallestAngle(const IsomorphicTriangulationResult& result)
 {
-  const auto statistics = MeasurePair(result.Points, result.Triangles);
+  const auto statistics = MeasureQualities(result.Points, result.Triangles);
   return std::min(statistics.MinimumAngle[0], statistics.MinimumAngle[1]);
 }
 

@@ -474,7 +474,7 @@ TEST(IsomorphicTriangulation, OtherQualitiesKeepTheAngles)
   Options options;
   options.MaximumNumberOfAddedPoints = 0;
   const auto start = MakeIsomorphicTriangulation(figure, options);
-  const auto before = MeasurePair(start.Points, start.Triangles);
+  const auto before = MeasureQualities(start.Points, start.Triangles);
   for (const PairQuality quality : { PairQuality::Concordance, PairQuality::NonObtuse })
   {
     options.MaximumNumberOfAddedPoints = 6;
@@ -482,7 +482,7 @@ TEST(IsomorphicTriangulation, OtherQualitiesKeepTheAngles)
     options.Quality = quality;
     const auto result = MakeIsomorphicTriangulation(figure, options);
     EXPECT_EQ("", Check(figure, result));
-    const auto after = MeasurePair(result.Points, result.Triangles);
+    const auto after = MeasureQualities(result.Points, result.Triangles);
     EXPECT_LE(0.5 * std::min(SmallestAngle(start), 5.0), SmallestAngle(result));
     if (quality == PairQuality::Concordance)
     {
