@@ -36,6 +36,13 @@ std::uint64_t HilbertIndex(std::uint32_t x, std::uint32_t y, int bits)
   return index;
 }
 
+/// Whether two points on a line through a third are on the same side of it. Products of their
+/// distances could underflow.
+bool AreOnOneSide(const Vector2& from, const Vector2& a, const Vector2& b)
+{
+  return b.x != from.x ? (a.x > from.x) == (b.x > from.x) : (a.y > from.y) == (b.y > from.y);
+}
+
 /// A number from 0 to 63 that is k with probability 2^-(k + 1), always the same for an index.
 int RandomLevel(std::uint64_t index)
 {
@@ -430,8 +437,7 @@ ConstrainedTriangulation::Trace ConstrainedTriangulation::Follow(int from, int t
     const int right = this->Triangles[t].Vertices[NextCorner(i)];
     const int left = this->Triangles[t].Vertices[PreviousCorner(i)];
     const int rightSign = this->Sign(from, to, right);
-    if (rightSign == 0 &&
-      Dot(this->Points[right] - this->Points[from], this->Points[to] - this->Points[from]) > 0.0)
+    if (rightSign == 0 && AreOnOneSide(this->Points[from], this->Points[right], this->Points[to]))
     {
       trace.Result = Trace::Outcome::MeetsVertex;
       trace.Obstacle = { right, right };

@@ -233,6 +233,27 @@ TEST(IsomorphicTriangulation, LeavesOutAsFewSegmentsAsPossible)
   EXPECT_EQ(3u, result.Segments.size());
 }
 
+TEST(IsomorphicTriangulation, SegmentsThroughPointsSoNearThatProductsUnderflow)
+{
+  for (const double unit : { 1e-150, 1e-170, 1e-300 })
+  {
+    for (const Vector2& along :
+      { Vector2{ unit, 0.0 }, Vector2{ 0.0, unit }, Vector2{ unit, unit } })
+    {
+      FigurePair figure;
+      for (const Vector2& p : { Vector2{}, along, 2.0 * along, Vector2{ 1.0, 0.0 },
+             Vector2{ 1.0, 1.0 }, Vector2{ 0.0, 1.0 } })
+      {
+        Add(figure, p, p);
+      }
+      figure.Lines = { { 0, 2 } };
+      const auto result = MakeIsomorphicTriangulation(figure, {});
+      EXPECT_TRUE(result.IsComplete()) << unit << " " << along.x << " " << along.y;
+      EXPECT_EQ(0, result.NumberOfAddedPoints);
+    }
+  }
+}
+
 TEST(IsomorphicTriangulation, PointsOnFramesAndOutlines)
 {
   // A landmark in the middle of the outline's edge, and others on edges and corners of a frame.
