@@ -4,16 +4,16 @@
  * @class   vtkHomeomorphismAlgorithm
  * @brief   superclass of the filters that use a homeomorphism between two triangulations
  *
- * The meshes are the source P (input port 0) and the target Q (input port 1), two vtkPolyData with
- * the same cells, which must be triangles, and with corresponding points. The order of a triangle's
- * three points may differ. Both may lie in any planes or be surfaces in 3-space, closed or not. For
- * every piece of the output, the filters request the whole meshes. Output that depends on the
- * meshes alone is part of piece 0. The same applies to data that depends upstream on the same
- * algorithms as a mesh.
+ * The meshes are the source P (input port 0) and the target Q (input port 1): two vtkPolyData with
+ * the same triangles and different point coordinates. Triangle i of P and triangle i of Q have the
+ * same three point ids, in any order. Each mesh lies in any plane or is a surface in 3-space,
+ * closed or not. For every piece of the output, the filters request the meshes as a whole. Output
+ * that depends only on the meshes is part of piece 0. The same applies to data that depends
+ * upstream on the same algorithms as a mesh.
  *
- * The meshes are validated. Defects are reported with their kind, the number of triangles and the
- * first of their ids. They cause an error unless MaskInvalidTriangles excludes the triangles. Empty
- * meshes are valid; all points are then outside. The result is cached until the meshes or the
+ * The meshes are validated. Defects are reported with their kind, the number of triangles, and the
+ * first cell ids. They are errors unless MaskInvalidTriangles excludes the triangles. Empty meshes
+ * are valid; all points are then outside. The prepared map is cached until the meshes or the
  * options change. If coordinates are overwritten in place, call Modified() on the points or on the
  * mesh.
  *
@@ -22,8 +22,9 @@
  * GetErrorCode() returns 0, or one of ErrorCodes after an update that failed or was aborted.
  * Filters do not communicate with other processes while they execute; see ReduceStatistics.
  *
- * Points are processed in parallel (vtkSMPTools), and results do not depend on the number of
- * threads. Different filters may use the same meshes in different threads.
+ * Points are processed in parallel (vtkSMPTools); results do not depend on the number of threads.
+ * A filter must not be used by several threads at the same time. Different filters may use the same
+ * meshes in different threads.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkHomeomorphismTransform, vtkJacobianContinuity,
  * vtkResampleThroughHomeomorphism, vtkTriangularCoordinates
@@ -59,7 +60,7 @@ public:
   enum ErrorCodes
   {
     MESHES_REFUSED = 40000, ///< the meshes are invalid or missing (vtkErrorCode::UserError)
-    DATA_REFUSED = 40001,   ///< the data has a type or contents that cannot be processed
+    DATA_REFUSED = 40001,   ///< the type or the contents of the data cannot be processed
     UPDATE_ABORTED = 40002  ///< the update was aborted; outputs are incomplete or empty
   };
 
@@ -70,34 +71,36 @@ public:
   ///@}
 
   ///@{
-  /// The target mesh, input port 1. vtkTriangularCoordinates has no target.
+  /// The target mesh, input port 1. vtkTriangularCoordinates has no target; setting one is an
+  /// error.
   void SetTargetConnection(vtkAlgorithmOutput* output);
   void SetTargetData(vtkPolyData* target);
   ///@}
 
   ///@{
-  /// The data, on the input port after the meshes: a vtkDataSet or a vtkDataObjectTree. It is
-  /// optional. vtkJacobianContinuity has no such port.
+  /// The data, on the input port after the meshes (2, or 1 in vtkTriangularCoordinates): a
+  /// vtkDataSet or a vtkDataObjectTree. Optional. Only filters that map or describe data have it.
   void SetDataConnection(vtkAlgorithmOutput* output);
   void SetDataObject(vtkDataObject* data);
   ///@}
 
-  /// Number of points of the data, or of the requested piece of it, that the last update found
-  /// outside the domain. Points that belong to another piece (vtkGhostType) are not counted. -1 if
-  /// the meshes or the data were refused. See ReduceStatistics.
+  /// Number of points of the data, or of its requested piece, that were outside the domain in the
+  /// last update. Points that belong to another piece (vtkGhostType) are not counted. -1 if the
+  /// meshes or the data were refused. See ReduceStatistics.
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 
-  /// Number of valid triangles that are discordant in P or Q if the Contour system is used with
-  /// USE_LINEAR, 0 otherwise. vtkTriangularCoordinates counts them for all systems.
+  /// Number of valid triangles that are discordant in P or Q, in the CONTOUR system with
+  /// USE_LINEAR; otherwise 0. vtkTriangularCoordinates counts them in all systems.
   vtkGetMacro(NumberOfDiscordantTriangles, vtkIdType);
 
   ///@{
-  /// Statistics of the last map of the CUBIC system, 0 for other systems: the numbers of cubic
-  /// elements (the infinitely many similar ones at an exceptional vertex count once), triangles cut
-  /// into 19 elements, rings of elements around vertices, and linear systems solved; the integral
-  /// of the squared second derivatives, in the target's units per unit of the source, squared; the
-  /// numbers of interior and boundary points at which the map has no derivative, and of triangles
-  /// whose determinant is not certified to be positive; points in these are treated as outside.
+  /// Statistics of the last map of the CUBIC system; 0 in other systems. In this order: the numbers
+  /// of cubic elements (of the infinitely many similar ones at an exceptional vertex, one ring is
+  /// counted), of triangles cut into 19 elements, of rings of elements around vertices, and of
+  /// linear systems solved; the integral of the squared second derivatives, in (units of the target
+  /// / units of the source)^2; the numbers of interior and boundary points at which the map has no
+  /// derivative; and the number of triangles in which the determinant is not certified to be
+  /// positive. Points in such triangles are treated as outside.
   vtkGetMacro(NumberOfCubicElements, vtkIdType);
   vtkGetMacro(NumberOfCutTriangles, vtkIdType);
   vtkGetMacro(NumberOfVertexRings, vtkIdType);
@@ -111,16 +114,17 @@ public:
   /// Combines the statistics of the last update over all processes of @a controller (null: the
   /// global controller; if there is none, nothing happens). Numbers of points and of continuity
   /// features become sums, or -1 if a process has -1. Numbers of triangles and jumps become maxima.
-  /// Every process must call this after its update, even after an error. The next update replaces
-  /// the statistics by those of its own process. The ParaView plugin calls this.
+  /// Every process must call this after its update, even after an error. After the next update, the
+  /// statistics are again those of the own process. The ParaView plugin calls this.
   virtual void ReduceStatistics(vtkMultiProcessController* controller);
 
-  /// The defects that the last update found in the meshes, one row for each kind and mesh. The
+  /// The defects of the meshes found in the last update, one row for each kind and mesh. The
   /// columns are described in Documentation/diagnostics.md. The field data array `Ids` has all cell
   /// ids.
   vtkTable* GetDiagnostics();
 
-  /// Number of times the meshes have been read and validated since the filter was created.
+  /// The number of times that the meshes have been read and validated since the filter was
+  /// created.
   vtkIdType GetNumberOfMeshBuilds();
 
 protected:
@@ -144,22 +148,22 @@ protected:
   virtual int Execute(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) = 0;
 
-  /// The map between the meshes, or the triangulation alone if @a target is null. Reports defects;
-  /// returns null if the meshes were refused.
+  /// The map between the meshes, or only the triangular coordinates of @a source if @a target is
+  /// null. Reports defects. Returns null if the meshes were refused.
   std::shared_ptr<const homeomorphism::Homeomorphism> GetMap(
     vtkPolyData* source, vtkPolyData* target);
 
   /// Sets the error code if an input has a type that its port does not accept. RequestDataObject
-  /// must call this, because the pipeline then executes no further request.
+  /// must call this, because in this case the pipeline executes no further request.
   void CheckInputTypes(vtkInformationVector** inputs);
 
   /// Sets the error code and the statistics of a failed update. Returns 0.
   int Fail(int errorCode);
 
-  /// Whether a request is for piece 0, which has the output that depends on the meshes alone.
+  /// Whether a request is for piece 0, which has the output that depends only on the meshes.
   static bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
-  /// Whether a port's input depends on the same algorithms as an input of the ports before it. It
-  /// is then requested whole as well, and its results are part of piece 0.
+  /// Whether the input of a port depends upstream on the same algorithms as an input of the ports
+  /// before it. It is then also requested as a whole, and its results are part of piece 0.
   bool DependsOnPortsBefore(int port);
 
   vtkIdType NumberOfOutsidePoints = 0;

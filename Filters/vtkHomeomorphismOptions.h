@@ -9,29 +9,30 @@
  * vtkHomeomorphismOptionsMacro() declares the options of the map, which vtkHomeomorphismAlgorithm
  * and vtkHomeomorphismTransform have:
  *
- * - `CoordinateSystem`: LINEAR (the piecewise linear map), CONTOUR (the published construction;
- *   concordant triangles only), SMOOTH (default; twice continuously differentiable except at the
- *   vertices, any triangle) or CUBIC (planar meshes only; continuously differentiable at interior
- *   vertices too, certified one to one, with little bending; edges are bent, so triangles are not
- *   mapped onto triangles). See Documentation/cubic.md.
+ * - `CoordinateSystem`: LINEAR (the piecewise linear map), CONTOUR (the published construction, for
+ *   concordant triangles), SMOOTH (default; twice continuously differentiable except at the
+ *   vertices, for any triangle) or CUBIC (for planar meshes; also continuously differentiable at
+ *   interior vertices, certified to be one to one, with little bending; edges become curves, so
+ *   triangles are not mapped onto triangles). See Documentation/cubic.md.
  * - `CubicBending`: the map of the CUBIC system: LEAST (default; the least bending for which a
- *   certificate was found) or LOCAL (explicit; moving a point changes the map nearby only).
- * - `MaximumDeviation`: the greatest distance of images in the SMOOTH and CUBIC systems from those
- *   in LINEAR, in the target's units, positive. Unlimited by default. CONTOUR has no such limit.
- * - `CertificateMargin`: with LEAST, the smallest accepted certificate of the determinant, relative
- *   to LINEAR's determinant or, in triangles that are cut, to LOCAL's certificate. 0.02 by default,
- *   in [0, 0.5].
- * - `FairnessRefinement`: with LEAST, the number of times that triangles are first divided into
- *   four, 0 (default) to 4. Each level reduces bending and takes four times as long.
- * - `CenterPoint`: where the contours of the Contour system start: CENTROID (default), or INCENTER,
+ *   certificate was found) or LOCAL (explicit; moving a point changes the map only nearby).
+ * - `MaximumDeviation`: the largest allowed distance between images in the SMOOTH or CUBIC system
+ *   and in LINEAR, in the target's units; positive. Unlimited by default. Without effect in
+ *   CONTOUR.
+ * - `CertificateMargin`: for CUBIC with LEAST, the smallest accepted certificate of a triangle,
+ *   relative to the determinant of LINEAR or, in triangles that are cut, to the certificate of
+ *   LOCAL. 0.02 by default, in [0, 0.5].
+ * - `FairnessRefinement`: for CUBIC with LEAST, the number of times that each triangle is first
+ *   divided into four, 0 (default) to 4. Each level reduces bending and takes four times as long.
+ * - `CenterPoint`: where the contours of the CONTOUR system start: CENTROID (default), or INCENTER,
  *   with which every triangle is concordant.
- * - `DiscordantTriangles`: in the Contour system, triangles that are discordant in either mesh are
- *   an error (REFUSE, default) or are mapped by the Linear system (USE_LINEAR). The map stays
- *   continuous.
- * - `Tolerance`: the distance from the domain, or from a surface, up to which points are mapped
- *   like the nearest point of the domain, relative to the diagonal of the mesh's bounding box. 0
- *   (default) allows only for the rounding of coordinates. Not negative.
- * - `MaskInvalidTriangles`: whether triangles that are invalid by themselves (degenerate, not
+ * - `DiscordantTriangles`: in the CONTOUR system with CENTROID, triangles that are discordant in
+ *   either mesh are an error (REFUSE, default) or are mapped by the LINEAR system (USE_LINEAR; the
+ *   map remains continuous).
+ * - `Tolerance`: the largest distance from the domain at which points are mapped like the nearest
+ *   point of the domain, relative to the diagonal of the mesh's bounding box; at least 0. 0
+ *   (default) allows only for the rounding of coordinates.
+ * - `MaskInvalidTriangles`: whether triangles that are defective by themselves (degenerate, not
  *   finite, flipped, overlapping, at a non-manifold edge) are left out with a warning, which makes
  *   holes, instead of refusing the meshes. All mutually overlapping triangles are left out. Off by
  *   default.
@@ -39,18 +40,18 @@
  * vtkHomeomorphismMappingMacro() declares the options of the filters that map data,
  * vtkDifferentiableHomeomorphism and vtkResampleThroughHomeomorphism:
  *
- * - `Inverse`: whether data over the target's domain is mapped to the source's, instead of the
- *   reverse. Off by default.
+ * - `Inverse`: whether data is mapped from the target's domain to the source's. Off by default: it
+ *   is mapped from the source's domain to the target's.
  * - `TransformActiveAttributes`: whether the active vectors, normals and tensors are transformed by
- *   the Jacobian. On by default. If off, they keep their components.
- * - `BlankOutside`: whether points outside (or without values) and the cells that use them are
- *   blanked in the output (vtkGhostType). On by default.
+ *   the Jacobian. On by default. If off, their components are not changed.
+ * - `BlankOutside`: whether points outside the domain, points without values, and the cells that
+ *   use them are blanked in the output (vtkGhostType). On by default.
  */
 
 #ifndef vtkHomeomorphismOptions_h
 #define vtkHomeomorphismOptions_h
 
-/// One line for each option: name, type, default, least and greatest value. Switches have only a
+/// One line for each option: name, type, default, smallest and largest value. Switches have only a
 /// name and a default.
 #define vtkHomeomorphismOptionsList(Option, Switch)                                                \
   Option(CoordinateSystem, int, SMOOTH, LINEAR, CUBIC);                                            \

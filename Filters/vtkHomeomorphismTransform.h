@@ -8,19 +8,20 @@
  * such as vtkTransformFilter, vtkGeneralTransform or vtkImageReslice. vtkImageReslice needs the map
  * from the output to the input: use GetInverse(), or, except in the CUBIC system, exchange source
  * and target. The options are described in vtkHomeomorphismOptions.h. Inverse and derivative are
- * exact to a few rounding errors; InverseTolerance and InverseIterations have no effect.
+ * accurate to a few rounding errors; InverseTolerance and InverseIterations have no effect.
  *
- * Both meshes must be planar, in any planes. A point's distance from the source's plane becomes its
- * distance from the target's, as in vtkDifferentiableHomeomorphism.
+ * Both meshes must be planar, in any planes. The distance of a point from the plane of the source
+ * becomes the distance of its image from the plane of the target.
  *
  * A point outside the domain is mapped to a point far outside both meshes. Its three coordinates
- * are GetOutsideCoordinate(): 1e30 or, if that is more, a thousand times the meshes' largest
- * coordinate. vtkImageReslice then uses its background color (not with its Wrap or Mirror modes).
- * The derivative is NaN. If a mesh is missing or refused (an error), all points are outside.
+ * are GetOutsideCoordinate(): 1e30 or, if that is larger, a thousand times the largest coordinate
+ * of the meshes. vtkImageReslice then uses its background color (except in its Wrap and Mirror
+ * modes). The derivative is NaN. If a mesh is missing or refused, an error is reported, and all
+ * points are treated as outside.
  *
- * After an update, any number of threads may use the transform. Methods for arrays use
- * vtkSMPTools. Copies and inverses of an updated transform share the map. Different transforms may
- * use the same meshes in different threads.
+ * After an update, any number of threads may use the transform at the same time. Methods for arrays
+ * use vtkSMPTools. Copies and inverses of an updated transform share the map. Different transforms
+ * may use the same meshes in different threads.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangularCoordinates
  */
@@ -46,8 +47,9 @@ public:
   vtkHomeomorphismOptionsMacro();
 
   ///@{
-  /// The source and target meshes. They are kept by reference; modifications take effect at the
-  /// next update.
+  /// The source and target meshes, two vtkPolyData with the same triangles (see
+  /// vtkHomeomorphismAlgorithm). They are kept by reference; modifications take effect at the next
+  /// update.
   virtual void SetSource(vtkPolyData* source);
   vtkGetObjectMacro(Source, vtkPolyData);
   virtual void SetTarget(vtkPolyData* target);
@@ -55,7 +57,7 @@ public:
   ///@}
 
   ///@{
-  /// IsInside: whether a point is in the domain that the transform maps from (the target's if it is
+  /// IsInside: whether a point is in the domain of the map (the target's if the transform is
   /// inverted). GetOutsideCoordinate: the value of all three coordinates of the image of a point
   /// that is not. Both methods update the transform.
   bool IsInside(const double point[3]);

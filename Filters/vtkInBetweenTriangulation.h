@@ -2,18 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkInBetweenTriangulation
- * @brief   triangulations on the way from a source to a target, for morphs
+ * @brief   triangulations between a source and a target, for morphs
  *
  * vtkInBetweenTriangulation moves the points of a triangulation (input port 0, the source) to those
- * of another with the same triangles (input port 1, the target). At Time 0 the points are exactly
- * those of the source, at Time 1 those of the target. A morph maps data from the source to the
- * output for a sequence of times, with vtkDifferentiableHomeomorphism, or images from both ends.
+ * of another with the same triangles (input port 1, the target). At Time 0, the points are exactly
+ * those of the source, at Time 1 exactly those of the target. For a morph, map data from the source
+ * to the output with vtkDifferentiableHomeomorphism, for a sequence of times; for a morph of two
+ * images, also map data from the target to the output.
  *
- * A triangle may fold on the way: its orientation is then reversed at some times, though not at
- * the ends, and the output at these times is not a valid target of a map. The times follow from the
- * zeros of a quadratic polynomial, so they are known for the whole path, not only at Time. Path
- * selects how folds are avoided. If they cannot be avoided, they are reported as data
- * (NumberOfFoldingTriangles and the methods after it), not as an error.
+ * A triangle may fold: its orientation may be reversed at some times, even if it is not at the
+ * ends. The output at these times is not a valid target of a map. The times are computed from the
+ * zeros of a quadratic polynomial, so they are known for the whole path, not only for Time. Path
+ * selects how folds are avoided. Folds that cannot be avoided are not an error; see
+ * NumberOfFoldingTriangles and related methods.
  *
  * The output has the source's cells, point data and cell data, points of double precision, and the
  * cell array `Folded` (unsigned char): 1 if the triangle's orientation at Time differs from that in
@@ -23,7 +24,8 @@
  * (GetPlanar). Other meshes move along straight lines, and no folds are reported.
  *
  * See vtkHomeomorphismAlgorithm for the meshes and for MaskInvalidTriangles, the only one of its
- * options that has an effect: masked triangles are ignored for the path and for folds.
+ * options that has an effect: masked triangles are ignored when the path is chosen and when folds
+ * are counted.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
  */
@@ -46,23 +48,22 @@ public:
   {
     /// Straight lines, at constant speed.
     STRAIGHT = 0,
-    /// The mesh rotates and scales as a whole, at a constant rate, by the similarity that maps the
-    /// source to the target best (least squares over the points). Points move along straight lines
-    /// relative to it.
+    /// The mesh as a whole rotates and scales at a constant rate, according to the similarity that
+    /// best maps the source to the target (least squares over the points). Points move along
+    /// straight lines relative to it.
     ROTATING = 1,
-    /// STRAIGHT, unless triangles fold on that path and fewer fold on the ROTATING path.
+    /// ROTATING if fewer triangles fold on that path, otherwise STRAIGHT.
     FEWEST_FOLDS = 2
   };
 
   ///@{
-  /// How far the points have moved, from 0 (the source) to 1 (the target). 0.5 by default.
+  /// The position on the path, from 0 (the source) to 1 (the target). 0.5 by default.
   vtkSetClampMacro(Time, double, 0.0, 1.0);
   vtkGetMacro(Time, double);
   ///@}
 
   ///@{
-  /// See Paths. FEWEST_FOLDS by default, which depends on the meshes only, so that all times use
-  /// the same path.
+  /// See Paths. FEWEST_FOLDS by default. The path does not depend on Time.
   vtkSetClampMacro(Path, int, STRAIGHT, FEWEST_FOLDS);
   vtkGetMacro(Path, int);
   ///@}
@@ -71,9 +72,9 @@ public:
   vtkGetMacro(UsedPath, int);
 
   ///@{
-  /// The angle by which the mesh rotates from source to target on a rotating path, in degrees
-  /// within [-180, 180], counterclockwise with respect to the plane's axes in their order, and the
-  /// factor by which lengths scale. 0 and 1 on a straight path.
+  /// For a rotating path, the angle by which the mesh rotates from source to target, in degrees in
+  /// [-180, 180], counterclockwise with respect to the plane's axes in their order, and the factor
+  /// by which lengths scale. 0 and 1 for a straight path.
   vtkGetMacro(RotationAngle, double);
   vtkGetMacro(ScaleFactor, double);
   ///@}
@@ -85,9 +86,9 @@ public:
   vtkGetMacro(Mirrored, bool);
 
   ///@{
-  /// Number of triangles that fold at some time on the path, the cell id of the first one to fold
-  /// (-1 if there is none), the time at which it folds, and the time at which the last one unfolds.
-  /// Without folds, the times are 1 and 0.
+  /// The number of triangles that fold at some time on the path, the cell id of the first triangle
+  /// that folds (-1 if there is none), the time at which it folds, and the time at which the last
+  /// one unfolds. Without folds, the times are 1 and 0.
   vtkGetMacro(NumberOfFoldingTriangles, vtkIdType);
   vtkGetMacro(FirstFoldingTriangle, vtkIdType);
   vtkGetMacro(FirstFoldTime, double);
@@ -100,7 +101,7 @@ public:
   vtkPolyData* GetOutput(int port);
   ///@}
 
-  /// Number of triangles that are folded at Time: the sum of the array `Folded`.
+  /// The number of triangles that are folded at Time: the sum of the array `Folded`.
   vtkGetMacro(NumberOfFoldedTriangles, vtkIdType);
 
 protected:

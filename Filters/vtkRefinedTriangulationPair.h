@@ -4,31 +4,31 @@
  * @class   vtkRefinedTriangulationPair
  * @brief   a finer pair whose piecewise linear map approximates a homeomorphism
  *
- * vtkRefinedTriangulationPair takes a pair of triangulations, the source (input port 0) and the
- * target (input port 1), and subdivides their triangles until the piecewise linear map of the finer
- * pair differs from the homeomorphism of the pair in the given coordinate system by at most
- * MaximumError. Software that supports only piecewise linear maps, such as PROJ (tinshift), can
- * then use the homeomorphism with a known accuracy.
+ * vtkRefinedTriangulationPair subdivides the triangles of a pair, the source (input port 0) and the
+ * target (input port 1), until the piecewise linear map of the finer pair differs from the
+ * homeomorphism of the original pair in the chosen CoordinateSystem by at most MaximumError.
+ * Software that supports only piecewise linear maps, such as PROJ (tinshift), can then use the
+ * homeomorphism with a known accuracy.
  *
  * Output port 0 is the finer source, port 1 the finer target. Both have the same triangles. The
- * first points are those of the inputs, unchanged and with their ids. Added points bisect edges of
- * the source. In the target they are the images of those points. Points on the boundary stay on its
- * edges, up to the rounding of coordinates, and exactly on edges parallel to an axis. The finer
- * meshes are conforming: no vertex lies inside an edge of another triangle. The finer pair is
- * validated like any pair.
+ * first points are those of the inputs, unchanged and with their ids. In the source, added points
+ * bisect edges; in the target, they are the images of those points. Points on the boundary stay on
+ * its edges, up to the rounding of coordinates, and exactly on edges parallel to an axis. The finer
+ * meshes are conforming: no vertex lies in the interior of an edge of another triangle. The finer
+ * pair is validated like any pair.
  *
  * Point data of each mesh is interpolated at added points with their barycentric coordinates in the
- * original triangle. PROJ interpolates heights in the same way, so the heights of the finer pair
- * are the same functions of the point. Cell data is copied from the original triangle. The cell
- * array `OriginalCellIds` (vtkIdType) has the cell id of the original triangle. Cells that are not
- * triangles are dropped, and so are arrays that do not have one tuple for each point or cell.
+ * original triangle. PROJ interpolates heights in the same way, so refinement does not change
+ * heights. Cell data is copied from the original triangle. The cell array `OriginalCellIds`
+ * (vtkIdType) has the cell id of the original triangle. Cells that are not triangles, and arrays
+ * that do not have one tuple for each point or cell, are dropped.
  *
  * The error is measured at 595 points of each triangle, including its edges; it is not bounded
  * between these points. Triangles are measured in parallel (vtkSMPTools); results do not depend on
  * the number of threads. See vtkHomeomorphismAlgorithm for the meshes and the options of the
  * homeomorphism. Masked triangles are not part of the finer pair.
  *
- * If MaximumError cannot be reached, the outputs are empty and an error is reported; see Results.
+ * If MaximumError cannot be reached, the outputs are empty, and an error is reported; see Results.
  *
  * @sa vtkDifferentiableHomeomorphism, vtkTriangulationPairReport
  */
@@ -50,9 +50,9 @@ public:
   enum Results
   {
     REFINED = 0,            ///< the error is within MaximumError
-    TOO_MANY_TRIANGLES = 1, ///< MaximumError needs more than MaximumNumberOfTriangles
-    BELOW_ROUNDING = 2,     ///< MaximumError needs edges shorter than the rounding of coordinates
-    INVALID = 3,            ///< the meshes were refused, or rounding makes the finer pair invalid
+    TOO_MANY_TRIANGLES = 1, ///< MaximumError requires more than MaximumNumberOfTriangles
+    BELOW_ROUNDING = 2,     ///< MaximumError is below the rounding of the coordinates
+    INVALID = 3,            ///< the meshes were refused, or the finer pair is invalid by rounding
     ABORTED = 4             ///< the update was aborted
   };
 
@@ -72,7 +72,7 @@ public:
   ///@}
 
   ///@{
-  /// The greatest number of triangles. 2,000,000 by default, at least 1.
+  /// The largest allowed number of triangles. 2,000,000 by default, at least 1.
   vtkSetClampMacro(MaximumNumberOfTriangles, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(MaximumNumberOfTriangles, vtkIdType);
   ///@}
@@ -80,8 +80,8 @@ public:
   /// See Results.
   vtkGetMacro(Result, int);
 
-  /// The largest measured error, in the target's units. If the refinement failed, the largest error
-  /// when it stopped, infinite if triangles are flipped.
+  /// The largest measured error, in the target's units. If the refinement failed, this is the
+  /// largest error when it stopped, infinite if triangles were flipped.
   vtkGetMacro(LargestError, double);
 
   /// The number of points at which the final error was measured.

@@ -2,25 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkResampleThroughHomeomorphism
- * @brief   resample data of one triangulated domain on a grid over the other
+ * @brief   resample data over one triangulated domain on a grid over the other
  *
- * vtkDifferentiableHomeomorphism moves the points of data. This filter keeps a grid in place, finds
- * the preimage of each grid point in the source's domain by the exact inverse of the map, and
- * interpolates the data there. It warps images and resamples data sets on regular grids.
+ * vtkDifferentiableHomeomorphism moves the points of data. This filter does not move the points of
+ * a grid: it computes the preimage of each grid point in the source's domain by the inverse of the
+ * map, and interpolates the data there. It warps images and resamples data sets on regular grids.
  *
- * The data (input port 2, a vtkDataSet or a composite of them; the source mesh if there is none)
- * lies over the source's domain and is requested whole. The grid (port 3, any vtkDataSet) lies over
+ * The data (input port 2, a vtkDataSet or vtkDataObjectTree; the source mesh if there is none) lies
+ * over the source's domain and is requested as a whole. The grid (port 3, any vtkDataSet) lies over
  * the target's domain. The default grid is a vtkImageData of SamplingDimensions over the bounds of
- * the target (or SamplingBounds); the target must then be parallel to the xy plane.
+ * the target (or SamplingBounds); the target must then be parallel to the xy plane. With Inverse,
+ * the data lies over the target's domain, and the grid over the source's.
  *
- * The output is the grid with the data's arrays as point data (cell data is that of the cell with
- * the preimage) and the point array `vtkValidPointMask` (unsigned char): 1 where there are values,
- * 0 outside the target's domain and where the data has no values. At points with 0, floating-point
- * arrays are NaN and others 0; NumberOfOutsidePoints is their number. Of the grid's own arrays,
- * only vtkGhostType is passed.
+ * The output is the grid with the data's arrays as point arrays (cell arrays have the value of the
+ * cell that contains the preimage) and the point array `vtkValidPointMask` (unsigned char): 1 where
+ * there are values, 0 outside the domain and where the data has no values. At points with 0,
+ * floating-point arrays are NaN, and others are 0; NumberOfOutsidePoints is the number of these
+ * points. Of the grid's own arrays, only vtkGhostType is passed.
  *
- * Images are interpolated linearly in each direction, other data with VTK's cells. An image without
- * active vectors, normals or tensors is resampled many times faster than other data.
+ * Images are interpolated linearly in each direction, other data with the interpolation functions
+ * of VTK's cells. An image without active vectors, normals or tensors is resampled many times
+ * faster than other data.
  *
  * @sa vtkHomeomorphismAlgorithm, vtkDifferentiableHomeomorphism
  */
@@ -54,8 +56,8 @@ public:
 
   ///@{
   /// The default grid: the numbers of points in x and y, at least 1 (256 x 256 by default), and the
-  /// rectangle (xmin, xmax, ymin, ymax) from the first to the last points. If xmin > xmax
-  /// (default), the rectangle is the bounds of the mesh.
+  /// rectangle (xmin, xmax, ymin, ymax) from the first to the last points. If xmin > xmax or ymin >
+  /// ymax (default), the rectangle is that of the bounds of the mesh.
   vtkSetVector2Macro(SamplingDimensions, int);
   vtkGetVector2Macro(SamplingDimensions, int);
   vtkSetVector4Macro(SamplingBounds, double);
