@@ -420,9 +420,10 @@ void vtkDifferentiableHomeomorphism::SetAttributeTransformation(
 {
   if (!name || transformation < NO_TRANSFORMATION || transformation > NORMAL_TRANSFORMATION)
   {
-    vtkErrorMacro(<< "SetAttributeTransformation takes an array's name and a transformation from "
-                  << NO_TRANSFORMATION << " to " << NORMAL_TRANSFORMATION << ", not "
-                  << (name ? name : "(none)") << " and " << transformation << ".");
+    vtkErrorMacro(
+      << "SetAttributeTransformation expects the name of an array and a transformation from "
+      << NO_TRANSFORMATION << " to " << NORMAL_TRANSFORMATION << ", not "
+      << (name ? name : "(none)") << " and " << transformation << ".");
     return;
   }
   this->Internal->Transformations[name] = static_cast<TransformationRule>(transformation);
@@ -595,8 +596,8 @@ int vtkDifferentiableHomeomorphism::Execute(
   else
   {
     vtkErrorMacro(<< "Data of type " << data->GetClassName()
-                  << " has no points that can be moved: give a point set, an image, a rectilinear "
-                     "grid, or a tree of those.");
+                  << " has no points that can be moved: use a point set, an image, a rectilinear "
+                     "grid, or a tree of these.");
     return this->Fail(DATA_REFUSED);
   }
   return 1;

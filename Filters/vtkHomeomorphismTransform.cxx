@@ -200,7 +200,7 @@ void vtkHomeomorphismTransform::InternalUpdate()
   if (!this->Source || !this->Target)
   {
     vtkErrorMacro(<< "The " << (this->Source ? "target" : "source")
-                  << " mesh is not set (SetSource, SetTarget): every point counts as outside.");
+                  << " mesh is not set (SetSource, SetTarget): all points are treated as outside.");
     return;
   }
   const auto map = this->Internal->Cache.Get(this->Source, this->Target, GetOptions(this));
@@ -215,8 +215,9 @@ void vtkHomeomorphismTransform::InternalUpdate()
     if (!geometry.IsPlanar())
     {
       vtkErrorMacro(<< "The points of the " << (domain == Domain::Source ? "source" : "target")
-                    << " mesh do not lie in a plane, so the map is not one of space: every point "
-                       "counts as outside. Use vtkDifferentiableHomeomorphism for surfaces.");
+                    << " mesh do not lie in a plane, but a transform needs planar meshes: all "
+                       "points are treated as outside. Use vtkDifferentiableHomeomorphism for "
+                       "surfaces.");
       return;
     }
     this->Internal->OutsideCoordinate = std::max(this->Internal->OutsideCoordinate,

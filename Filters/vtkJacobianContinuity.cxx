@@ -296,8 +296,8 @@ int vtkJacobianContinuity::Execute(
     if (!map->GetPair().GetGeometry(Domain::Source).IsPlanar())
     {
       vtkErrorMacro(
-        << "A transform is measured on a planar triangulation only. For a surface, give the "
-           "target mesh (input port 1).");
+        << "A transform is measured only on planar meshes. For a surface, set the target mesh "
+           "(input port 1).");
       return this->Fail(MESHES_REFUSED);
     }
   }

@@ -188,7 +188,7 @@ int vtkRefinedTriangulationPair::Execute(
   MeshDiagnostics problems;
   if (!TriangulationPair::Read(meshes[0], meshes[1], false, problems))
   {
-    vtkErrorMacro(<< "In the rounding of coordinates the finer meshes are not valid. Increase "
+    vtkErrorMacro(<< "The finer meshes are invalid because coordinates are rounded. Increase "
                      "MaximumError. "
                   << DescribeProblems(problems, MeshDiagnostic::Outcome::Refused));
     return this->Fail(MESHES_REFUSED);

@@ -217,7 +217,7 @@ std::string DescribeDefects(vtkDataSet* data)
   if (!points.IsEmpty())
   {
     return points.Tell("point") +
-      " coordinates that are not finite, among which values cannot be looked for. Remove them.";
+      " coordinates that are not finite, so that the data cannot be probed. Remove them.";
   }
   const std::string text = DescribeArrays(data->GetPointData(), "point", numberOfPoints);
   return !text.empty() ? text
@@ -398,10 +398,8 @@ bool vtkResampleThroughHomeomorphism::MakeImage(
   std::array<double, 6> bounds = FindBounds(mesh);
   if (bounds[4] != bounds[5] && bounds[4] <= bounds[5])
   {
-    vtkErrorMacro(<< "An image can be laid over a mesh that is parallel to the xy plane only; this "
-                     "one's z goes from "
-                  << bounds[4] << " to " << bounds[5]
-                  << ". Give the points at which values are wanted (input port 3).");
+    vtkErrorMacro(<< "The default grid needs a mesh parallel to the xy plane, but z ranges from "
+                  << bounds[4] << " to " << bounds[5] << ". Set a grid (input port 3).");
     return false;
   }
   if (this->SamplingBounds[0] <= this->SamplingBounds[1] &&

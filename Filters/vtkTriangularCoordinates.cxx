@@ -192,8 +192,8 @@ int vtkTriangularCoordinates::Execute(
   vtkPolyData* described = vtkPolyData::GetData(outputs, 2);
   if (this->CoordinateSystem == CUBIC)
   {
-    vtkErrorMacro(<< "The Cubic system is a map and has no triangular coordinates: use the Linear, "
-                     "Contour or Smooth system.");
+    vtkErrorMacro(<< "The Cubic system has no triangular coordinates: use the Linear, Contour or "
+                     "Smooth system.");
     return this->Fail(MESHES_REFUSED);
   }
   const std::shared_ptr<const Homeomorphism> map = this->GetMap(triangulation, nullptr);

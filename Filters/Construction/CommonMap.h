@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CommonMap.h
-/// One planar map drawn in two domains.
+/// A planar map that is drawn in two domains.
 
 #ifndef homeomorphism_CommonMap_h
 #define homeomorphism_CommonMap_h
@@ -17,9 +17,10 @@ namespace homeomorphism
 {
 
 /// Vertices and edges with one drawing in each of two domains. The drawings are isomorphic at all
-/// times: an edge is added only if it crosses nothing in either domain, enters the same corner at
-/// both ends, and separates the other components in the same way. Each drawing is the constrained
-/// part of a constrained Delaunay triangulation, whose other edges are the candidates for more.
+/// times: an edge is added only if, in both domains, it crosses nothing, has the same place in the
+/// cyclic order of edges at both ends, and separates the other components in the same way. Each
+/// drawing consists of the constrained edges of a constrained Delaunay triangulation, whose other
+/// edges are candidates.
 class CommonMap
 {
 public:
@@ -40,14 +41,16 @@ public:
     Refusal Why = Refusal::None;
     /// In which domain, or -1.
     int Domain = -1;
-    /// The constrained edge crossed, the vertex met (twice), or vertices on different sides.
+    /// The ends of the constrained edge that is crossed, the vertex that is met (twice), or
+    /// vertices on different sides.
     std::vector<int> Vertices;
   };
 
   /// A face that is not a triangle.
   struct Face
   {
-    /// The boundary's closed walks, the face on the left; one vertex alone is a walk, too.
+    /// The closed walks along the boundary, with the face on the left. An isolated vertex is also a
+    /// walk.
     std::vector<std::vector<int>> Walks;
     /// If there is one walk: the constrained Delaunay triangulation of the face in each domain, as
     /// triples of positions along the walk.
@@ -60,35 +63,38 @@ public:
   CommonMap(const CommonMap&) = delete;
   CommonMap& operator=(const CommonMap&) = delete;
 
-  /// Adds an edge if that is allowed.
+  /// Adds an edge unless it is refused.
   Answer Add(int from, int to);
 
   /// The outcome of drawing a polygonal line.
   enum class Drawn
   {
     Yes,
-    /// Double precision did not suffice; the drawings are isomorphic all the same.
+    /// Double precision did not suffice; the drawings are still isomorphic.
     No,
-    /// Rounding has put a vertex into another face: the map is of no more use.
+    /// Rounding has moved a vertex into another face; the map cannot be used any more.
     Broken
   };
 
   /// Joins two walks of a face by an edge or by a polygonal line with added vertices.
   Drawn Bridge(const Face& face);
 
-  /// Divides a face with one walk between two of its corners, by a polygonal line with few bends
-  /// that leaves many corners on both of its sides.
+  /// Divides a face with one walk by a polygonal line between two of its corners, with few bends
+  /// and with many corners on both sides.
   Drawn Split(const Face& face);
 
-  /// Closes the faces that an even number of loops surround; edges in them are refused.
+  /// Marks the faces that are surrounded by an even number of loops as outside; edges in them are
+  /// refused.
   void MarkOutside(const std::vector<std::array<int, 2>>& loopEdges);
   bool IsOutside(int vertex, int domain) const;
 
-  /// Chooses in which order edges are tried: 0 by the longer of the two lengths, 1 by their sum, 2
-  /// and 3 by the length in one domain, others by the longer length in a different disorder each.
+  /// Selects the order in which edges are tried: 0 by the longer of the two lengths, 1 by their
+  /// sum, 2 and 3 by the length in one domain; all others by the longer length with a different
+  /// perturbation each.
   void SetOrder(int order) { this->Order = order; }
 
-  /// Length of an edge in shares of the figure's extent, of both domains in the way of the order.
+  /// The length of an edge as a fraction of the figure's extent; the lengths in both domains are
+  /// combined as the order requires.
   double ScaledLength(int from, int to) const;
 
   /// Unconstrained edges of both triangulations inside the domain, the shortest first.
@@ -105,7 +111,7 @@ public:
 private:
   using Triangulation = ConstrainedTriangulation;
 
-  /// The bends of a line in one domain, if there is room for one.
+  /// The bends of a line in one domain, if there is room for it.
   struct Way
   {
     bool Exists = false;

@@ -17,23 +17,24 @@
 namespace homeomorphism
 {
 
-/// Positive only if @a d lies certainly inside the circle through the counterclockwise points @a a,
-/// @a b, @a c. Doubtful cases count as outside: every flip then lowers the lifted surface, so that
-/// flips cannot cycle.
+/// Whether @a d is certainly inside the circle through the counterclockwise points @a a, @a b, @a
+/// c. Doubtful cases are treated as outside: then every flip lowers the lifted surface, so flips
+/// cannot cycle.
 bool CertainlyInCircle(const Vector2& a, const Vector2& b, const Vector2& c, const Vector2& d);
 
-/// Ranks of points along a Hilbert curve through their bounds; equal cells in the order of x, y.
+/// Ranks of points along a Hilbert curve through their bounding box. Points in the same cell are
+/// ordered by x, then y.
 std::vector<int> HilbertOrder(const std::vector<Vector2>& points);
 
-/// A triangulation of a box, with some of its edges constrained. Every decision about topology is
-/// taken by exact orientation. Vertices 0 to 3 are the box's corners.
+/// A triangulation of a box, with some of its edges constrained. Every topological decision is
+/// based on exact orientations. Vertices 0 to 3 are the corners of the box.
 class ConstrainedTriangulation
 {
 public:
   /// The number of vertices that belong to the box.
   static constexpr int BoxCorners = 4;
 
-  /// Edge k is opposite vertex k; vertices run counterclockwise.
+  /// Edge k is opposite vertex k; the vertices are in counterclockwise order.
   struct Triangle
   {
     std::array<int, 3> Vertices;
@@ -49,7 +50,7 @@ public:
     int Index = 0;
   };
 
-  /// What a segment between two vertices meets first.
+  /// The first obstacle of a segment between two vertices.
   struct Trace
   {
     enum class Outcome
@@ -61,20 +62,21 @@ public:
     Outcome Result = Outcome::Clear;
     /// The constrained edge that is crossed, or the vertex that is met (twice).
     std::array<int, 2> Obstacle{ { -1, -1 } };
-    /// A triangle at the first vertex: the edge's left one if the edge exists, else the one
-    /// entered.
+    /// A triangle at the first vertex: if the edge exists, the triangle to its left, otherwise the
+    /// first triangle that the segment enters.
     int First = -1;
     bool IsEdge = false;
-    /// Vertices of the edges crossed: first those to the left of the segment, then the right.
+    /// The ends of the edges that are crossed: first the one to the left of the segment, then the
+    /// one to the right.
     std::vector<std::pair<int, int>> Crossed;
   };
 
   /// Triangulates the box around @a points, whose first four become the box's corners.
-  /// @a points must outlive this and may grow; all points must be finite and different.
+  /// @a points must outlive this object and may grow; all points must be finite and distinct.
   explicit ConstrainedTriangulation(std::vector<Vector2>& points);
 
-  /// Whether a vertex can be inserted at a position: finite, in the box, not on a constrained edge
-  /// and not that of another vertex.
+  /// Whether a vertex can be inserted at a position: it must be finite, in the box, not on a
+  /// constrained edge, and not equal to that of another vertex.
   bool CanInsert(const Vector2& position) const;
 
   /// Inserts a vertex into the triangulation, for which CanInsert must be true.

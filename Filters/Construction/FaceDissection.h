@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file FaceDissection.h
-/// Common diagonals of two polygons that leave little for added points.
+/// Common diagonals of two polygons after which few added points are needed.
 
 #ifndef homeomorphism_FaceDissection_h
 #define homeomorphism_FaceDissection_h
@@ -15,11 +15,12 @@
 namespace homeomorphism
 {
 
-/// Diagonals that do not cross and lie inside both polygons, chosen by dynamic programming so that
-/// the faces they leave are triangles, the best ones there are, and few others with few corners: a
-/// face of r corners costs (r - 3) / 2. Takes m^2 d steps and 4 m^2 bytes if each of the m corners
-/// sees d others in both polygons. Pairs of positions of corners.
+/// Finds diagonals that do not cross and lie inside both polygons, by dynamic programming. Their
+/// faces are triangles, as good as possible, and few other faces with few corners: the cost of a
+/// face of r corners is (r - 3) / 2. Takes O(m^2 d) steps and 4 m^2 bytes if each of the m corners
+/// sees d others in both polygons.
 /// @param own a triangulation of each polygon by diagonals
+/// @return pairs of positions of corners
 std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
   const std::array<CornerTriangles, 2>& own, const QualityMeasure& quality);
 

@@ -34,7 +34,7 @@ const char* Words(FigureProblem::Remedy remedy)
     case FigureProblem::Remedy::CorrectCells:
       return " Give both figures the same points and cells.";
     case FigureProblem::Remedy::GiveFrames:
-      return " Add points off the line, or give frames.";
+      return " Add points off the line, or set frames.";
     case FigureProblem::Remedy::EnlargeFrames:
       return " Enlarge the frame, or remove these points.";
     case FigureProblem::Remedy::UseFrames:
@@ -100,7 +100,8 @@ std::string FigureProblem::Message(const std::vector<std::string>& names) const
       text = "Source and target do not have the same number of points.";
       break;
     case Kind::BadCell:
-      text = "A loop or line names a point that does not exist, repeats one, or is too short.";
+      text =
+        "A loop or line refers to a point that does not exist, repeats a point, or is too short.";
       break;
     case Kind::CellsDiffer:
       text = "Source and target do not have the same cells.";
@@ -119,39 +120,43 @@ std::string FigureProblem::Message(const std::vector<std::string>& names) const
       text = "Points have the same position" + where + ": " + points + ".";
       break;
     case Kind::Crossing:
-      text = "Segments cross" + where + ": ends " + points + ".";
+      text = "Segments cross" + where + "; their ends are the points " + points + ".";
       break;
     case Kind::PointOnSegment:
-      text = "A point lies on a segment" + where + " only: point and ends " + points + ".";
+      text = "A point lies on a segment" + where +
+        " only; the point and the ends of the segment are " + points + ".";
       break;
     case Kind::CyclicOrder:
-      text = "Segments follow each other in a different order around points " + points + ".";
+      text =
+        "Segments have different cyclic orders around points " + points + " in source and target.";
       break;
     case Kind::OtherFace:
-      text = "Segments surround points in one of source and target only: points " + points + ".";
+      text = "Segments surround points in only one of source and target: " + points + ".";
       break;
     case Kind::OutlineAgainstHole:
-      text = loop + " is an outline in one of source and target and a hole in the other: points " +
+      text = loop + " is an outline in one of source and target, and a hole in the other: points " +
         points + ".";
       break;
     case Kind::LoopSense:
-      text = loop + " changes its sense, and the first one does not, or the other way round.";
+      text = loop + " is mirrored in the target and the first loop is not, or the reverse.";
       break;
     case Kind::OutsideDomain:
       text = "Points are outside the domain" + where + ": " + points + ".";
       break;
     case Kind::HullsDiffer:
-      text = "The convex hulls differ: points " + points + " are on one of them only.";
+      text = "The convex hulls differ: points " + points + " are on only one of them.";
       break;
     case Kind::BadFrame:
-      text = "The frame is not a convex polygon" + where + ", or the frames differ in corners.";
+      text = "The frame is not a convex polygon" + where +
+        ", or the frames have different numbers of corners.";
       break;
     case Kind::PointLimit:
       text = std::to_string(this->Count) +
-        " points have to be added, more than allowed; the first near points " + points + ".";
+        " points have to be added, which is more than allowed; the first one near points " +
+        points + ".";
       break;
     case Kind::Precision:
-      text = "Double precision does not suffice in the face of points " + points + ".";
+      text = "Double precision does not suffice in the region of points " + points + ".";
       break;
     case Kind::Aborted:
       text = "Stopped on request.";

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file FigurePair.h
-/// What an isomorphic triangulation is made from, and for what it can be refused.
+/// The input of an isomorphic triangulation, and the reasons for which it can be refused.
 
 #ifndef homeomorphism_FigurePair_h
 #define homeomorphism_FigurePair_h
@@ -16,34 +16,34 @@
 namespace homeomorphism
 {
 
-/// The same figure drawn twice: corresponding points, and what joins them. Domain 0 is the source,
-/// domain 1 the target. The largest coordinates of each domain should be about 1.
+/// A figure drawn in two domains: corresponding points, and the lines between them. Domain 0 is the
+/// source, domain 1 the target. The largest coordinates of each domain should be about 1.
 struct FigurePair
 {
   /// Corresponding points have the same number.
   std::array<std::vector<Vector2>, 2> Points;
-  /// Closed polygons as point numbers, each at least three, the first not repeated. A point is
-  /// inside the domain if an odd number of loops surround it: outlines, holes, islands in holes.
+  /// Closed polygons as point numbers, at least three each; the first one is not repeated. A point
+  /// is inside the domain if an odd number of loops surround it: outlines, holes, islands in holes.
   std::vector<std::vector<int>> Loops;
   /// Open polygonal lines as point numbers: constraint segments between consecutive ones.
   std::vector<std::vector<int>> Lines;
 };
 
-/// Why a figure is refused, or where the construction had to stop.
+/// The reason why a figure is refused, or why the construction had to stop.
 struct FigureProblem
 {
   enum class Kind
   {
-    /// There are no points, or fewer than three.
+    /// There are fewer than three points.
     Empty,
     /// The two figures do not have the same number of points.
     PointCountsDiffer,
-    /// A loop or line names a point that does not exist, a loop has fewer than three points, or
+    /// A loop or line refers to a point that does not exist, a loop has fewer than three points, or
     /// consecutive points are the same.
     BadCell,
     /// The cells of the two figures differ.
     CellsDiffer,
-    /// A coordinate is NaN or infinite, or beyond 1e150, which normalized coordinates are not.
+    /// A coordinate is NaN or infinite, or exceeds 1e150, which normalized coordinates never do.
     NotFinite,
     /// A figure in space does not lie in a plane.
     NotPlanar,
@@ -55,29 +55,29 @@ struct FigureProblem
     Crossing,
     /// A point lies on a segment in one domain and not in the other.
     PointOnSegment,
-    /// The segments at a point follow each other differently.
+    /// The segments at a point have different cyclic orders in the two domains.
     CyclicOrder,
-    /// Points that a closed curve of segments surrounds in one domain only.
+    /// A closed curve of segments surrounds points in one domain only.
     OtherFace,
-    /// Points of a loop that is inside another loop in one domain only.
+    /// A loop is inside another loop in one domain only.
     OutlineAgainstHole,
-    /// A loop runs counterclockwise in one domain and clockwise in the other, unlike the first one.
+    /// A loop is mirrored between the domains and the first loop is not, or the reverse.
     LoopSense,
-    /// A point lies outside the domain that the loops or the frame bound.
+    /// A point lies outside the domain that is bounded by the loops or the frame.
     OutsideDomain,
     /// The convex hulls do not have the same points in the same order.
     HullsDiffer,
     /// A frame is not a convex polygon, or the frames have different numbers of corners.
     BadFrame,
-    /// More points would have to be added than are allowed.
+    /// More points must be added than are allowed.
     PointLimit,
     /// A face is too narrow for double precision.
     Precision,
-    /// The caller wished to stop.
+    /// The caller requested to stop.
     Aborted
   };
 
-  /// What can be done about it.
+  /// The action that a user can take.
   enum class Remedy
   {
     None,
@@ -94,20 +94,20 @@ struct FigureProblem
   Kind What = Kind::Empty;
   /// 0 source, 1 target, -1 if the two disagree.
   int Domain = -1;
-  /// Numbers of the points concerned, ascending if no other order is natural; at most 10. For
-  /// crossing segments the two ends of the one, then of the other; for PointOnSegment the point,
-  /// then the segment's ends.
+  /// Numbers of the points concerned, at most 10, ascending unless stated otherwise. For crossing
+  /// segments, the two ends of one segment, then those of the other; for PointOnSegment, the point,
+  /// then the ends of the segment.
   std::vector<int> Points;
-  /// Number of the line that was to be drawn (in FigurePair::Lines), or -1.
+  /// Number of the line that could not be drawn (in FigurePair::Lines), or -1.
   int Line = -1;
   /// Number of the loop concerned, or -1.
   int Loop = -1;
-  /// How often this occurs, where that was counted: points added for PointLimit.
+  /// The number of occurrences, if they were counted; for PointLimit, the number of points needed.
   int Count = 1;
 
   Remedy GetRemedy() const;
-  /// One sentence: what is wrong, where, and what to do. Points have their names, if there are any,
-  /// or else their numbers.
+  /// The problem, its location, and the remedy. Points are identified by their names, if there are
+  /// any, otherwise by their numbers.
   std::string Message(const std::vector<std::string>& names = {}) const;
 };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MapStatistics.h
-/// Numbers about the homeomorphism of a pair in one coordinate system, from samples.
+/// Statistics of the homeomorphism of a pair in one coordinate system, from samples.
 
 #ifndef homeomorphism_MapStatistics_h
 #define homeomorphism_MapStatistics_h
@@ -19,14 +19,14 @@
 namespace homeomorphism
 {
 
-/// The Jacobian determinant of a map and its distance from the piecewise linear map, at points
-/// evenly spread in each triangle: 105 of them, fewer if that were more than two million in all,
-/// at least one.
+/// The Jacobian determinant of a map and its distance from the piecewise linear map, at points that
+/// are evenly distributed in each triangle: 105 points, or fewer (at least one) if that were more
+/// than two million in total.
 struct MapSamples
 {
-  /// For each triangle, the least and the greatest determinant, and the largest distance of a
-  /// point's image from that by the Linear system, in the target's units. NaN for triangles that
-  /// are masked. Determinants are positive where the map has the orientation of the pair.
+  /// For each triangle, the smallest and the largest determinant, and the largest distance between
+  /// the images of a point under this map and under the Linear map, in the target's units. NaN for
+  /// masked triangles. Determinants are positive where the map has the orientation of the pair.
   std::vector<double> SmallestDeterminants;
   std::vector<double> LargestDeterminants;
   std::vector<double> Deviations;
@@ -40,17 +40,17 @@ struct MapSamples
   vtkIdType NotPositive = 0;
 };
 
-/// Samples a map; @a linear is the Linear map of the same meshes. In parallel; the result does not
-/// depend on the number of threads.
+/// Samples a map; @a linear is the Linear map of the same meshes. Runs in parallel; the result does
+/// not depend on the number of threads.
 MapSamples SampleMap(const Homeomorphism& map, const Homeomorphism& linear);
 
-/// How much a map bends at a finite distance. Its second differences
+/// A measure of bending at a finite distance. The second differences
 ///
 ///     (f(x + h u) + f(x - h u) - 2 f(x)) / h^2
 ///
 /// with h a tenth of the source's mean edge length, in three unit directions u at 60 degrees to
-/// each other, are those of one quadratic function, whose Hessian's norm (root of the sum of
-/// squares) is taken, with lengths in mean edge lengths of source and target.
+/// each other, determine a quadratic function. The measure is the norm (root of the sum of squares)
+/// of its Hessian, with lengths in mean edge lengths of source and target.
 struct SecondDifference
 {
   /// The root mean square over the samples, NaN if there is none. Dimensionless; 0 for affine maps.
@@ -58,10 +58,10 @@ struct SecondDifference
   vtkIdType Samples = 0;
 };
 
-/// Measures second differences at points uniform in the source's area, always the same ones: 16 for
-/// each triangle, at least 50,000 and at most a million. Points whose neighbors are outside the
-/// domain are left out. Planar pairs only; no samples otherwise. In parallel; the result does not
-/// depend on the number of threads.
+/// Measures second differences at points that are distributed uniformly over the source, the same
+/// ones in every run: 16 per triangle, but at least 50,000 and at most a million. Points x for
+/// which x + h u or x - h u is outside the domain are left out. Planar pairs only; otherwise there
+/// are no samples. Runs in parallel; the result does not depend on the number of threads.
 SecondDifference MeasureSecondDifference(
   const Homeomorphism& map, double meanSourceEdge, double meanTargetEdge);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PairMesh.h
-/// A triangulation drawn in two domains that can be changed locally, and changed back.
+/// A triangulation in two domains that can be changed locally; changes can be undone.
 
 #ifndef homeomorphism_PairMesh_h
 #define homeomorphism_PairMesh_h
@@ -31,13 +31,13 @@ public:
     std::array<bool, 3> Fixed{ { false, false, false } };
     bool Alive = false;
     double Quality = 0.0;
-    /// Not counted among the worst while its quality is at least this.
+    /// The triangle is not regarded as the worst while its quality is at least this.
     double AcceptedQuality = std::numeric_limits<double>::infinity();
 
     bool IsAccepted() const { return this->Quality >= this->AcceptedQuality; }
   };
 
-  /// @param fixed the ends of fixed edges; those of the boundary are fixed anyway
+  /// @param fixed the ends of fixed edges; boundary edges are always fixed
   PairMesh(const std::array<std::vector<Vector2>, 2>& points,
     const std::vector<std::array<int, 3>>& triangles, const std::vector<std::array<int, 2>>& fixed,
     int firstAdded, const QualityMeasure& quality);
@@ -58,59 +58,59 @@ public:
   int IndexOf(int triangle, int vertex) const;
   TrianglePoints PointsOf(int triangle, int domain) const;
 
-  /// The triangles around a vertex, counterclockwise. False if the vertex is on the boundary: then
-  /// they begin with the boundary.
+  /// The triangles around a vertex, counterclockwise. Returns false if the vertex is on the
+  /// boundary; the triangles then begin there.
   bool Star(int vertex, std::vector<int>& star) const;
 
-  /// The triangles that share a vertex with these, these first.
+  /// The given triangles, followed by those that share a vertex with them.
   std::vector<int> Grow(const std::vector<int>& triangles) const;
 
-  /// The corners of the closed walk around triangles, counterclockwise; false if they are not a
-  /// disk or contain a fixed edge.
+  /// The corners of the closed walk around triangles, counterclockwise. Returns false if the
+  /// triangles do not form a disk or contain a fixed edge.
   bool Outline(const std::vector<int>& triangles, std::vector<int>& outline) const;
 
-  /// Puts other triangles with the same outline, and the same fixed edges inside, in the place of
-  /// some.
+  /// Replaces triangles by others with the same outline and the same fixed edges inside. Returns
+  /// the new triangles.
   std::vector<int> Replace(
     const std::vector<int>& triangles, const std::vector<std::array<int, 3>>& vertices);
 
   int AddPoint(const Vector2& source, const Vector2& target);
   void Move(int vertex, int domain, const Vector2& position);
-  /// Computes the quality of the triangle anew, after its points have moved.
+  /// Computes the quality of a triangle again, after its points have been moved.
   void Update(int triangle);
 
-  /// Flips edge @a k of triangle @a t if both quadrangles are convex and the worse of the two
-  /// triangles gets better.
+  /// Flips edge @a k of triangle @a t if the quadrilateral is convex in both domains and the worse
+  /// of the two triangles becomes better.
   bool FlipIfBetter(int t, int k, std::vector<int>& made);
 
-  /// Flips edge @a k of triangle @a t if both quadrangles are convex and both new triangles are
-  /// better than @a least, 0 or more.
+  /// Flips edge @a k of triangle @a t if the quadrilateral is convex in both domains and both new
+  /// triangles are better than @a least, which is at least 0.
   bool Flip(int t, int k, double least, std::vector<int>& made);
 
-  /// The number of changes so far, to go back to.
+  /// The number of changes so far, for RollBack.
   std::size_t Mark() const { return this->Changes.size(); }
   void RollBack(std::size_t mark);
-  /// Forgets how to go back.
+  /// Makes all changes permanent.
   void Commit() { this->Changes.clear(); }
 
-  /// Takes a triangle as it is: it counts again only if it gets worse or is replaced.
+  /// Accepts a triangle as it is: Worst ignores it until it becomes worse or is replaced.
   void Accept(int triangle);
-  /// The worst triangle of those that are not accepted, -1 if there is none.
+  /// The worst triangle that is not accepted, -1 if there is none.
   int Worst() const;
   double WorstQuality() const;
   /// The smallest angle of all triangles of both domains, in degrees.
   double SmallestAngle() const;
-  /// A smooth lower bound of the worst quality, which also counts how many triangles are bad.
+  /// A smooth lower bound of the worst quality, which also depends on the number of bad triangles.
   double Score() const;
 
 private:
   struct Change
   {
-    /// A replacement: triangles as they were, and the numbers of those that came.
+    /// For a replacement: the previous triangles, and the numbers of the new ones.
     std::vector<int> Old;
     std::vector<Triangle> Before;
     std::vector<int> Made;
-    /// A movement, or a point added (domain -1).
+    /// For a moved point, or an added point (domain -1).
     int Vertex = -1;
     int Domain = 0;
     Vector2 Position;

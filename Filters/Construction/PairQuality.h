@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PairQuality.h
-/// How good the triangles of a pair of triangulations are.
+/// Quality measures of triangles of a pair of triangulations.
 
 #ifndef homeomorphism_PairQuality_h
 #define homeomorphism_PairQuality_h
@@ -15,12 +15,13 @@
 namespace homeomorphism
 {
 
-/// What an isomorphic triangulation is optimized for. The worst triangle counts.
+/// The quality measure for which an isomorphic triangulation is optimized. The quality of a
+/// triangulation is that of its worst triangle.
 enum class PairQuality
 {
   /// The smallest angle of both domains.
   MinimumAngle,
-  /// How far inside the edges the centroid's feet are, so that the Contour system applies.
+  /// The margin by which triangles are concordant, as the Contour system requires.
   Concordance,
   /// The ratio of the singular values of the affine map between the two triangles.
   Distortion,
@@ -28,15 +29,15 @@ enum class PairQuality
   NonObtuse
 };
 
-/// A quality with the angle, in degrees, that makes a triangle too thin for it.
+/// A quality measure, and the angle, in degrees, below which triangles are too thin for it.
 ///
-/// For Concordance and NonObtuse, an angle of Thin degrees counts 90, as much as the limit between
-/// concordant and discordant or between acute and obtuse triangles, and smaller angles a count
-/// 90 (a / Thin)^4: a triangle is never made much thinner than that for the sake of its feet or its
-/// largest angle. The other two qualities do not use it.
+/// For Concordance and NonObtuse, the quality of a triangle with an angle of Thin degrees is at
+/// most 90, the limit between concordant and discordant or between acute and obtuse triangles; with
+/// a smaller angle a, it is at most 90 (a / Thin)^4. So triangles do not become much thinner than
+/// that in order to become concordant or acute. The other two measures do not use Thin.
 struct QualityMeasure
 {
-  // A quality may stand for its measure. NOLINTNEXTLINE(google-explicit-constructor)
+  // Implicit conversion is intended. NOLINTNEXTLINE(google-explicit-constructor)
   QualityMeasure(PairQuality kind, double thin = 2.5)
     : Kind(kind)
     , Thin(thin)
@@ -56,11 +57,12 @@ std::array<double, 3> Angles(const TrianglePoints& p);
 /// the smaller one: 1 for a similarity. Infinite for degenerate triangles.
 double Distortion(const TrianglePoints& source, const TrianglePoints& target);
 
-/// The quality of a pair of triangles, the higher the better: the smallest angle in degrees; 180
-/// less the largest angle between an edge and the median at its end, above 90 if both are
-/// concordant; 60 for similar triangles; 180 less the largest angle, from 90 if none is obtuse. The
-/// second and the fourth are lower for thin triangles, see QualityMeasure. -1 unless both triangles
-/// are counterclockwise, by exact orientation.
+/// The quality of a pair of triangles; a higher value is better. MinimumAngle: the smallest angle
+/// in degrees. Concordance: 180 minus the largest angle between an edge and the median at its end;
+/// more than 90 if both triangles are concordant. Distortion: 60 for similar triangles, otherwise
+/// less. NonObtuse: 180 minus the largest angle; at least 90 if no angle is obtuse. Concordance and
+/// NonObtuse are lower for thin triangles, see QualityMeasure. -1 unless both triangles are
+/// counterclockwise, which is decided exactly.
 double QualityOf(
   const QualityMeasure& quality, const TrianglePoints& source, const TrianglePoints& target);
 

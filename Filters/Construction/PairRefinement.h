@@ -27,10 +27,10 @@ struct RefinedPair
   {
     /// The maximum error was reached.
     Refined,
-    /// The maximum error would need more triangles than allowed.
+    /// The maximum error requires more triangles than allowed.
     TooManyTriangles,
-    /// The maximum error would need edges that cannot be bisected, because no coordinates lie
-    /// between those of their ends.
+    /// The maximum error requires bisecting edges that cannot be bisected, because there are no
+    /// coordinates between those of their ends.
     BelowRounding,
     /// The caller aborted.
     Aborted
@@ -40,8 +40,7 @@ struct RefinedPair
   struct Point
   {
     TriangleIndex Triangle;
-    /// Barycentric coordinates in the triangle: multiples of powers of 1/2,
-    /// exact.
+    /// Barycentric coordinates in the triangle: dyadic rationals, exact.
     std::array<double, 3> Weights;
   };
 
@@ -54,23 +53,24 @@ struct RefinedPair
   /// Coordinates of the added points in source and target.
   std::array<std::vector<Vector3>, 2> NewPositions;
   /// The largest distance between the piecewise linear map and the homeomorphism over all samples,
-  /// in units of the target. For an unfinished refinement, the last known value.
+  /// in units of the target. If the refinement was not completed, the last known value.
   double LargestError = 0.0;
   /// The number of points of the last measurement, over all triangles.
   vtkIdType Samples = 0;
 };
 
-/// Bisects edges, with the triangles on both sides of each, so that the meshes stay conforming
-/// (Rivara), until the piecewise linear map of the finer pair differs from the homeomorphism by at
-/// most @a maximumError, in units of the target, at 595 sample points of each triangle, and flips
-/// no triangle. Edges are chosen by the errors measured on them, so triangles become elongated
-/// where the map bends in one direction only. Triangles with a height below 0.03 of their longest
-/// edge are not elongated further.
+/// Bisects edges, together with the triangles on both sides, so that the meshes remain conforming
+/// (Rivara). Stops when no triangle is flipped and the piecewise linear map of the finer pair
+/// differs from the homeomorphism by at most @a maximumError, in units of the target, at 595 sample
+/// points of each triangle. Edges are chosen by the errors measured on them, so triangles become
+/// elongated where the map bends in only one direction. Triangles with a height below 0.03 of their
+/// longest edge are not elongated further.
 ///
-/// Added points are mapped by the homeomorphism; those on the boundary are then moved to its edges,
-/// from which rounding may have separated them. @a source and @a target are the meshes from which
+/// Added points are mapped by the homeomorphism. Those on the boundary are then moved onto its
+/// edges, from which they may differ by rounding. @a source and @a target are the meshes from which
 /// @a map was made. Triangles are measured in parallel; the result does not depend on the number of
-/// threads. @a isAborted is called repeatedly.
+/// threads.
+/// @a isAborted is called repeatedly; if it returns true, the refinement stops.
 RefinedPair Refine(const Homeomorphism& map, vtkPolyData* source, vtkPolyData* target,
   double maximumError, vtkIdType maximumTriangles, const std::function<bool()>& isAborted);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RegionRefilling.h
-/// Parts of a pair of triangulations filled anew, with fewer added points.
+/// Triangulating regions of a pair of triangulations again, with fewer added points.
 
 #ifndef homeomorphism_RegionRefilling_h
 #define homeomorphism_RegionRefilling_h
@@ -12,11 +12,11 @@
 namespace homeomorphism
 {
 
-/// Fills the triangles around a free vertex anew, about @a size of them, if fewer added points do.
-/// The region does not reach across fixed edges. It may surround vertices of the figure: it is then
-/// slit, along fixed edges and short ones, until it is a polygon that has only free vertices
-/// inside.
-/// @param turn 0 or more: on which side the region begins to grow
+/// Triangulates a region of about @a size triangles around a free vertex again, if this needs fewer
+/// added points. Returns whether it did. The region does not extend across fixed edges. If it
+/// surrounds vertices of the figure, it is slit along fixed and short edges until it is a polygon
+/// that contains only free vertices.
+/// @param turn at least 0; determines the direction in which the region grows first
 bool RefillRegion(PairMesh& mesh, int vertex, int size, int turn);
 
 } // namespace homeomorphism

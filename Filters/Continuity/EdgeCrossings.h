@@ -17,7 +17,7 @@
 namespace homeomorphism
 {
 
-/// An edge and its two sides.
+/// An edge and the triangles on its two sides.
 struct MeshEdge
 {
   /// The second triangle and apex are -1 on the boundary.
@@ -28,7 +28,7 @@ struct MeshEdge
   std::array<std::int32_t, 2> Apexes;
 };
 
-/// The edges of the source of a map, each once, in the order of their first triangle.
+/// The edges of the source of a map, each one once, in the order of their first triangles.
 class EdgeCrossings
 {
 public:
@@ -42,7 +42,7 @@ public:
   /// from the target if there is one, otherwise from the values of the map.
   LineCrossing GetCrossing(std::size_t edge, double proportion, const MapUnderTest& map) const;
 
-  /// The jump at a crossing of the edge, from the closed form of the map.
+  /// The jump at a crossing of the edge, in closed form.
   JacobianJump GetExactJump(std::size_t edge, const LineCrossing& crossing) const;
 
   Vector3 GetPosition(Domain domain, std::int32_t point) const;

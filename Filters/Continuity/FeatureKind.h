@@ -10,8 +10,8 @@
 namespace homeomorphism
 {
 
-/// Kinds of features, numbered as in vtkJacobianContinuity. Within a triangle there are three lines
-/// of each kind, six wing segments, and one centroid.
+/// Kinds of features, numbered as in vtkJacobianContinuity. A triangle has six wing segments, three
+/// lines of each other kind, and one centroid.
 enum class FeatureKind
 {
   /// An edge of two triangles.

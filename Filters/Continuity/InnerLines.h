@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file InnerLines.h
-/// Lines within triangles at which a coordinate system is defined piecewise.
+/// Lines within triangles that separate the pieces of piecewise defined charts.
 
 #ifndef homeomorphism_InnerLines_h
 #define homeomorphism_InnerLines_h
@@ -14,11 +14,12 @@
 namespace homeomorphism
 {
 
-/// The inner lines of the source of a map, independently of the coordinate system of the map.
+/// The inner lines of the source of a map. They do not depend on the coordinate system of the map.
 class InnerLines
 {
 public:
-  /// Keeps a reference to the map, whose target is optional. @a center: for the Contour system.
+  /// Keeps a reference to the map, whose target is optional. @a center is that of the Contour
+  /// system.
   InnerLines(const Homeomorphism& map, CenterPoint center)
     : Map(map)
     , Center(center)
@@ -28,8 +29,8 @@ public:
   /// The number of lines of a kind in each triangle.
   static int GetNumberOfLines(FeatureKind kind) { return kind == FeatureKind::WingSegment ? 6 : 3; }
 
-  /// Center and wing segments do not exist for an edge without the foot of the center, nor strips
-  /// for boundary edges.
+  /// Whether the line exists. Center and wing segments do not exist if the foot of the center is
+  /// not inside the edge, and strips do not exist at boundary edges.
   bool Exists(TriangleIndex triangle, FeatureKind kind, int number) const;
 
   /// The point at a proportion t, from 0 to 1, of the line.
@@ -38,18 +39,17 @@ public:
   LineCrossing GetCrossing(
     TriangleIndex triangle, FeatureKind kind, int number, double t, const MapUnderTest& map) const;
 
-  /// The jump across the line from the closed form of the map: that of the Contour system at
-  /// spokes. All other inner lines have no jump in any system.
+  /// The jump across the line, in closed form. Only the spokes of the Contour system have a jump.
   JacobianJump GetExactJump(TriangleIndex triangle, FeatureKind kind, int number, double t,
     const LineCrossing& crossing) const;
 
 private:
-  /// In the frame of the triangle.
+  /// A point of a line, in the frame of the triangle.
   struct PointOnLine
   {
     Vector2 Position;
     Vector2 Tangent;
-    /// Length of the line to both sides on which it is straight, or infinity.
+    /// The length, in both directions, on which the line is straight, or infinity.
     double StraightLength;
   };
 
@@ -62,8 +62,8 @@ private:
   CenterPoint Center;
 };
 
-/// The length of a ray from a point of a triangle, both in its frame, to where it leaves it. @a
-/// direction is a unit vector.
+/// The length of a ray from a point of a triangle to the point where it leaves the triangle, in the
+/// frame of the triangle. @a direction is a unit vector.
 double DistanceToExit(const TriangleShape& shape, const Vector2& point, const Vector2& direction);
 
 /// Transforms a direction from the frame of a triangle to the space of the input.

@@ -34,12 +34,13 @@ struct MeasuredFeature
 };
 
 /// The features of a map's source: first points (centroids, vertices), then lines (edges, boundary
-/// edges, spokes, wing segments, center segments, strip borders), which is the order of a
-/// vtkPolyData's cells.
+/// edges, spokes, wing segments, center segments, strip borders), which is the order of cells in a
+/// vtkPolyData.
 class MeasuredFeatures
 {
 public:
-  /// Keeps a reference to the map. @a planar: vertices have tangent planes, in source and image.
+  /// Keeps a reference to the map. @a planar: whether source and image are planar, so that
+  /// derivatives at vertices can be compared.
   MeasuredFeatures(const Homeomorphism& map, CenterPoint center, const FeatureSelection& selection,
     bool planar, int samples);
 
@@ -52,7 +53,7 @@ public:
     return kind == FeatureKind::Centroid || kind == FeatureKind::Vertex;
   }
 
-  /// Whether the derivatives at it can be compared.
+  /// Whether derivatives at a feature of this kind can be compared.
   bool IsMeasurable(FeatureKind kind) const
   {
     return kind != FeatureKind::BoundaryEdge && (kind != FeatureKind::Vertex || this->Planar);
@@ -64,20 +65,20 @@ public:
     return !this->IsMeasurable(kind) ? 0 : IsPoint(kind) ? 1 : this->Samples;
   }
 
-  /// The number of points that show a feature: its samples and a line's two ends.
+  /// The number of points of a feature in the output: its samples, and the two ends of a line.
   int GetNumberOfPoints(FeatureKind kind) const
   {
     return IsPoint(kind) ? 1 : this->GetNumberOfSamples(kind) + 2;
   }
 
-  /// Cell ids of the triangles on its two sides, around it, or at it; -1 for none.
+  /// Cell ids of the triangles on both sides of a feature, around it, or at it; -1 for none.
   std::array<vtkIdType, 2> GetCells(const MeasuredFeature& feature) const;
 
-  /// The position of a point that shows the feature.
+  /// The position of a point of the feature in the output.
   Vector3 GetPosition(const MeasuredFeature& feature, int point) const;
 
-  /// At a sample, counted from 0: the measured jump, that of the second derivative if it is asked
-  /// for and the feature is a line, and the closed form, if there is one (else NaN).
+  /// The results at a sample (numbered from 0): the measured jump; that of the second derivative,
+  /// if requested and if the feature is a line; and the closed form if there is one, otherwise NaN.
   struct Sample
   {
     JacobianJump First;
@@ -96,7 +97,7 @@ private:
   int Samples;
   EdgeCrossings Edges;
   InnerLines Lines;
-  /// Not needed for lines.
+  /// Empty if only lines are measured.
   std::optional<RayFans> Points;
   std::vector<MeasuredFeature> Features;
 };

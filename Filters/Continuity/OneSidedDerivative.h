@@ -26,23 +26,23 @@ struct DerivativeEstimate
 /// Difference quotients of a function of one variable, f(t) for t >= 0, for decreasing steps h,
 /// and their Richardson extrapolation to h = 0.
 ///
-/// Steps are halved at first, where extrapolation gains most. Then they decrease faster, down to
-/// a size at which only a large change exceeds rounding. The small steps detect a border between
-/// two pieces of the function close to 0. Their ratios are not powers of 2, so that a
-/// self-similar function does not mislead all of them.
+/// The first steps are halved, because extrapolation gains most there. Then they decrease faster,
+/// down to a size at which only a large change exceeds rounding. The small steps detect a border
+/// between two pieces of the function close to 0. Their ratios are not powers of 2, because the
+/// quotients of a self-similar function could otherwise all be the same.
 ///
 /// If the function is smooth on its side, the error of the quotients is a power series in h. If
 /// it is smooth only near 0, as for a piecewise map, the rows of small steps agree with each
 /// other; where the steps are so small that rounding dominates, rows disagree again. The estimate
 /// is the extrapolation that agrees best with its neighbors in Neville's tableau (Ridders 1982)
-/// and that no smaller step contradicts. The disagreement and the effect of rounding on it bound
-/// its error.
+/// and that is consistent with all smaller steps. Its error bound is computed from the disagreement
+/// with its neighbors and from the effect of rounding.
 class OneSidedDerivative
 {
 public:
   using Vector = std::array<double, 3>;
   static constexpr int MaximumSteps = 22;
-  /// The number of halved steps, sufficient for the magnitude of a derivative.
+  /// The number of halved steps. They suffice for the magnitude of a derivative.
   static constexpr int HalvedSteps = 11;
 
   /// Quotients of order 1, (f(h) - f(0)) / h, or of order 2, (f(2 h) - 2 f(h) + f(0)) / h^2.

@@ -16,12 +16,13 @@
 namespace homeomorphism
 {
 
-/// The ray fans of a map's source: rays towards the corners around a centroid, along the edges
-/// around a vertex, and a number of rays between each two of those.
+/// The ray fans of a map's source: around a centroid, rays towards the corners; around a vertex,
+/// rays along the edges; and in both cases @a raysBetween rays between consecutive ones.
 class RayFans
 {
 public:
-  /// Keeps a reference to the map, whose target is optional. @a center: for the Contour system.
+  /// Keeps a reference to the map, whose target is optional. @a center is that of the Contour
+  /// system.
   RayFans(const Homeomorphism& map, CenterPoint center, int raysBetween);
 
   RayFan GetAroundCenter(TriangleIndex triangle) const;
@@ -29,10 +30,10 @@ public:
   /// The center of a triangle, in the input's coordinates.
   Vector3 GetCenter(TriangleIndex triangle) const;
 
-  /// In a plane.
+  /// The fan around a vertex of a planar mesh.
   RayFan GetAroundVertex(std::int32_t point) const;
 
-  /// Points from this number on have no triangles.
+  /// The number of points. Points with this number or a larger one have no triangles.
   std::int32_t GetNumberOfPoints() const
   {
     return static_cast<std::int32_t>(this->Offsets.size()) - 1;
@@ -41,7 +42,7 @@ public:
   /// A triangle at a point, -1 if there is none.
   TriangleIndex GetTriangleAt(std::int32_t point) const;
 
-  /// From the closed form of the map.
+  /// The jump at the center of a triangle, in closed form.
   JacobianJump GetExactJumpAtCenter(TriangleIndex triangle, const RayFan& fan) const;
 
 private:

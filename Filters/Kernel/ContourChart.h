@@ -5,8 +5,8 @@
 /// The Contour coordinate system: the construction published in "Constructing Differentiable
 /// Homeomorphisms between Isomorphic Triangulations".
 ///
-/// Three *center segments* drop from the center G of the triangle perpendicularly to the edges. Six
-/// *wing segments* join each corner to the midpoints of the two adjacent center segments. A
+/// Three *center segments* are the perpendiculars from the center G of the triangle to the edges.
+/// Six *wing segments* join each corner to the midpoints of the two adjacent center segments. A
 /// *contour* starts at G as a straight segment. Where it meets a wing segment, it continues
 /// tangentially as a circular arc that meets the edge at a right angle. The contours cover the
 /// triangle once if the feet of the center segments lie strictly inside the edges (a *concordant*
@@ -28,12 +28,12 @@ enum class CenterPoint
 {
   /// The centroid, as published. Triangles may be discordant.
   Centroid = 0,
-  /// The center of the inscribed circle. Its feet are the points of tangency, so every triangle is
-  /// concordant.
+  /// The center of the inscribed circle. Its feet are the points where the circle touches the
+  /// edges, so every triangle is concordant.
   Incenter = 1
 };
 
-/// The chart of the Contour system. Its reference is (e, p, c). The triangle should be concordant
+/// The chart of the Contour system. The reference is (e, p, c). The triangle should be concordant
 /// with respect to the center. If a foot lies outside its edge, the half edge on that side is
 /// replaced by one of almost zero length.
 class ContourChart
@@ -82,10 +82,9 @@ public:
   TriangularCoordinates ToCoordinates(const Reference& coordinates) const { return coordinates; }
   Reference FromCoordinates(const TriangularCoordinates& coordinates) const { return coordinates; }
 
-  /// Replaces at most 256 points by their images under the homeomorphism
-  /// from the triangles with charts @a from to those with charts @a to.
-  /// Gives the same bits as ToReference and ToPoint in a fraction of their
-  /// time.
+  /// Replaces at most 256 points by their images under the homeomorphism from the triangles with
+  /// the charts @a from to those with the charts @a to. The results are the same, bit for bit, as
+  /// those of ToReference and ToPoint, in a fraction of the time.
   static void MapPoints(
     const ContourChart* const* from, const ContourChart* const* to, Vector2* points, int count);
 
@@ -122,8 +121,8 @@ private:
     double EdgePoint; ///< distance of the end of the contour from the foot
   };
 
-  /// A point in the frame of its half edge, and the parameter s of its contour. An equation gives s
-  /// unless the point lies on the straight piece of its contour.
+  /// A point in the frame of its half edge, and the parameter s of its contour. Unless the point
+  /// lies on the straight piece of its contour, s is the root of an equation.
   struct Search
   {
     int EdgeLabel; ///< 0 for the center
@@ -145,7 +144,7 @@ private:
   };
 
   Search StartSearch(const Vector2& pointInFrame) const;
-  /// Solves the equation, too.
+  /// StartSearch, followed by the solution of the equation.
   Search Find(const Vector2& pointInFrame) const;
   Reference EndSearch(const Search& search) const;
   Ending EndingOf(const Reference& coordinates) const;

@@ -3,7 +3,7 @@
 
 /// @file CoordinateSystem.h
 /// The interface of a coordinate system, and the homeomorphism defined by two of its charts.
-/// A coordinate system gives every triangle a *chart*: a bijection between the points of the
+/// A coordinate system assigns a *chart* to every triangle: a bijection between the points of the
 /// triangle and a reference set that is the same for all triangles. A chart is constructed from the
 /// shape of the triangle and provides
 ///
@@ -44,8 +44,8 @@ enum class CoordinateSystem
   /// The contours of the equilateral triangle, mapped by a chart that is twice continuously
   /// differentiable across edges.
   Smooth = 2,
-  /// A piecewise cubic map that is continuously differentiable, vertices included, and bends
-  /// little. Planar pairs only. It is a map, not a chart: its triangular coordinates are Linear's.
+  /// A piecewise cubic map that is continuously differentiable, including at vertices, and bends
+  /// little. Planar pairs only. It has no charts; those of Linear take their place.
   Cubic = 3
 };
 
@@ -94,8 +94,8 @@ struct MappedPoint
   typename Chart::Differential To;
 };
 
-/// MapPoint with the derivatives of the charts. Charts that solve equations overload it, to solve
-/// each only once.
+/// MapPoint with the derivatives of the charts. Charts that solve equations overload this function
+/// so that each equation is solved only once.
 template <typename Chart>
 MappedPoint<Chart> MapWithDerivatives(const Chart& from, const Chart& to, const Vector2& point)
 {
@@ -111,7 +111,7 @@ Matrix2 MapDerivative(
   return MapDerivative(from.DifferentialAt(reference), to.DifferentialAt(reference));
 }
 
-/// Whether a class is a chart. Its file asserts this.
+/// Whether a class is a chart. The file of each chart asserts this.
 template <typename Chart, typename = void>
 struct IsChart : std::false_type
 {

@@ -48,16 +48,16 @@ inline double SquaredNorm(const Matrix2& m)
   return Dot(m.ImageOfX, m.ImageOfX) + Dot(m.ImageOfY, m.ImageOfY);
 }
 
-/// The derivative of the affine map that takes one triangle to another: accurate to a few ulp of
-/// every entry if the differences of the corners are exact.
+/// The derivative of the affine map of one triangle onto another. Every entry is accurate to a few
+/// ulp if the differences of the corners are exact.
 Matrix2 AffineDerivative(const std::array<Vector2, 3>& from, const std::array<Vector2, 3>& to);
 
-/// The frame of a triangle with a right angle, however thin: unit vectors along its two legs, and
-/// the legs' lengths. In the formulas for such a triangle nothing cancels.
+/// The frame of a triangle with a right angle: unit vectors along its two legs, and their lengths.
+/// The formulas for such a triangle have no cancellation, even if it is very thin.
 struct RightAngle
 {
-  /// The corner with the right angle, -1 if there is none; Tangent leads to it from the corner
-  /// Start, Normal leads from it to the third corner.
+  /// The corner with the right angle, -1 if there is none. Tangent points to it from the corner
+  /// Start; Normal points from it to the third corner.
   int Corner = -1;
   int Start = 0;
   Vector2 Tangent;
@@ -70,10 +70,10 @@ struct RightAngle
 };
 
 /// The map f(x) = Affine x + D(x) on a triangle. D is the reduced Hsieh-Clough-Tocher interpolant
-/// of the Values and Gradients at the corners: C1, cubic in each of the three pieces about the
-/// centroid, cubic along each edge with a normal derivative that is linear there (Clough, Tocher
-/// 1965; Percell 1976). Two elements that agree in f and its derivative at the ends of a shared
-/// edge therefore agree in both along the whole edge.
+/// of the Values and Gradients at the corners: C1, cubic in each of the three pieces into which the
+/// centroid divides the triangle, with a normal derivative that is linear along each edge (Clough,
+/// Tocher 1965; Percell 1976). Two elements that agree in f and its derivative at the ends of a
+/// shared edge therefore agree in both along the whole edge.
 struct CubicElement
 {
   /// Corners, counterclockwise, relative to an origin nearby.
@@ -104,8 +104,8 @@ struct CubicOrdinates
   Vector Center;
 };
 
-/// Barycentric coordinates of a point, by its components along the longest edge and at a right
-/// angle to it: rounding moves the point by a few ulp of that edge, even in a needle.
+/// Barycentric coordinates of a point, computed from its components along the longest edge and
+/// perpendicular to it: rounding moves the point by a few ulp of that edge, even in a needle.
 Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point);
 
 /// Barycentric coordinates in the piece that contains a point of the triangle.
@@ -138,11 +138,11 @@ CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element);
 /// The derivative of D at a point with barycentric coordinates @a l.
 Matrix2 Derive(const CubicElement& element, const Barycentric& l);
 
-/// D and its derivative, the same as Derive's.
+/// D and its derivative; the same as Derive.
 void Evaluate(const CubicElement& element, const CubicOrdinates<Vector2>& b, const Barycentric& l,
   Vector2& value, Matrix2& derivative);
 
-/// Barycentric coordinates as ToBarycentric gives them, prepared for many points of one triangle.
+/// ToBarycentric, prepared for many points of one triangle.
 class BarycentricFrame
 {
 public:
@@ -162,17 +162,18 @@ private:
   Vector2 Start;
   Vector2 Along;
   Vector2 Across;
-  /// Of the apex, over the length of the longest edge.
+  /// The position of the apex's foot, as a fraction of the longest edge.
   double Foot = 0.0;
 };
 
-/// f, not only D, of one element, as one formula for all three pieces: the fastest way to its
-/// values.
+/// f (not only D) of one element, as a single formula for all three pieces. This is the fastest way
+/// to evaluate it.
 ///
-/// With m the least barycentric coordinate, n_i = l_i - m and w = 3 m, the pieces' barycentric
-/// coordinates are w and those two of n_0, n_1, n_2 that are not zero. Pieces share the ordinates
-/// on their borders. So f is the sum of n_i^3, n_i^2 n_j, n_i^2 w, n_i n_j w, n_i w^2 and w^3 times
-/// 19 ordinates and the multiplicities of Bernstein's polynomials: terms of other pieces vanish.
+/// With the smallest barycentric coordinate m, n_i = l_i - m and w = 3 m, the barycentric
+/// coordinates in the piece that contains the point are w and the two of n_0, n_1, n_2 that are not
+/// zero. Pieces share the ordinates on their borders. So f is the sum of n_i^3, n_i^2 n_j, n_i^2 w,
+/// n_i n_j w, n_i w^2 and w^3, times 19 ordinates and the factors of the Bernstein polynomials: the
+/// terms of the other pieces vanish.
 class CubicNet
 {
 public:
@@ -185,13 +186,15 @@ public:
     return { Map(this->X, l[0], l[1], l[2]), Map(this->Y, l[0], l[1], l[2]) };
   }
 
-  /// How far f is from @a image at a point with barycentric coordinates @a l, and Newton's step
-  /// towards the point that has this image. Rounding may spoil the step in thin elements.
+  /// The difference of @a image and f at a point with barycentric coordinates @a l, and Newton's
+  /// step towards the preimage of @a image. In thin elements, rounding may make the step
+  /// inaccurate.
   Vector2 GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
     const Vector2& image, Vector2& step) const;
 
-  /// One component of f. Element i belongs to corner i; to the edge from it to the next corner, and
-  /// to that from the previous corner to it, beside the corner; to the piece opposite it.
+  /// The ordinates of one component of f. Element i belongs to corner i: the ordinate at the
+  /// corner, those beside it on the edges to the next and to the previous corner, and those on the
+  /// segment to the centroid; in Middle, it belongs to the piece opposite the corner.
   struct Component
   {
     double Corner[3];
@@ -242,8 +245,9 @@ public:
       w * (n1 * n2 * b.Middle[0] + n2 * n0 * b.Middle[1] + n0 * n1 * b.Middle[2] + ww * b.Center);
   }
 
-  /// The derivatives by the barycentric coordinates, of the function of l that is homogeneous of
-  /// degree 3 and is f where they sum to 1. It is a third of their sum weighted with l.
+  /// The derivatives with respect to the barycentric coordinates of the function of l that is
+  /// homogeneous of degree 3 and equals f where they sum to 1. By Euler's theorem, the function is
+  /// a third of the sum of l_i times d_i.
   static HOMEOMORPHISM_ALWAYS_INLINE void Derive(
     const Component& b, double l0, double l1, double l2, double& d0, double& d1, double& d2)
   {
@@ -280,7 +284,7 @@ private:
   Component Y;
 };
 
-/// The weights of a quartic's Bernstein coefficients: start, end and centroid of its piece.
+/// The exponents of a Bernstein polynomial of degree 4, for start, end and centroid of a piece.
 struct QuarticIndex
 {
   int Start;
@@ -296,18 +300,19 @@ using DeterminantCoefficients = std::array<double, 45>;
 
 DeterminantCoefficients GetDeterminantCoefficients(const CubicElement& element);
 
-/// A lower bound of det f' on the triangle: where D' is small beside Affine, from the lengths of
-/// its ordinates; elsewhere the least Bernstein coefficient less what rounding may have done to it.
-/// Positive means positive everywhere: for the map that these doubles define, with
-/// no rounding. Where the least coefficient is below @a enough, pieces are halved up to
-/// @a subdivisions times, which raises it towards the least determinant.
+/// A lower bound of det f' on the triangle. Where D' is small compared with Affine, it is computed
+/// from the lengths of its ordinates; elsewhere, it is the smallest Bernstein coefficient minus a
+/// bound on its rounding error. If it is positive, the determinant of the map that these doubles
+/// define is positive everywhere. Where the smallest coefficient is below @a enough, pieces are
+/// halved up to @a subdivisions times, which raises it towards the smallest determinant.
 double LeastDeterminant(const CubicElement& element, double enough = 0.0, int subdivisions = 6);
 
-/// The longest ordinate of D: |D| is at most that.
+/// The length of the longest ordinate of D, an upper bound of |D|.
 double GreatestDisplacement(const CubicElement& element);
 
-/// The integral of the squared second derivatives |fxx|^2 + 2 |fxy|^2 + |fyy|^2 is the sum over
-/// both components of v^T E v; v = value, x derivative and y derivative at corners 0, 1, 2.
+/// The matrix E of the bending: the integral of the squared second derivatives
+/// |fxx|^2 + 2 |fxy|^2 + |fyy|^2 is the sum over both components of v^T E v, where v has the value,
+/// the x derivative and the y derivative at corners 0, 1, 2.
 using BendingMatrix = std::array<std::array<double, 9>, 9>;
 
 BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points);

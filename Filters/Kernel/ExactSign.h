@@ -4,7 +4,7 @@
 /// @file ExactSign.h
 /// Exact predicates: signs of polynomials in the coordinates, free of rounding errors.
 ///
-/// A floating-point filter with an error bound decides nearly all cases. In the others the
+/// A floating-point filter with an error bound decides nearly all cases. In the others, the
 /// polynomial is evaluated exactly as an expansion of doubles (Shewchuk, "Adaptive Precision
 /// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997). Differences are scaled
 /// by powers of two, so products do not underflow even for tiny triangles. Coordinates must be
@@ -25,7 +25,8 @@ namespace homeomorphism
 /// collinear.
 int ExactOrientation(const Vector2& a, const Vector2& b, const Vector2& c);
 
-/// ExactOrientation behind a floating-point filter, which decides unless nearly collinear.
+/// ExactOrientation, preceded by a floating-point filter, which decides unless the points are
+/// nearly collinear.
 inline int Orientation(const Vector2& a, const Vector2& b, const Vector2& c)
 {
   const double left = (a.x - c.x) * (b.y - c.y);

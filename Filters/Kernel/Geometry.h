@@ -42,9 +42,9 @@ constexpr int CornersBetween(int corner, int other)
   return other < corner ? other + 3 - corner : other - corner;
 }
 
-/// What belongs to a corner, the one after it and the one before it, in the order of the corners.
-/// Loads from places that depend on the corner are fast. Stores to them would be waited for by
-/// whoever loads the result in one piece.
+/// Values for a corner, the one after it and the one before it, in the order of the corners. The
+/// values are loaded, not stored, at indices that depend on the corner: after such stores, loading
+/// the result as a whole would be slow.
 template <typename T>
 HOMEOMORPHISM_ALWAYS_INLINE std::array<T, 3> InOrder(
   int corner, const T& own, const T& next, const T& previous)
@@ -116,8 +116,7 @@ HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(double x)
   return x <= std::numeric_limits<double>::max() ? power : 1.0;
 }
 
-/// PowerOfTwoNear of the greater component in absolute
-/// value.
+/// PowerOfTwoNear of the component with the larger absolute value.
 HOMEOMORPHISM_ALWAYS_INLINE double PowerOfTwoNear(const Vector2& v)
 {
   const double x = std::abs(v.x);
@@ -136,7 +135,7 @@ struct CornerCoordinates
   double Next;
   double Previous;
 
-  /// From the coordinates for the corners 0, 1, 2, or to them.
+  /// Conversions from and to the coordinates for the corners 0, 1, 2.
   static HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates From(const Barycentric& l, int corner)
   {
     return { l[corner], l[NextCorner(corner)], l[PreviousCorner(corner)] };
@@ -146,7 +145,8 @@ struct CornerCoordinates
     return InOrder(corner, this->Own, this->Next, this->Previous);
   }
 
-  /// The same for the corner that is 0, 1 or 2 corners further.
+  /// The same coordinates, ordered from the corner that is @a further corners (0, 1 or 2) after
+  /// this one.
   HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates Turned(int further) const
   {
     const double values[5] = { this->Own, this->Next, this->Previous, this->Own, this->Next };
@@ -184,7 +184,7 @@ struct TriangleShape
     return this->ToCornerCoordinates(point).InOrderFrom(this->Apex);
   }
 
-  /// The same for the apex and the corners after and before it.
+  /// The result of ToBarycentric, for the apex and the corners after and before it.
   HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates ToCornerCoordinates(const Vector2& point) const
   {
     const double apex = point.y / this->Height;
@@ -231,7 +231,7 @@ struct TriangleShape
     return this->ToFrame(l[this->Apex], l[PreviousCorner(this->Apex)]);
   }
 
-  /// The same, from the coordinates for the apex and for the corner before it.
+  /// The result of FromBarycentric, from the coordinates for the apex and the corner before it.
   HOMEOMORPHISM_ALWAYS_INLINE Vector2 ToFrame(double apex, double second) const
   {
     return { this->Base * second + this->ApexX * apex, this->Height * apex };
@@ -243,7 +243,7 @@ struct TriangleShape
     return this->VectorToCornerCoordinates(vector).InOrderFrom(this->Apex);
   }
 
-  /// The same for the apex and the corners after and before it.
+  /// The result of VectorToBarycentric, for the apex and the corners after and before it.
   HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates VectorToCornerCoordinates(
     const Vector2& vector) const
   {
@@ -261,15 +261,15 @@ struct EdgeView
   /// Length of the edge.
   double Length = 0.0;
   /// Foot of the opposite corner, as a proportion of the length of the edge, from the next corner
-  /// in cyclic order to the one after it. Outside [0, 1] beside an obtuse angle.
+  /// in cyclic order to the one after it. Outside [0, 1] if an angle at the edge is obtuse.
   double Foot = 0.0;
   /// Distance of the opposite corner from the line of the edge.
   double Height = 0.0;
 };
 
-/// The view from the edge of the plane from @a start to @a end. Differences of nearby coordinates
+/// The view from the edge from @a start to @a end, in the plane. Differences of nearby coordinates
 /// are exact, so each number is accurate to a few ulp, even for the short edge of a needle, for
-/// which the frame of the triangle is too coarse.
+/// which the frame of the triangle is not accurate enough.
 HOMEOMORPHISM_ALWAYS_INLINE EdgeView ViewFromEdge(
   const Vector2& start, const Vector2& end, const Vector2& opposite)
 {
@@ -299,8 +299,7 @@ inline EdgeViews ViewsFromEdges(const Vector2& a, const Vector2& b, const Vector
   return { ViewFromEdge(b, c, a), ViewFromEdge(c, a, b), ViewFromEdge(a, b, c) };
 }
 
-/// The view from the edge in the opposite direction, as the twin triangle uses
-/// it.
+/// The view from the edge in the opposite direction, as in the twin triangle.
 inline EdgeView Reversed(const EdgeView& view)
 {
   return { view.Length, 1.0 - view.Foot, view.Height };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file LinearChart.h
-/// The Linear coordinate system. Contours are straight from the centroid to the edge, and the
+/// The Linear coordinate system. Contours are segments from the centroid to the edges, and the
 /// homeomorphism is piecewise linear.
 
 #ifndef homeomorphism_LinearChart_h

@@ -15,7 +15,7 @@
 namespace homeomorphism
 {
 
-/// Normal . x <= Limit.
+/// The half-space Normal . x <= Limit.
 template <int Dimension>
 struct HalfSpace
 {
@@ -26,7 +26,7 @@ struct HalfSpace
 /// Maximizes objective . x over the half-spaces and the box |x_i| <= bounds_i. Expected time is
 /// linear in the number of half-spaces if they come in random order (Seidel 1991,
 /// "Small-dimensional linear programming and convex hulls made easy"). Returns false if there is no
-/// such x. Decided in floating point: @a x satisfies the constraints to rounding.
+/// such x. Computed in floating point: @a x satisfies the constraints up to rounding.
 template <int Dimension>
 bool MaximizeLinear(const std::array<double, Dimension>& objective,
   const std::vector<HalfSpace<Dimension>>& halfSpaces, const std::array<double, Dimension>& bounds,

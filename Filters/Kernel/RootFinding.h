@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RootFinding.h
-/// Bracketed iteration for batches of increasing functions, by steps of Newton or Halley.
+/// Bracketed iteration for the roots of batches of increasing functions, with steps of Newton's or
+/// Halley's method.
 
 #ifndef homeomorphism_RootFinding_h
 #define homeomorphism_RootFinding_h
@@ -17,8 +18,8 @@
 namespace homeomorphism
 {
 
-/// The step of Halley's method to the root of an increasing function, to be subtracted. Its
-/// denominator differs from Newton's by at most a factor of 2.
+/// The step of Halley's method towards the root of an increasing function, to be subtracted. Its
+/// denominator is limited to between half and twice Newton's.
 template <typename Real>
 HOMEOMORPHISM_ALWAYS_INLINE Real HalleyStep(Real value, Real slope, Real halfCurvature)
 {
@@ -30,12 +31,14 @@ HOMEOMORPHISM_ALWAYS_INLINE Real HalleyStep(Real value, Real slope, Real halfCur
 }
 
 /// Solves @a Width equations, each for the root of an increasing function in an interval. Every
-/// evaluation narrows the bracket. A step that leaves the bracket is replaced by bisection.
-/// Iteration ends when the step is below rounding or the bracket is empty. A root that has
-/// converged no longer changes, so the result of an equation does not depend on the others.
+/// evaluation narrows the bracket. A step that leaves the bracket is replaced by bisection. The
+/// iteration ends when the step is below rounding or the bracket is empty. A root that has
+/// converged no longer changes, so the result of an equation does not depend on the other
+/// equations.
 ///
-/// With @a AtEnds, a step that leaves the bracket goes to the end of the bracket first, unless that
-/// end was evaluated before. Use this for functions whose root often lies at an end.
+/// With @a AtEnds, a step that leaves the bracket is first replaced by a step to the end of the
+/// bracket, unless that end has already been evaluated. Use this for functions whose root often
+/// lies at an end.
 ///
 /// Branch-free, so that the loop over the batch vectorizes.
 template <int Width, bool AtEnds>
@@ -56,8 +59,8 @@ public:
     this->Done[index] = 0;
   }
 
-  /// Subtracts a step without a bracket. The result is the root if @a found is not 0, the step is
-  /// at most @a enough times it, and it is in the interval.
+  /// Subtracts a step without using the bracket. The result is taken as the root if @a found is not
+  /// 0, the step is at most @a enough times the result, and the result is in the interval.
   HOMEOMORPHISM_ALWAYS_INLINE void StepFreely(
     int index, double step, double enough, double found = 1.0)
   {
@@ -74,10 +77,10 @@ public:
     return this->Done[index] != 0 ? 1.0 : 0.0;
   }
 
-  /// Subtracts a step of Newton or Halley, given with the value of the function at Root. Iteration
-  /// ends with a step of at most @a enough times the root. With @a AtEnds it also ends when the
-  /// ratio to the previous step shows that the remaining error, about the square of that ratio, is
-  /// below rounding.
+  /// Subtracts a step of Newton's or Halley's method; @a value is the function at Root. The
+  /// iteration ends with a step of at most @a enough times the root. With @a AtEnds, it also ends
+  /// when the ratio to the previous step shows that the remaining error is below rounding (relative
+  /// to the step, the error is about the square of that ratio).
   HOMEOMORPHISM_ALWAYS_INLINE void Step(int index, double value, double step, double enough)
   {
     const double x = this->Root[index];
@@ -129,8 +132,8 @@ public:
     this->Upper[index] = upper;
   }
 
-  /// Whether all roots have converged. The limit of @a steps exceeds what bisection alone needs
-  /// from 1 down to the smallest relevant root, an ulp of 1 cubed.
+  /// Whether all roots have converged. The limit of @a steps exceeds the number of bisections from
+  /// 1 to the smallest relevant root, the cube of an ulp of 1.
   HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
   {
     // Of integers, so that it vectorizes.
@@ -163,9 +166,9 @@ struct HasApproach<Equation, std::void_t<decltype(&Equation::Approach)>> : std::
 
 /// Finds the roots of the equations of a batch. @a Equation is a RootBatch with functions Set and
 /// Evaluate, which take an index and the elements of @a numbers (arrays with one value per
-/// equation) for that index. An equation may have functions Approach and Finish, which take a step
-/// each without a bracket. They are called once for each index, before bracketed steps are taken
-/// where the root is not found yet.
+/// equation) for that index. An equation may also have functions Approach and Finish, which each
+/// take a step without a bracket. They are called once for each index. Where the root has not been
+/// found then, bracketed steps follow.
 template <int Width, typename Equation, typename... Numbers>
 HOMEOMORPHISM_ALWAYS_INLINE void SolveBatch(Equation& equation, const Numbers*... numbers)
 {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file RunningError.h
-/// Numbers that know how far rounding may have moved them.
+/// Numbers with a bound on their rounding error.
 
 #ifndef homeomorphism_RunningError_h
 #define homeomorphism_RunningError_h
@@ -13,10 +13,10 @@
 namespace homeomorphism
 {
 
-/// A double and a bound of its distance from the number that the same operations give without
-/// rounding (Wilkinson's running error analysis; Higham, "Accuracy and Stability of Numerical
-/// Algorithms", 3.3). The bound itself is rounded: after n operations it may be too small by a
-/// factor of 1 - n 2^-52, which LowerBound makes up for up to n = 2^20.
+/// A double and a bound on its distance from the result of the same operations without rounding
+/// (Wilkinson's running error analysis; Higham, "Accuracy and Stability of Numerical Algorithms",
+/// 3.3). The bound itself is rounded: after n operations, it may be too small by a factor of
+/// 1 - n 2^-52, for which LowerBound compensates if n <= 2^20.
 struct RunningError
 {
   double Value = 0.0;
@@ -34,7 +34,7 @@ struct RunningError
   {
   }
 
-  /// A number that the exact value does not fall below.
+  /// A lower bound of the exact value.
   double LowerBound() const { return this->Value - 1.000001 * this->Error; }
 
   static constexpr double Unit = 0x1p-53;

@@ -17,7 +17,7 @@
 ///
 /// On the edge, the charts of both triangles have the derivative V = (a* m - a m*) / (a + a*)
 /// across it, where m and m* are the vectors from the midpoint of the edge to the two apexes. Their
-/// second derivatives vanish there because W'(0) = 0. Hence the charts join C2. Proofs:
+/// second derivatives vanish there because W'(0) = 0. Hence the map is C2 across the edge. Proofs:
 /// Documentation/differentiability.md.
 
 #ifndef homeomorphism_SmoothChart_h
@@ -50,8 +50,8 @@ struct SmoothStrip
   /// components sum to 0.
   double OffsetNext = 0.0;
   double OffsetPrevious = 0.0;
-  /// kappa = 1 + d_k = 2 a* / (a + a*). Stored because 1 + d_k cancels beside a far smaller
-  /// triangle.
+  /// kappa = 1 + d_k = 2 a* / (a + a*). Stored because 1 + d_k cancels if the neighbor is much
+  /// smaller.
   double Kappa = 1.0;
   /// The width tau in (0, 1]; 0 on the boundary, where there is no strip.
   double Tau = 0.0;
@@ -92,18 +92,18 @@ struct SmoothStrip
   }
 };
 
-/// Narrows the strips of an edge of a triangle in both meshes of a pair where the Smooth map could
-/// stray farther than @a greatest from the piecewise linear one, in the units of @a shape, the
-/// target's triangle. Both strips then have the same width, tau. So B_k is the same function in
-/// both meshes, and the images differ by at most |D - L D'| max B_k, where D' is the source's
-/// offset, D the target's, L the affine map, and max B_k < 4/81 tau.
+/// Narrows the strips of an edge of a triangle in both meshes of a pair if images under the Smooth
+/// and the piecewise linear map could otherwise differ by more than @a greatest, in the units of
+/// @a shape, the target's triangle. Both strips then have the same width, tau. So B_k is the same
+/// function in both meshes, and the images differ by at most |D - L D'| max B_k, where D' is the
+/// source's offset, D the target's, L the affine map, and max B_k < 4/81 tau.
 void LimitDeviation(
   SmoothStrip& source, SmoothStrip& target, int edge, const TriangleShape& shape, double greatest);
 
 /// The strips of the edges of a triangle. Element k belongs to the edge opposite corner k.
 using SmoothStrips = std::array<SmoothStrip, 3>;
 
-/// The strips of a triangle where they are stored, at a distance from each other.
+/// The strips of a triangle, stored at a constant distance from each other.
 struct SmoothStripsView
 {
   const SmoothStrip* First;
@@ -114,8 +114,8 @@ struct SmoothStripsView
 };
 
 /// The strips of a triangle. views[k] is the view of this triangle from the edge opposite corner k,
-/// neighbors[k] its twin triangle. Both triangles at an edge must be given the same two views (one
-/// reversed).
+/// neighbors[k] its twin triangle. For both triangles at an edge, the same two views must be passed
+/// (one of them reversed).
 SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor, 3>& neighbors);
 
 /// A SIMD batch of points, as a structure of arrays.
@@ -138,7 +138,7 @@ struct SmoothBatch
   double Tau[2][Size];
 };
 
-/// The corner with the least of three barycentric coordinates, the first of equals.
+/// The corner with the smallest of three barycentric coordinates; the first one of equal ones.
 inline int LeastCorner(double first, double second, double third)
 {
   const double lesser = second < first ? second : first;
@@ -151,7 +151,7 @@ inline int LeastCorner(double first, double second, double third)
 void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const coordinates[3],
   const SmoothStripsView& source, const SmoothStripsView& target);
 
-/// Fills elements with a fixed point of the map.
+/// Fills elements with a point that the map does not move.
 void FillSmoothBatch(SmoothBatch& batch, int begin, int end);
 
 /// Maps the first @a count points from the source's chart to the target's, to the same bits as
@@ -168,8 +168,8 @@ struct SmoothPoint
   CornerCoordinates Image;
 };
 
-/// Maps a point of the affine chart of the source, to the same bits as MapSmoothBatch. @a l refers
-/// to @a corner, any of the three.
+/// Maps a point of the affine chart of the source. The result is the same, bit for bit, as that of
+/// MapSmoothBatch. @a l refers to @a corner, any of the three.
 SmoothPoint MapSmoothPoint(int corner, const CornerCoordinates& l, const SmoothStripsView& source,
   const SmoothStripsView& target);
 
@@ -201,7 +201,7 @@ public:
   class Differential
   {
   public:
-    /// Of the strips, only one is read. @a l refers to @a corner, which has the least coordinate.
+    /// Reads only one of the strips. @a l refers to @a corner, which has the smallest coordinate.
     Differential(const TriangleShape& shape, const SmoothStripsView& strips, int corner,
       const CornerCoordinates& l);
     Direction Pullback(const Vector2& vector) const

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file BendingSolve.h
-/// The cubic map of least bending among certified ones.
+/// The certified cubic map of least bending.
 
 #ifndef homeomorphism_BendingSolve_h
 #define homeomorphism_BendingSolve_h
@@ -18,7 +18,7 @@
 namespace homeomorphism
 {
 
-/// A node of a map: displacement from the piecewise linear image, and the map's derivative.
+/// A node of a map: the displacement from the piecewise linear image, and the map's derivative.
 struct BendingNode
 {
   Vector2 Value;
@@ -29,10 +29,11 @@ struct BendingOptions
 {
   /// The greatest distance from the piecewise linear map.
   double MaximumDeviation = std::numeric_limits<double>::infinity();
-  /// A determinant's least Bernstein coefficient, over the affine determinant in a whole triangle
-  /// and over the template's own least coefficient in an element of a cut one.
+  /// The smallest accepted Bernstein coefficient of the determinant, divided by the affine
+  /// determinant in a whole triangle, and by the template's smallest coefficient in an element of a
+  /// cut triangle.
   double CertificateMargin = 0.02;
-  /// Above this number of unknowns systems are solved by conjugate gradients.
+  /// The number of unknowns above which systems are solved by conjugate gradients.
   int DirectUnknowns = 200000;
 };
 
@@ -40,34 +41,35 @@ struct BendingStatistics
 {
   /// Linear systems solved.
   int Rounds = 0;
-  /// How often the certified solution became the new aim.
+  /// How often a certified solution replaced the template in the penalty.
   int ProximalRounds = 0;
-  /// Cut triangles, and those of them that are the template to a thousandth of its derivatives.
+  /// The number of cut triangles, and of those among them that differ from the template by less
+  /// than a thousandth of its derivatives.
   int CutTriangles = 0;
   int TemplateTriangles = 0;
   /// The integral of the squared second derivatives, in the units of the target, squared.
   double Energy = 0.0;
-  /// Of the certified maps that were found in rounds, the energy that is minimized, in which thin
-  /// elements count less. Each is below the one before; the last is the result's.
+  /// The minimized energy, in which thin elements have less weight, of each certified map that was
+  /// found. The energies decrease; the last one is that of the result.
   std::vector<double> MinimizedEnergies;
-  /// Whether the rounds ran out or a system could not be solved, so that the template itself had to
-  /// be taken.
+  /// Whether the result is the template itself, because the limit of rounds was reached or a system
+  /// could not be solved.
   bool TookTemplate = false;
 };
 
-/// Every triangle is one element between its corners, or cut like the template's.
+/// A map in which every triangle is either one element (whole) or cut as in the template.
 struct BendingSolution
 {
-  /// At the points.
+  /// The nodes at the points.
   LargeVector<BendingNode> Points;
-  /// Of each triangle, where its nodes are in CutNodes, or -1.
+  /// For each triangle, the index of its nodes in CutNodes, or -1.
   LargeVector<std::int32_t> Cuts;
-  /// Of whole triangles, relative to corner 0; empty if all triangles are cut.
+  /// The nets of whole triangles, relative to corner 0; empty if all triangles are cut.
   LargeArray<CubicNet> Nets;
-  /// Of each triangle, a lower bound of the determinant over the affine one, from
-  /// SolveWithWholeTriangles; empty otherwise.
+  /// For each triangle, a lower bound of the determinant divided by the affine one; empty unless
+  /// SolveWithWholeTriangles made the map.
   LargeVector<double> Certificates;
-  /// Nodes 3 to 14 of a TriangleCut.
+  /// Nodes 3 to 14 of each TriangleCut.
   std::vector<std::array<BendingNode, 12>> CutNodes;
   BendingStatistics Statistics;
 
@@ -85,19 +87,22 @@ struct BendingSolution
     int triangle, int element) const;
 };
 
-/// Minimizes the integral of the squared second derivatives over the gradients at the points, every
-/// triangle being one element. Returns whether the solution is certified: then it is the result of
-/// SolveForLeastBending, in a fraction of the time. Of the template, only the boundary is needed.
+/// Minimizes the integral of the squared second derivatives over the gradients at the points, with
+/// every triangle as one element. Returns whether the solution is certified. If so, it is also the
+/// result of SolveForLeastBending, in a fraction of the time. Uses only the boundary of the
+/// template.
 bool SolveWithWholeTriangles(const CubicTemplate& cubicTemplate, const BendingOptions& options,
   BendingSolution& solution, const ParallelFor& parallelFor = SerialFor);
 
 /// Minimizes the integral of the squared second derivatives over all gradients and over the values
-/// of all nodes but the points'. Where the determinant is not certified, the solution is pulled
-/// towards a certified map, first the triangle's own affine one, then, the triangle being cut, the
-/// template, ever harder until all is certified; it then becomes the aim from which the pull
-/// is relaxed, as long as the bending falls. Of elements far thinner than their triangles, only a
-/// share of the bending is minimized. @a isFree marks points whose value is an unknown too.
-/// Corners that the template does not find differentiable keep the template's elements.
+/// of all nodes except those at points. Where the determinant is not certified, a penalty pulls the
+/// solution towards a certified map: first towards the triangle's affine map and then, in cut
+/// triangles, towards the template. Its weight grows until all triangles are certified. The
+/// solution then replaces the template in the penalty, and the weight is reduced as long as the
+/// bending decreases. In elements that are much thinner than their triangles, only a fraction of
+/// the bending is minimized. @a isFree marks points whose value is also an unknown. Corners at
+/// vertices at which the template is not differentiable keep the template's elements. See
+/// Documentation/cubic.md.
 BendingSolution SolveForLeastBending(const CubicTemplate& cubicTemplate,
   const BendingOptions& options, const std::vector<std::uint8_t>& isFree,
   const ParallelFor& parallelFor = SerialFor);

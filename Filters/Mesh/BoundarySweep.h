@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file BoundarySweep.h
-/// Whether a triangulation of the plane overlaps itself, from its boundary edges.
+/// Decides from its boundary edges whether a triangulation of the plane overlaps itself.
 
 #ifndef homeomorphism_BoundarySweep_h
 #define homeomorphism_BoundarySweep_h
@@ -14,7 +14,7 @@
 namespace homeomorphism
 {
 
-/// A boundary edge. Start comes before End: by x, and by y if x is equal.
+/// A boundary edge. Start comes before End in the order of x, and of y if x is equal.
 struct BoundarySegment
 {
   Vector2 Start;
@@ -23,13 +23,13 @@ struct BoundarySegment
   int Change;
 };
 
-/// Whether the triangles that have this boundary cover no point of the plane more than once. They
-/// must have no folds: the number of triangles over a point changes across boundary edges only.
+/// Whether the triangles with this boundary cover no point of the plane more than once. They must
+/// not have folds: the number of triangles that cover a point changes only across boundary edges.
 ///
 /// A line sweeps over the plane (Shamos and Hoey, "Geometric Intersection Problems", 1976) and
 /// counts triangles between the edges that it meets, by exact predicates. Edges may touch and lie
-/// on each other. Where two edges cross, the triangles at them overlap, which ends the sweep. Takes
-/// n log n time for n edges.
+/// on each other. If two edges cross, the triangles at them overlap, and the sweep ends. Takes
+/// O(n log n) time for n edges.
 bool CoversAtMostOnce(std::vector<BoundarySegment> segments);
 
 } // namespace homeomorphism

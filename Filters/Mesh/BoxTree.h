@@ -23,9 +23,8 @@
 namespace homeomorphism
 {
 
-/// A binary tree of boxes over triangles sorted along a Morton curve.
-/// Construction takes linear time. Immutable once built; any number of threads
-/// may search it.
+/// A binary tree of boxes over triangles sorted along a Morton curve. Construction takes linear
+/// time. Immutable once built; any number of threads may search it.
 template <int Dimension>
 class BoxTree
 {
@@ -72,8 +71,8 @@ public:
     }
   }
 
-  /// Calls visit(triangle) for every triangle in the leaves whose box intersects @a box, until it
-  /// returns false. The box is read again at each step, so the visitor may shrink it.
+  /// Calls visit(triangle) for every triangle in the leaves whose boxes intersect @a box, until it
+  /// returns false. The box is read again at each step, so @a visit may shrink it.
   template <typename Visit>
   void Search(const BoxType& box, Visit&& visit) const
   {

@@ -32,8 +32,8 @@ std::array<Neighbor, 3> UnfoldNeighbors(
 std::vector<TriangleIndex> FindDiscordant(
   const Triangulation& triangulation, const MeshGeometry& geometry);
 
-/// The strips of all triangles of one mesh or of both meshes of a pair. Those of an edge of a
-/// triangle in both meshes are in one line of the processor's cache.
+/// The strips of all triangles of one mesh or of both meshes of a pair. The strips of an edge of a
+/// triangle in both meshes are in the same cache line.
 class StripArray
 {
 public:
@@ -43,8 +43,8 @@ public:
   {
   }
 
-  /// The strip of a triangle's first edge in a mesh; those of the other two follow at a distance of
-  /// GetStride.
+  /// The strip of a triangle's first edge in a mesh. Those of the other two edges follow at a
+  /// distance of GetStride().
   SmoothStrip* Get(TriangleIndex triangle, int mesh)
   {
     return &this->Strips[std::size_t(3) * triangle * this->Meshes + mesh];
@@ -60,22 +60,22 @@ private:
   int Meshes;
 };
 
-/// The charts of all triangles of one geometry. Stores the data that is expensive to compute, and
+/// The charts of all triangles of one geometry. Stores the data that is expensive to compute and
 /// constructs charts from it on request. Immutable; any number of threads may use it.
 class ChartedTriangulation
 {
 public:
   /// Keeps a reference to the geometry. @a mappedByLinear marks the triangles that the Linear
   /// system maps (empty: none), the same in both meshes of a pair. The Smooth system stores its
-  /// strips in @a strips, which both meshes of a pair share, as those of the mesh with number @a
-  /// mesh there.
+  /// strips in @a strips, which both meshes of a pair share; @a mesh is the number of this mesh
+  /// there.
   ChartedTriangulation(const Triangulation& triangulation, const MeshGeometry& geometry,
     CoordinateSystem system, CenterPoint center, std::vector<std::uint8_t> mappedByLinear,
     std::shared_ptr<StripArray> strips, int mesh);
 
-  /// Keeps the Smooth map from @a source to @a target within @a maximumDeviation of the piecewise
-  /// linear map, in the target's normalized coordinates, in all @a count triangles. Does nothing in
-  /// other systems.
+  /// Limits the distance between the Smooth map from @a source to @a target and the piecewise
+  /// linear map to @a maximumDeviation, in the target's normalized coordinates, in all @a count
+  /// triangles. Does nothing in other systems.
   static void LimitDeviation(TriangleIndex count, ChartedTriangulation& source,
     ChartedTriangulation& target, double maximumDeviation);
 
@@ -105,7 +105,7 @@ public:
     return ContourChart(
       this->Geometry.GetShape(triangle), this->ContourViews[triangle], this->Center);
   }
-  /// Prefetches what GetContourChart reads beside the frame.
+  /// Prefetches the data that GetContourChart reads in addition to the frame.
   void PrefetchContourViews(TriangleIndex triangle) const
   {
     Prefetch(&this->ContourViews[triangle]);
@@ -120,7 +120,8 @@ public:
     return { this->Strips->Get(triangle, this->Mesh), this->Strips->GetStride() };
   }
 
-  /// Calls visit(chart) with the chart of the triangle, whatever its type, and returns the result.
+  /// Calls visit(chart) with the chart of the triangle and returns the result. The type of the
+  /// chart depends on the system.
   template <typename Visit>
   auto VisitChart(TriangleIndex triangle, Visit&& visit) const
   {

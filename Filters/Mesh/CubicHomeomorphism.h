@@ -17,9 +17,9 @@
 namespace homeomorphism
 {
 
-/// A CubicMap of a planar TriangulationPair, in both meshes' normalized coordinates. Triangles are
-/// turned counterclockwise for it, and a mirrored target is mirrored back. Immutable; any number of
-/// threads may use it.
+/// A CubicMap of a planar TriangulationPair, in the normalized coordinates of both meshes. For it,
+/// triangles are oriented counterclockwise, and a mirrored target is reflected. Immutable; any
+/// number of threads may use it.
 class CubicHomeomorphism
 {
 public:
@@ -28,7 +28,7 @@ public:
 
   const CubicMap& GetMap() const { return *this->Map; }
 
-  /// Fetches what MapPoint reads of a triangle into the processor's cache.
+  /// Prefetches the data of a triangle that MapPoint reads.
   void PrefetchTriangle(TriangleIndex triangle) const
   {
     const CubicNet* net = this->Map->GetNet(this->Numbers[triangle]);
@@ -42,32 +42,34 @@ public:
   }
 
   /// Sets points @a begin to @a end - 1 of a batch, which lie in one triangle, from arrays of their
-  /// barycentric coordinates for the triangle's corners and of their places in its frame. Reads and
-  /// overwrites up to WidestVector - 1 elements after the last.
+  /// barycentric coordinates for the triangle's corners and of their coordinates in its frame.
+  /// Reads and overwrites up to WidestVector - 1 elements after the last.
   void SetPoints(Domain from, TriangleIndex triangle, int begin, int end, const double* const l[3],
     const double* const inFrame[2], CubicBatch& batch) const;
 
-  /// Maps the points of a batch to the plane of the other mesh. Their triangles become the map's,
-  /// -1 where there is no image: in triangles in which the map is not certified. @a prepared is
-  /// the map's.
+  /// Maps the points of a batch to the plane of the other mesh. Their triangles become those of the
+  /// CubicMap, -1 if there is no image because the map is not certified in the triangle. @a
+  /// prepared is that of GetMap().Prepare().
   void MapPoints(Domain from, CubicBatch& batch, CubicTriangle& prepared) const;
 
-  /// The points of the map's source that belong to a batch which MapPoints has mapped, and their
-  /// triangles in the map: the points themselves or their preimages. @a triangles are the meshes'.
+  /// For a batch that MapPoints has mapped, the points in the source of the CubicMap (the points
+  /// themselves, or their preimages) and their triangles there. @a triangles are those of the
+  /// meshes.
   void GetSourcePoints(Domain from, const TriangleIndex* triangles, const CubicBatch& batch,
     double* x, double* y, int* numbers) const;
 
-  /// The image of one point, to the same bits, in the plane of the other mesh. Returns false if
-  /// there is none. Sets the derivative from frame to frame unless it is null: to NaN where there
-  /// is no image.
+  /// The image of one point in the plane of the other mesh; the same, bit for bit, as that of
+  /// MapPoints. Returns false if there is none. Unless @a derivative is null, sets it to the
+  /// derivative from frame to frame, or to NaN if there is no image.
   bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,
     Vector2& image, Matrix2* derivative = nullptr) const;
 
-  /// The derivative, from frame to frame of a mesh's triangle, at a point of the map's source.
+  /// The derivative, from frame to frame of a mesh's triangle, at a point of the source of the
+  /// CubicMap.
   Matrix2 Derive(Domain from, TriangleIndex triangle, int number, const Vector2& point) const;
 
-  /// The least Bernstein coefficient of the determinant over the piecewise linear map's, 0 for a
-  /// masked triangle.
+  /// The smallest Bernstein coefficient of the determinant, divided by the determinant of the
+  /// piecewise linear map; 0 for a masked triangle.
   double GetCertificate(TriangleIndex triangle) const
   {
     return this->Numbers[triangle] < 0 ? 0.0
@@ -82,7 +84,8 @@ private:
 
   const TriangulationPair& Pair;
   std::unique_ptr<CubicMap> Map;
-  /// Triangles and points of the map by those of the meshes, and back; -1 for masked ones.
+  /// The triangles of the CubicMap for those of the meshes (-1 if masked), and the reverse; and the
+  /// points of the meshes for those of the CubicMap.
   LargeVector<std::int32_t> Numbers;
   LargeVector<std::int32_t> Triangles;
   LargeVector<std::int32_t> Points;

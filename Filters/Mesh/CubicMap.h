@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CubicMap.h
-/// The Cubic map of a pair of plane triangulations: C1 with a positive determinant at every inner
-/// point, one to one, with its inverse.
+/// The Cubic map of a pair of plane triangulations: C1 with a positive determinant at every
+/// interior point, and one to one; and its inverse.
 
 #ifndef homeomorphism_CubicMap_h
 #define homeomorphism_CubicMap_h
@@ -24,12 +24,13 @@ namespace homeomorphism
 
 struct CubicMapStatistics
 {
-  /// Elements, endless sequences of rings counted once.
+  /// The number of elements; of an infinite sequence of rings, one is counted.
   std::int64_t Elements = 0;
   int Rings = 0;
   std::vector<std::int32_t> ExceptionalInteriorPoints;
   std::vector<std::int32_t> ExceptionalBoundaryPoints;
-  /// Triangles that are not certified: none, unless doubles cannot represent their elements.
+  /// The number of triangles that are not certified. It is 0 unless doubles cannot represent the
+  /// elements of a triangle.
   int UncertifiedTriangles = 0;
   BendingStatistics Bending;
 };
@@ -42,8 +43,8 @@ struct CubicBatch
   static constexpr int Size = Capacity + WidestVector;
 
   int Count = 0;
-  /// The triangle of each point where the piecewise linear map, or its inverse, has it; negative
-  /// for a point that is not to be mapped.
+  /// The triangle that contains each point, in the mesh that is mapped from; negative for points
+  /// that are not mapped.
   std::int32_t Triangles[Capacity];
   /// Barycentric coordinates for its corners 0, 1, 2.
   double L[3][Size];
@@ -54,34 +55,36 @@ struct CubicBatch
   double ImageY[Size];
 };
 
-/// Immutable; any number of threads may use it.
+/// The map. Immutable; any number of threads may use it.
 class CubicMap
 {
 public:
-  /// Fourth powers of lengths must be representable: coordinates should be about 1. Otherwise
-  /// triangles are not certified. The options must be possible for the number of triangles.
+  /// Coordinates should be about 1: triangles are not certified if fourth powers of lengths are not
+  /// representable. The options must be possible (CubicMapOptions::IsPossible) for the number of
+  /// triangles.
   CubicMap(
     PlanarPair pair, const CubicMapOptions& options, const ParallelFor& parallelFor = SerialFor);
   CubicMap(const CubicMap&) = delete;
   void operator=(const CubicMap&) = delete;
 
-  /// The pair, not refined.
+  /// The original pair, without refinement.
   const PlanarPair& GetPair() const { return this->Pair; }
   const CubicMapStatistics& GetStatistics() const { return this->Statistics; }
 
-  /// Of each triangle of the pair: the least Bernstein coefficient of the determinant over the
-  /// determinant of the piecewise linear map. The map is certified in the triangle if it is
+  /// For each triangle of the pair, the smallest Bernstein coefficient of the determinant, divided
+  /// by the determinant of the piecewise linear map. The map is certified in the triangle if it is
   /// positive.
   const LargeVector<double>& GetCertificates() const { return this->Certificates; }
   bool IsCertified(int triangle) const { return this->Certificates[triangle] > 0.0; }
 
-  /// What the functions below need to be fast for many points, one triangle after another.
+  /// Working data with which the functions below are fast for many points, one triangle after
+  /// another. Each thread needs its own.
   CubicTriangle Prepare(std::size_t kept = CubicTriangle::FewTriangles) const
   {
     return CubicTriangle(*this->Template, this->Bending.get(), kept);
   }
 
-  /// What MapPoints reads of a triangle, null if little.
+  /// The net that MapPoints reads, null if the triangle is not a whole element.
   const CubicNet* GetNet(int triangle) const
   {
     return this->Levels == 0 && this->Bending && !this->Bending->Nets.empty()
@@ -89,12 +92,12 @@ public:
       : nullptr;
   }
 
-  /// Sets the images of a batch. They do not depend on what else is in the batch.
+  /// Sets the images of a batch. The image of a point does not depend on the other points.
   void MapPoints(CubicBatch& batch, CubicTriangle& prepared) const;
 
-  /// Sets the preimages of a batch, and the triangles in which they lie: -1 where no point of the
-  /// domain is found, which happens to an image outside the target's domain only. They do not
-  /// depend on what else is in the batch.
+  /// Sets the preimages of a batch, and the triangles in which they lie, -1 if no preimage is
+  /// found, which happens only outside the target's domain. The preimage of a point does not depend
+  /// on the other points.
   void FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const;
 
   /// The image of a point of a triangle.
@@ -103,9 +106,9 @@ public:
   /// The derivative at a point of a triangle.
   Matrix2 GetDerivative(int triangle, const Vector2& point) const;
 
-  /// The point that is mapped to @a image, and the triangle in which it lies. @a triangle is where
-  /// the piecewise linear map has it. Returns false if no point of the domain is found, which
-  /// happens to an image outside the target's domain only.
+  /// The point that is mapped to @a image, and its triangle. On input, @a triangle is that of the
+  /// preimage under the piecewise linear map. Returns false if no preimage is found, which happens
+  /// only outside the target's domain.
   bool FindPreimage(
     const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const;
   bool FindPreimage(const Vector2& image, int& triangle, Vector2& point) const
@@ -115,8 +118,8 @@ public:
   }
 
   /// Calls @a visit with every element of a triangle of the pair, relative to the given origins in
-  /// the source and in the target, and the factor by which it is shrunk about them. Endless rings
-  /// are visited down to @a endlessRings.
+  /// the source and in the target, and the factor by which it is shrunk about them. Of an infinite
+  /// sequence of rings, the first @a endlessRings are visited.
   void VisitElements(int triangle,
     const std::function<void(const CubicElement& element, const Vector2& sourceOrigin,
       const Vector2& targetOrigin, double factor)>& visit,
@@ -129,19 +132,20 @@ private:
     return this->Bending && this->Bending->Cuts[fineTriangle] < 0;
   }
   int FindChild(int triangle, const Vector2& point) const;
-  /// The triangle of the refined pair at a point of a triangle, whose coordinates become those in
-  /// it.
+  /// The triangle of the refined pair that contains a point of a triangle; @a l becomes the
+  /// coordinates there.
   int FindChild(int triangle, Barycentric& l) const;
   void MoveToChildren(CubicBatch& batch) const;
   struct Walkers;
-  /// Chebyshev's method in whole triangles, as far as it goes; the rest is left to FindByWalking.
+  /// Chebyshev's method in whole triangles. Points for which it fails are left to FindByWalking.
   void FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& prepared) const;
   /// Finds the preimage that is near a point relative to corner 0 of a triangle of the refined
   /// pair; both are changed.
   bool FindByWalking(
     const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const;
   void MapFine(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
-  /// Moves a point relative to corner 0 of a triangle, and the triangle, to where the point is.
+  /// Replaces the triangle by the one that contains the point, and makes the point relative to its
+  /// corner 0.
   void Walk(int& triangle, Vector2& point) const;
   bool SearchPreimage(const Vector2& image, int& triangle, Vector2& point) const;
   void VisitFine(int triangle,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CubicMapOptions.h
-/// Which Cubic map of a pair is meant.
+/// The options of the Cubic map of a pair.
 
 #ifndef homeomorphism_CubicMapOptions_h
 #define homeomorphism_CubicMapOptions_h
@@ -13,27 +13,27 @@
 namespace homeomorphism
 {
 
-/// Which certified map is taken.
+/// The choice among certified maps.
 enum class CubicBending
 {
-  /// The template: in closed form, as local as the pair.
+  /// The template: in closed form; it depends only on nearby vertices.
   Local = 0,
-  /// The one of least bending that could be certified.
+  /// The map of least bending for which a certificate was found.
   Least = 1
 };
 
 struct CubicMapOptions
 {
   CubicBending Bending = CubicBending::Least;
-  /// The greatest distance from the piecewise linear map, in the units of the target.
+  /// The largest allowed distance from the piecewise linear map, in the units of the target.
   double MaximumDeviation = std::numeric_limits<double>::infinity();
   /// See BendingOptions.
   double CertificateMargin = 0.02;
-  /// With least bending: how often triangles are cut into four before.
+  /// With least bending, the number of times that triangles are first divided into four.
   int FairnessRefinement = 0;
 
-  /// With least bending, the greatest number of triangles, refined: each may have 27 unknowns,
-  /// which are numbered with 32 bits.
+  /// With least bending, the largest number of triangles after refinement. Each may have 27
+  /// unknowns, which are numbered with 32 bits.
   static constexpr std::int64_t MostTriangles = std::int64_t(1) << 26;
 
   /// The number of triangles of a map of @a count triangles.

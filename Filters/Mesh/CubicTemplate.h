@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CubicTemplate.h
-/// A certified C1 homeomorphism of any pair of plane triangulations, in closed form: each triangle
-/// is cut into 19 elements whose derivatives are written down.
+/// A certified C1 homeomorphism of any pair of plane triangulations in closed form. Each triangle
+/// is cut into 19 elements. See Documentation/cubic.md.
 
 #ifndef homeomorphism_CubicTemplate_h
 #define homeomorphism_CubicTemplate_h
@@ -22,7 +22,7 @@
 namespace homeomorphism
 {
 
-/// Calls a function for ranges [begin, end) that cover 0 to a count, maybe in several threads.
+/// Calls @a body for ranges [begin, end) that cover [0, count), possibly in several threads.
 using ParallelFor =
   std::function<void(std::int64_t count, const std::function<void(std::int64_t, std::int64_t)>&)>;
 
@@ -30,9 +30,9 @@ void SerialFor(std::int64_t count, const std::function<void(std::int64_t, std::i
 
 /// The cut of one triangle, relative to its corner 0.
 ///
-/// Nodes: corners 0 to 2; on edge k the edge points 3 + 2k near its start and 4 + 2k near its end;
-/// above them the inner points 9 + 2k and 10 + 2k. Elements: 3c to 3c + 2 around corner c, 9 + 2k
-/// and 10 + 2k along edge k, 15 to 18 in the middle.
+/// Nodes: corners 0 to 2; on edge k, the edge points 3 + 2k near its start and 4 + 2k near its end;
+/// above them, the inner points 9 + 2k and 10 + 2k. Elements: 3c to 3c + 2 at corner c, 9 + 2k and
+/// 10 + 2k along edge k, 15 to 18 in the middle.
 struct TriangleCut
 {
   static constexpr int NumberOfNodes = 15;
@@ -62,39 +62,40 @@ struct TriangleCut
   /// A node relative to the corner @a origin.
   Vector2 GetNode(int node, int origin) const;
 
-  /// Gives an element its frame if it has a right angle: beside the edges. Returns whether.
+  /// Sets the frame of an element that has a right angle (all elements along edges). Returns
+  /// whether it has one.
   bool SetRightAngle(int element, CubicElement& result) const;
 
   /// The element that contains a point of the triangle, relative to corner 0.
   int Find(const Vector2& point) const;
 
-  /// The same for a point in a corner or a strip, FirstMiddle in the middle.
+  /// The element that contains a point in a corner or a strip; FirstMiddle in the middle.
   int FindBesideEdges(const Vector2& point) const;
 };
 
-/// What a vertex is for the template.
+/// The kinds of vertices in the template.
 enum class VertexKind : std::int8_t
 {
-  /// The map has a certified derivative.
+  /// The map has a certified derivative at the vertex.
   Differentiable,
-  /// It has one inside rings.
+  /// The map has a certified derivative at the vertex, inside rings.
   Rings,
-  /// It has none: the map is homogeneous beside the vertex, which is C1 around it.
+  /// The map has no derivative at the vertex. It is homogeneous near the vertex, and C1 around it.
   Exceptional
 };
 
 struct CubicTemplateOptions
 {
-  /// The greatest distance from the piecewise linear map, in the units of the target.
+  /// The largest allowed distance from the piecewise linear map, in the units of the target.
   double MaximumDeviation = std::numeric_limits<double>::infinity();
-  /// Whether to make only what a map of whole triangles needs: kinds and derivatives at boundary
-  /// points. Inner points are then differentiable, with the mean of the triangles' derivatives, and
-  /// triangles without boundary points have no heights.
+  /// Whether to compute only the data that a map of whole triangles needs: kinds and derivatives at
+  /// boundary points. Interior points then have the kind Differentiable and the mean of the
+  /// triangles' derivatives, and triangles without boundary points have no heights.
   bool OnlyBoundary = false;
 };
 
-/// The map. Of a point, a radius and a derivative are stored, of a triangle three heights; elements
-/// are made when they are needed.
+/// The map. It stores a radius and a derivative for each point, and three heights for each
+/// triangle; elements are computed when they are needed.
 class CubicTemplate
 {
 public:
@@ -119,46 +120,47 @@ public:
   const Matrix2& GetDerivative(int point) const { return this->Derivatives[point]; }
   const VertexRings& GetRings(int point) const;
   int GetNumberOfRings(int point) const;
-  /// The corners at a point, relative to it.
+  /// The corners of the triangles at a point, relative to the point.
   VertexFan GetFan(int point, const PointFan& fan) const;
 
   TriangleCut GetCut(int triangle) const;
 
-  /// The derivative at a node of a cut less the triangle's own affine one. Not for a corner that is
-  /// not differentiable.
+  /// The derivative at a node of a cut, minus the triangle's affine one. Not for a vertex that is
+  /// not Differentiable.
   Matrix2 GetGradient(const TriangleCut& cut, const Matrix2& affine, int triangle, int node) const;
 
-  /// Of each barycentric coordinate between the strip of an edge and the corner opposite it: where
-  /// all are within, the map is affine.
+  /// Bounds of each barycentric coordinate, between the strip of an edge and the corner opposite
+  /// it. Where all coordinates are within the bounds, the map is affine.
   struct MiddleBounds
   {
     std::array<double, 3> Least;
     std::array<double, 3> Greatest;
   };
-  /// Must have been called before GetMiddle.
+  /// Computes all bounds. Must be called before GetMiddle.
   void FindMiddles(const ParallelFor& parallelFor = SerialFor);
   const MiddleBounds& GetMiddle(int triangle) const { return this->Middles[triangle]; }
 
   /// The element, relative to the cut's GetOrigin(element) in the source and in the target. Not for
-  /// those at a corner that is not differentiable.
+  /// elements at a vertex that is not Differentiable.
   CubicElement GetElement(
     const TriangleCut& cut, const Matrix2& affine, int triangle, int element) const;
 
-  /// The image relative to that of corner @a corner of a point relative to it, beside a corner that
-  /// is not differentiable.
+  /// The image of a point near corner @a corner, which is not Differentiable, and the derivative.
+  /// Point and image are relative to the corner and its image.
   void EvaluateRings(
     int triangle, int corner, const Vector2& point, Vector2& image, Matrix2& derivative) const;
 
-  /// The image of a point relative to that of corner 0, both relative to it, and the derivative.
+  /// The image of a point, and the derivative. Point and image are relative to corner 0 and its
+  /// image.
   void Evaluate(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
 
-  /// Calls @a visit with every element of a triangle's corner that is not differentiable, relative
-  /// to the corner, and with the factor by which it is shrunk.
+  /// Calls @a visit with every element of a triangle at a corner that is not Differentiable,
+  /// relative to the corner, and with the factor by which it is shrunk.
   void VisitRings(int triangle, int corner,
     const std::function<void(const CubicElement&, double factor)>& visit) const;
 
-  /// The least Bernstein coefficient of the determinant in a triangle over the affine determinant;
-  /// the triangle is certified if it is positive.
+  /// The smallest Bernstein coefficient of the determinant in a triangle, divided by the affine
+  /// determinant. The triangle is certified if it is positive.
   double GetCertificate(int triangle) const;
 
 private:
@@ -171,25 +173,25 @@ private:
   };
 
   const Exception& GetException(int point) const;
-  /// Of a triangle while the template is made.
+  /// Bounds in a triangle, while the template is computed.
   struct Bounds
   {
-    /// How far, at most, the determinant falls below the affine one beside the edges, over the
-    /// affine one, with L at the corners; and |D'| there over the least stretch of L.
+    /// With the derivative L at the corners, along the edges: how far the determinant can be below
+    /// the affine one, divided by the affine one; and |D'| divided by the smallest stretch of L.
     double Fall = 0.0;
     double Slope = 0.0;
-    /// A lower bound of the determinant in each corner over the affine one, 0 if unknown.
+    /// A lower bound of the determinant in each corner, divided by the affine one; 0 if unknown.
     std::array<float, 3> Corners{};
   };
 
   void SetHeights(int triangle, double maximumDeviation, LargeArray<Bounds>& bounds);
   void SetMiddle(int triangle);
-  /// Takes the mean derivative at an inner point if that certifies its corners, which is so where
-  /// the derivatives of the triangles differ little.
+  /// Uses the mean derivative at an interior point if its corners are then certified, which is the
+  /// case where the derivatives of the triangles differ little.
   bool TakeMean(int point, const PointFans& fans, LargeArray<Bounds>& bounds);
-  /// Sets a point's derivative and kind. Returns what it needs if it is not differentiable.
+  /// Sets a point's derivative and kind. Returns the data of its rings if it is not Differentiable.
   std::unique_ptr<Exception> FindDerivative(int point, const PointFans& fans);
-  /// A bound of the distance from the piecewise linear map in the corners at a point.
+  /// A bound on the distance from the piecewise linear map in the corners at a point.
   double GetDeviation(const PointFan& fan, int point, const Exception* exception) const;
   void VisitRings(const Exception& exception, int triangle,
     const std::function<void(const CubicElement&, double factor)>& visit) const;
@@ -203,7 +205,7 @@ private:
   LargeArray<Matrix2> Affines;
   LargeArray<std::array<double, 3>> Heights;
   LargeArray<MiddleBounds> Middles;
-  /// Of triangles that are certified by bounds, and 0.
+  /// The certificates of triangles that are certified by bounds, otherwise 0.
   LargeArray<float> Certificates;
   /// Ascending by point.
   std::vector<Exception> Exceptions;

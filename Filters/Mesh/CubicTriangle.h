@@ -19,19 +19,21 @@
 namespace homeomorphism
 {
 
-/// The template is evaluated in closed form (see Documentation/cubic.md). Other elements of cut
-/// triangles are made when a point in them is mapped for the first time, and kept until several
-/// other triangles have been set. What it computes depends on the triangle and the point alone.
+/// The Cubic map on one triangle. The template is evaluated in closed form (see
+/// Documentation/cubic.md). Other elements of cut triangles are computed when a point in them is
+/// mapped for the first time, and kept until several other triangles have been set. Results depend
+/// only on the triangle and the point. Not thread-safe.
 class CubicTriangle
 {
 public:
-  /// Points in a row, Newton's steps, and the next rows come back to as many triangles.
+  /// The number of triangles to keep for rows of points, whose steps and next rows return to the
+  /// same triangles.
   static constexpr std::size_t ManyTriangles = 64;
-  /// Newton's steps for one point come back to as many.
+  /// The number of triangles to keep for the Newton steps of one point.
   static constexpr std::size_t FewTriangles = 3;
 
-  /// @a bending is null for the template itself. Both must outlive this. @a kept is how many
-  /// triangles are kept.
+  /// @a bending is null for the template itself. Both must outlive this object. @a kept is the
+  /// number of triangles that are kept.
   CubicTriangle(
     const CubicTemplate& cubicTemplate, const BendingSolution* bending, std::size_t kept)
     : Template(cubicTemplate)
@@ -41,22 +43,22 @@ public:
   }
 
   void Set(int triangle);
-  /// Of the triangle, relative to corner 0.
+  /// The corners of the triangle, relative to corner 0.
   const std::array<Vector2, 3>& GetCorners() const
   {
     return this->Now->Whole ? this->Now->Elements[0].Points : this->Now->Cut.Corners;
   }
-  /// The element in which the last point was, as a number of the cut's.
+  /// The number, in the cut, of the element that contained the last point.
   int GetLastElement() const { return this->LastElement; }
-  /// The length of a whole triangle, or the least height of the inner points of a cut one: second
-  /// derivatives change on this scale.
+  /// The scale on which second derivatives change: the length of a whole triangle, or the smallest
+  /// height of the inner points of a cut one.
   double GetScale() const;
 
-  /// The image of a point relative to that of corner 0, both relative to it.
+  /// The image of a point. Point and image are relative to corner 0 and its image.
   Vector2 Map(const Vector2& point);
 
-  /// How far the image of a point is from @a image, and Newton's step towards its preimage. If the
-  /// last point in this triangle @a isNear, its element is tried first.
+  /// The difference of @a image and the image of a point, and Newton's step towards the preimage of
+  /// @a image. If the last point in this triangle @a isNear, its element is tried first.
   Vector2 GetResidual(const Vector2& point, const Vector2& image, bool isNear, Vector2& step);
 
 private:
@@ -65,66 +67,68 @@ private:
     std::array<Vector2, 3> Points;
     BarycentricFrame Frame;
     CubicNet Net;
-    /// Where its coordinates begin, relative to corner 0.
+    /// The origins of its coordinates, relative to corner 0.
     Vector2 SourceOrigin;
     Vector2 TargetOrigin;
   };
 
-  /// What the template's map needs beside an edge.
+  /// The data of the template's closed form along an edge.
   struct EdgeTurn
   {
     bool IsMade = false;
-    /// w c m: the jump of the derivative across the edge, times the share of it that is taken at
-    /// the edge points, times the height.
+    /// w c m: the jump w of the derivative across the edge, times the fraction c of it at the edge
+    /// points, times the height m.
     Vector2 Turn;
     double InverseHeight = 0.0;
-    /// Between the edge points, and 1 / (1 + mu^2) there.
+    /// The reciprocal of the distance between the edge points, and 1 / (1 + mu^2).
     double InverseStrip = 0.0;
     double StripShare = 0.0;
   };
 
-  /// What it needs in the middle element of a corner. The vertex is corner 0 of the element.
+  /// The data of the closed form in the middle element of a corner. The vertex is corner 0 of the
+  /// element.
   struct CornerTurn
   {
     bool IsMade = false;
-    /// By how much the derivative at the vertex differs from the affine one.
+    /// The derivative at the vertex minus the affine one.
     Matrix2 Turn;
     /// The gradients of the barycentric coordinates of corners 1 and 2.
     Vector2 ByFirst;
     Vector2 BySecond;
-    /// The factors of the bubbles beside the edges from the vertex to them.
+    /// The factors of the bubbles of the edges from the vertex to these corners.
     Vector2 BesideFirst;
     Vector2 BesideSecond;
   };
 
-  /// What it needs in an element of a corner with a right angle.
+  /// The data of the closed form in an element of a corner with a right angle.
   struct SideTurn
   {
     bool IsMade = false;
     Matrix2 Turn;
-    /// The gradients of s along the edge and t across, from 0 to 1.
+    /// The gradients of s along the edge and t across it, both from 0 to 1.
     Vector2 ByS;
     Vector2 ByT;
-    /// The factors of the bubbles beside the diagonal and beside the edge, and that of the part
-    /// that the edge has.
+    /// The factors of the bubbles of the diagonal and of the edge, and that of the edge's part of
+    /// the map.
     Vector2 BesideDiagonal;
     Vector2 BesideEdge;
     Vector2 OfEdge;
   };
 
   void Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin);
-  /// Sets LastElement to that which contains a point. Null if the map is in closed form there.
+  /// Sets LastElement to the element that contains a point, and returns it; null if the map has a
+  /// closed form there.
   const Element* Find(const Vector2& point);
-  /// Where there is no element. @a derivative may be null.
+  /// The image of a point for which Find returns null. @a derivative may be null.
   Vector2 MapInClosedForm(const Vector2& point, Matrix2* derivative);
   const EdgeTurn& GetEdge(int k);
   const CornerTurn& GetCorner(int c);
   const SideTurn& GetSide(int c, bool isFirst);
-  /// The template's map less the affine one. Adds its derivative to @a derivative unless null.
+  /// The template minus the affine map. Adds its derivative to @a derivative unless that is null.
   Vector2 DeviateInStrip(const Vector2& point, int number, Matrix2* derivative);
   Vector2 DeviateInCorner(const Vector2& point, int number, Matrix2* derivative);
 
-  /// What is known of a triangle.
+  /// The data of a triangle that has been computed.
   struct Triangle
   {
     int Number = -1;
@@ -134,19 +138,20 @@ private:
     std::array<std::uint8_t, 3> InRings{};
     std::array<EdgeTurn, 3> Edges;
     std::array<CornerTurn, 3> Corners;
-    /// Beside the edge that leaves each corner, and beside that which arrives at it.
+    /// For each corner, along the edge that starts at it, and along the edge that ends at it.
     std::array<std::array<SideTurn, 2>, 3> Sides;
-    /// Those that are made, a whole triangle's alone, and where each of a cut one's is, -1 if
-    /// nowhere.
+    /// The computed elements (a whole triangle has only one), and for each element of a cut
+    /// triangle its index among them, or -1.
     std::vector<Element> Elements;
     std::array<std::int8_t, TriangleCut::NumberOfElements> Made;
   };
   const CubicTemplate& Template;
   const BendingSolution* Bending;
   int LastElement = 0;
-  /// Of the last point in its element, by the map in closed form.
+  /// The smallest barycentric coordinate of the last point in its element, if the map has a closed
+  /// form there.
   double LeastCoordinate = 0.0;
-  /// The last triangles that were set, by the ends of their numbers; made when they are set.
+  /// The last triangles that were set, at the index that is the remainder of the triangle's number.
   std::vector<std::unique_ptr<Triangle>> Triangles;
   Triangle* Now = nullptr;
 };

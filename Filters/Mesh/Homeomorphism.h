@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Homeomorphism.h
-/// The map from one mesh's domain to the other's: point -> triangle -> coordinates -> triangle ->
-/// point.
+/// The map between the domains of two meshes: point, triangle, coordinates, corresponding triangle,
+/// image.
 
 #ifndef homeomorphism_Homeomorphism_h
 #define homeomorphism_Homeomorphism_h
@@ -23,7 +23,7 @@ namespace homeomorphism
 
 class CubicHomeomorphism;
 
-/// How a pair of meshes, or one triangulation, is to be understood.
+/// The options of the map of a pair of meshes, or of the coordinates of one triangulation.
 struct HomeomorphismOptions
 {
   CoordinateSystem System = CoordinateSystem::Smooth;
@@ -32,7 +32,8 @@ struct HomeomorphismOptions
   bool MaskInvalidTriangles = false;
   /// Let the Linear system map discordant triangles instead of refusing the meshes.
   bool DiscordantByLinear = false;
-  /// Of the Cubic system. Its deviation, in the target's units, is the Smooth system's too.
+  /// The options of the Cubic system. MaximumDeviation, in the target's units, also applies to the
+  /// Smooth system.
   CubicMapOptions Cubic;
 
   bool operator==(const HomeomorphismOptions& other) const
@@ -44,7 +45,7 @@ struct HomeomorphismOptions
   }
 };
 
-/// The map's derivative, in the coordinates of the input.
+/// The derivative of the map, in the coordinates of the input.
 struct Jacobian
 {
   /// Row-major.
@@ -61,28 +62,28 @@ struct Jacobian
 };
 
 /// The homeomorphism of a pair of triangulations in one coordinate system, or the triangular
-/// coordinates of a single one. Immutable; any number of threads may use it.
+/// coordinates of a single triangulation. Immutable; any number of threads may use it.
 class Homeomorphism
 {
 public:
-  /// Reads, validates and prepares. @a target may be null: then only coordinates can be asked for.
-  /// Defects are added to @a diagnostics; returns null if they made the meshes be refused.
+  /// Reads, validates and prepares. If @a target is null, only coordinates are available. Defects
+  /// are added to @a diagnostics. Returns null if the meshes are refused because of them.
   static std::shared_ptr<const Homeomorphism> Make(vtkPolyData* source, vtkPolyData* target,
     const HomeomorphismOptions& options, MeshDiagnostics& diagnostics);
 
-  /// The map with source and target exchanged. It shares all data with this one, which must have a
+  /// The map with source and target exchanged. It shares all data with this map, which must have a
   /// target.
   std::shared_ptr<const Homeomorphism> Inverted() const;
 
   const TriangulationPair& GetPair() const { return *this->Pair; }
-  /// The map of the Cubic system, null in the others.
+  /// The map of the Cubic system, null in other systems.
   const CubicHomeomorphism* GetCubic() const { return this->Cubic.get(); }
   const ChartedTriangulation& GetCharts(Domain domain) const { return *this->Charts[int(domain)]; }
 
-  /// The distance, in normalized coordinates, up to which a point is taken to the nearest point of
-  /// the domain: what rounding of the mesh's coordinates, or of the point's, stored with the
-  /// relative error @a precision, amounts to, or @a tolerance times the diagonal of the domain if
-  /// that is more.
+  /// The largest distance from the domain, in normalized coordinates, at which a point is replaced
+  /// by the nearest point of the domain. It is the larger of two values: a bound on the rounding of
+  /// the mesh's coordinates and of the point's, whose relative error is @a precision; and @a
+  /// tolerance times the diagonal of the domain.
   double GetAbsoluteTolerance(Domain domain, double tolerance, double precision) const;
 
   /// Locates a point in a mesh's domain.
@@ -92,40 +93,42 @@ public:
     return this->Pair->GetLocation(domain).Find(point, tolerance, hint);
   }
 
-  /// The image of a point of @a from's domain. Corners are mapped to corners exactly. Returns false
-  /// if there is none: if @a surfacePoint is not in the domain after all, or where a Cubic map is
-  /// not certified.
+  /// The image of a point of the domain @a from. Corners are mapped to corners exactly. Returns
+  /// false if there is no image: if @a surfacePoint is not in the domain, or if a Cubic map is not
+  /// certified in its triangle.
   bool MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
 
-  /// The image of a point, and the derivative there, in one solution of the system's equations.
-  /// Returns false if there is no image.
+  /// The image of a point, and the derivative there. The equations of the system are solved only
+  /// once. Returns false if there is no image.
   bool MapPoint(
     Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const;
 
-  /// The image, in the frame of the target's triangle, of a point in the frame of @a from's; not a
-  /// number if there is none.
+  /// The image of a point, from the frame of the triangle in @a from to its frame in the other
+  /// domain; NaN if there is none.
   Vector2 MapInFrame(Domain from, TriangleIndex triangle, const Vector2& point) const;
 
-  /// Locates the points of a block: to the same bits as Locate. Returns how many are outside.
+  /// Locates the points of a block. The results are the same, bit for bit, as those of Locate.
+  /// Returns the number of points outside.
   int LocateBlock(Domain domain, PointBlock& block, double tolerance, LocationHint& hint) const
   {
     return this->Pair->GetLocation(domain).FindBlock(block, tolerance, hint);
   }
 
-  /// Maps the points of a block that LocateBlock has located, to the same bits as MapPoint. Points
-  /// that have no image become outside ones, of triangle -1; returns how many. Keeps
-  /// references if the block is to.
+  /// Maps the points of a block that LocateBlock has located. The results are the same, bit for
+  /// bit, as those of MapPoint. Points without an image get the triangle -1; returns their number.
+  /// Keeps references if the block has KeepsReferences.
   int MapBlock(Domain from, PointBlock& block) const;
 
   /// The derivative at a point; on an edge, the limit from the point's triangle.
   Jacobian GetJacobian(Domain from, const SurfacePoint& surfacePoint) const;
 
-  /// The derivative at a point of a block that MapBlock has mapped, to the same bits. The Smooth
-  /// and the Cubic system solve nothing again if the block keeps references.
+  /// The derivative at point @a i of a block that MapBlock has mapped; the same, bit for bit, as
+  /// for the SurfacePoint. In the Smooth and Cubic systems, no equation is solved again if the
+  /// block has KeepsReferences.
   Jacobian GetJacobian(Domain from, const PointBlock& block, int i) const;
 
-  /// The derivative at the point of a triangle that has these coordinates; where the coordinate
-  /// system is not differentiable, the limit along the contour that they name.
+  /// The derivative at the point of a triangle that has these coordinates. Where the coordinate
+  /// system is not differentiable, it is the limit along the contour given by e and p.
   Jacobian GetJacobian(
     Domain from, TriangleIndex triangle, const TriangularCoordinates& coordinates) const;
 
@@ -147,7 +150,7 @@ private:
       this->Pair->GetGeometry(Opposite(from)).GetScale();
   }
 
-  /// The block's barycentric coordinates, ordered as a triangle's corners.
+  /// The block's barycentric coordinates, in the order of a triangle's corners.
   std::array<const double*, 3> ByCorner(
     Domain domain, TriangleIndex triangle, const PointBlock& block) const
   {
@@ -170,21 +173,22 @@ private:
   template <typename Use>
   auto VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const;
 
-  /// The derivative at a triangle's reference point, from those of both charts there.
+  /// The derivative at a point of a triangle, from those of both charts there.
   template <typename Differential>
   Jacobian Derive(Domain from, TriangleIndex triangle, const Differential& differential,
     const Differential& other) const;
   Jacobian DeriveByStrip(
     Domain from, TriangleIndex triangle, int corner, const CornerCoordinates& reference) const;
 
-  /// From the triangle's frames to the input's coordinates. @a determinant is that of the matrix.
+  /// Converts a derivative from the triangle's frames to the input's coordinates. @a determinant is
+  /// that of @a inFrames.
   Jacobian FromFrames(
     Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::shared_ptr<const ChartedTriangulation>, 2> Charts;
   std::shared_ptr<const CubicHomeomorphism> Cubic;
-  /// Of an inverted map: the pair to which Cubic refers, and whether its domains are exchanged.
+  /// For an inverted map: the pair to which Cubic refers, and whether its domains are exchanged.
   std::shared_ptr<const TriangulationPair> CubicPair;
   bool IsCubicInverted = false;
 };

@@ -18,10 +18,9 @@
 namespace homeomorphism
 {
 
-/// Allocates memory for an array, to be released by ReleaseLarge. It is aligned to
-/// a cache line. Large arrays use huge pages where the system has them: page
-/// faults and address translation for small pages would take longer than the
-/// computation.
+/// Allocates memory for an array, to be released by ReleaseLarge. It is aligned to a cache line.
+/// Large arrays use huge pages if the system has them: page faults and address translation for
+/// small pages would take longer than the computation.
 void* AllocateLarge(std::size_t bytes);
 void ReleaseLarge(void* memory);
 
@@ -57,8 +56,8 @@ struct LargeAllocator
 template <typename T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
 
-/// Memory that is lent to arrays, part after part, before it is needed for something else: the
-/// system need not clear pages again.
+/// Memory that temporary arrays use, one part after the other, before it is needed for something
+/// else, so that the system does not have to clear pages again.
 class LargeScratch
 {
 public:
@@ -105,7 +104,7 @@ public:
   {
   }
 
-  /// In memory that is lent, if it is enough; it must outlive the array.
+  /// Uses memory of @a scratch, if there is enough; it must outlive the array.
   LargeArray(std::size_t size, LargeScratch& scratch)
     : Count(size)
   {
@@ -122,7 +121,7 @@ public:
     std::fill(this->begin(), this->end(), value);
   }
 
-  /// Copies, for meshes given element by element.
+  /// Copies the elements.
   LargeArray(const std::vector<T>& elements) // NOLINT(google-explicit-constructor)
     : LargeArray(elements.size())
   {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file LeastBendingDerivatives.h
-/// The derivatives of least bending at the points of a mesh whose triangles are one cubic element
-/// each.
+/// The derivatives of least bending at the points of a mesh each of whose triangles is one cubic
+/// element.
 
 #ifndef homeomorphism_LeastBendingDerivatives_h
 #define homeomorphism_LeastBendingDerivatives_h
@@ -16,14 +16,14 @@
 namespace homeomorphism
 {
 
-/// What the boundary prescribes at a point.
+/// The conditions of the boundary at a point.
 struct BoundaryPoint
 {
   bool Straight = false;
   Vector2 Tangent;
   /// The derivative along the tangent, if the boundary is straight.
   Vector2 Slope;
-  /// The whole derivative at a corner.
+  /// The derivative at a corner.
   Matrix2 Derivative;
 };
 
@@ -34,10 +34,11 @@ struct LeastBendingDerivatives
   double Energy = 0.0;
 };
 
-/// Minimizes the integral of the squared second derivatives over the derivatives at all points that
-/// @a boundary leaves free, by conjugate gradients from those of the template. All points are where
-/// the piecewise linear map has them. The system is well conditioned for any number of triangles.
-/// @a scratch is memory that may be used, for as long as this runs.
+/// Minimizes the integral of the squared second derivatives over the derivatives at all points,
+/// subject to the conditions of @a boundary, by conjugate gradients, starting from the derivatives
+/// of the template. The values at the points are those of the piecewise linear map. The condition
+/// number of the system does not depend on the number of triangles. @a scratch is memory that the
+/// function may use while it runs.
 LeastBendingDerivatives FindLeastBendingDerivatives(const CubicTemplate& cubicTemplate,
   const PointFans& fans, const std::map<int, BoundaryPoint>& boundary, LargeScratch scratch,
   const ParallelFor& parallelFor);

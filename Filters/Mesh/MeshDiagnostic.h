@@ -3,7 +3,7 @@
 
 /// @file MeshDiagnostic.h
 /// Defects of a triangulation, or of a pair of triangulations, as data.
-/// Pipeline/DiagnosticMessages.h puts them into words.
+/// Pipeline/DiagnosticMessages.h converts them to messages.
 
 #ifndef homeomorphism_MeshDiagnostic_h
 #define homeomorphism_MeshDiagnostic_h
@@ -28,7 +28,7 @@ struct MeshDiagnostic
     PointCountsDiffer,
     /// Source and target have different numbers of triangles. Counts has both.
     CellCountsDiffer,
-    /// More polygons or points than can be numbered. Counts has the polygons and the points.
+    /// More polygons or points than can be numbered. Counts has their numbers.
     TooManyTriangles,
     /// Polygons with another number of corners than three.
     NotTriangles,
@@ -44,23 +44,24 @@ struct MeshDiagnostic
     NotFinite,
     /// Triangles without area.
     DegenerateTriangle,
-    /// Triangles at an edge of more than two triangles.
+    /// Triangles at an edge that belongs to more than two triangles.
     NonManifoldEdge,
-    /// Triangles whose winding contradicts a neighbor's, however triangles are reversed.
+    /// Triangles whose winding is inconsistent with a neighbor's after all possible reversals.
     NonOrientable,
-    /// Triangles of planar meshes with another orientation change than the majority.
+    /// Triangles of planar meshes that are flipped between source and target, unlike the majority
+    /// (or not flipped, if the majority is).
     Flipped,
     /// Triangles of a planar mesh whose interiors meet. Size is the depth of the largest overlap.
     Overlapping,
-    /// Triangles for which the Contour system with the centroid does not exist.
+    /// Triangles in which the Contour system with the centroid is not defined.
     Discordant,
-    /// The mesh is a surface, and the Cubic system maps planar meshes only.
+    /// The mesh is a surface; the Cubic system maps only planar meshes.
     NotPlanar,
-    /// The Cubic system with LEAST bending would have more triangles, once refined, than it can
-    /// number the unknowns of. Counts has the mesh's triangles and the refined ones.
+    /// In the Cubic system with LEAST bending, there would be more triangles after refinement than
+    /// it supports. Counts has the numbers of triangles before and after refinement.
     TooManyRefined,
-    /// The points nearly lie in a plane, but the mesh is treated as a surface. Size is the largest
-    /// distance from that plane, Tolerance the relative tolerance that finds points of the plane.
+    /// The points lie nearly in a plane, but the mesh is treated as a surface. Size is the largest
+    /// distance from that plane, Tolerance the Tolerance with which points of the plane are inside.
     NearlyPlanar
   };
   static constexpr int NumberOfKinds = int(Kind::NearlyPlanar) + 1;
@@ -76,7 +77,7 @@ struct MeshDiagnostic
     Triangulation
   };
 
-  /// What becomes of the triangles or the meshes.
+  /// The treatment of the triangles or the meshes.
   enum class Outcome
   {
     /// The meshes are refused.
@@ -89,18 +90,18 @@ struct MeshDiagnostic
     Accepted
   };
 
-  /// What a user can do.
+  /// The action that a user can take.
   enum class Remedy
   {
-    /// Give the same mesh twice, with different point coordinates.
+    /// Use the same mesh twice, with different point coordinates.
     UseSameMesh,
     /// Split the meshes into smaller ones.
     SplitMeshes,
-    /// Triangulate the source and give the target its cells.
+    /// Triangulate the source, and use its cells for the target.
     Triangulate,
-    /// Read or make the mesh again: it is corrupt.
+    /// Read or create the mesh again, because it is corrupt.
     ReadAgain,
-    /// Give the target the source's cells and its own points in the same order.
+    /// Use the source's cells for the target, with the target's points in the same order.
     UseSourceCells,
     /// Repair or remove the triangles, or mask them.
     RepairOrMask,
@@ -112,9 +113,9 @@ struct MeshDiagnostic
     UseOtherSystem,
     /// Use the Smooth system.
     UseSmoothSystem,
-    /// Use less FairnessRefinement, or LOCAL bending.
+    /// Use a smaller FairnessRefinement, or LOCAL bending.
     RefineLess,
-    /// Project the mesh to the plane, or use the tolerance.
+    /// Project the mesh onto the plane, or use the tolerance.
     FlattenOrUseTolerance
   };
 
@@ -126,9 +127,9 @@ struct MeshDiagnostic
   /// First corner of the first defective triangle, in the input's coordinates. NaN if there is
   /// none.
   Vector3 Position{ NotANumber, NotANumber, NotANumber };
-  /// Numbers that differ or are too large; see Kind.
+  /// The numbers that differ or are too large; see Kind.
   std::array<vtkIdType, 2> Counts{ 0, 0 };
-  /// In the input's units; NaN for kinds without a size.
+  /// See Kind; in the input's units. NaN for kinds without a size.
   double Size = NotANumber;
   /// Relative to the diagonal of the mesh's bounding box, as the filters' Tolerance; NaN for kinds
   /// without a tolerance.

@@ -32,8 +32,7 @@ struct FramePoint
   double Offset = 0.0;
 };
 
-/// Frame and shape of a triangle in the plane: the data needed to locate and map a
-/// point.
+/// Frame and shape of a triangle in the plane: the data that is needed to locate and map a point.
 struct alignas(64) PlaneFrame
 {
   Vector2 Origin;
@@ -64,11 +63,11 @@ static_assert(sizeof(PlaneFrame) == 64, "One line of a processor's cache");
 
 /// Point coordinates of a triangulation, in a plane or as a surface in 3-space.
 ///
-/// All computation uses *normalized coordinates*: the coordinates of the input times a power of
-/// two, Scale, which brings the largest of them close to 1 without rounding. Meshes of any size are
-/// therefore equivalent in floating-point arithmetic. In a plane, normalized coordinates are two
-/// coordinates within it and the distance from it. If the plane is parallel to two axes, they are
-/// the scaled coordinates of the input, unrounded.
+/// All computations use *normalized coordinates*: the coordinates of the input times a power of
+/// two, Scale, so that the largest of them is close to 1. This multiplication is exact, so meshes
+/// of any size are equivalent in floating-point arithmetic. In a plane, normalized coordinates are
+/// two coordinates within the plane and the distance from it. If the plane is parallel to two axes,
+/// they are the scaled coordinates of the input, without rounding.
 class MeshGeometry
 {
 public:
@@ -107,19 +106,18 @@ public:
   double GetLargestCoordinate() const { return this->LargestCoordinate; }
   /// Bounding box of the points of a planar mesh that are used by triangles, in its plane.
   const Box<2>& GetPlaneBounds() const { return this->PlaneBounds; }
-  /// Of a surface whose points lie almost in a plane, within a millionth of its diagonal: the
-  /// largest distance of a point from that plane, in normalized coordinates, if the plane is one of
-  /// those between the points. 0 for all other meshes.
+  /// For a surface whose points lie within a millionth of its diagonal of a plane: the largest
+  /// distance of a point from that plane, in normalized coordinates, if the plane passes between
+  /// the points. 0 for all other meshes.
   double GetThickness() const { return this->Thickness; }
   /// Length of the diagonal of the bounding box of the points, in normalized coordinates.
   double GetDiagonal() const { return this->Diagonal; }
-  /// Relative rounding error of the stored coordinates: half an ulp of float or
-  /// double.
+  /// Relative rounding error of the stored coordinates: half an ulp of float or double.
   double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
 
-  /// How far, in normalized coordinates, a point that should lie on an edge may be from it because
-  /// coordinates are rounded: 8 u L + 16 v L, with L the largest coordinate, u the precision of the
-  /// stored coordinates, and v that of double.
+  /// The largest distance, in normalized coordinates, of a point that should lie on an edge from
+  /// that edge, due to the rounding of coordinates: 8 u L + 16 v L, with L the largest coordinate,
+  /// u the precision of the stored coordinates, and v that of double.
   ///
   /// A point a + t (b - a) of an edge from a to b, computed in the precision of the coordinates,
   /// has rounding errors of at most 2 u L (difference), 2 u L (product) and u L (sum) in each
@@ -128,8 +126,8 @@ public:
   /// parallel to two axes, the two coordinates in the plane are sums of three products, with errors
   /// of less than 6 v L each, in the point and in the edge. Distances are computed as doubles.
   ///
-  /// It is also the distance at which a point with coordinates of this precision may be found from
-  /// the mesh. @a precision counts if it is coarser than that of the mesh.
+  /// It is also the distance from the mesh up to which a point with coordinates of this precision
+  /// is located. @a precision is used if it is coarser than that of the mesh.
   double GetRounding(double precision = 0.0) const
   {
     return (8.0 * std::max(precision, this->CoordinatePrecision) +
@@ -217,7 +215,8 @@ public:
   /// point, unrounded, if the distance is 0.
   void FromMeshPoint(std::int32_t meshPoint, double offset, double point[3]) const;
 
-  /// Normalized coordinates of a point of the mesh; in the plane the third is the distance from it.
+  /// Normalized coordinates of a point of the mesh. In a planar mesh, the third is the distance
+  /// from the plane.
   Vector3 GetPoint(std::int32_t point) const
   {
     if (this->Planar)
@@ -227,9 +226,9 @@ public:
     }
     return this->SpacePoints[point];
   }
-  /// The vector from one point of the mesh to another, in the input's coordinates. It is the
-  /// difference of nearby numbers, so that points close to each other have an accurate one however
-  /// far from the origin they are.
+  /// The vector from one point of the mesh to another, in the input's coordinates. It is a
+  /// difference of stored coordinates, so it is accurate for points close to each other, even far
+  /// from the origin.
   Vector3 GetVector(std::int32_t from, std::int32_t to) const;
   /// Normalized coordinates of a point of a planar mesh.
   const Vector2& GetPlanePoint(std::int32_t point) const { return this->PlanePoints[point]; }
@@ -252,7 +251,7 @@ public:
   bool IsConcordant(const Triangulation::Corners& corners) const;
   /// The views of the triangle from its edges.
   EdgeViews GetViews(const Triangulation::Corners& corners) const;
-  /// The view from the edge opposite one of the corners, to the same bits.
+  /// The view from the edge opposite corner @a edge; the same, bit for bit, as in GetViews.
   EdgeView GetView(const Triangulation::Corners& corners, int edge) const;
 
   TriangleShape GetShape(TriangleIndex triangle) const
@@ -322,7 +321,7 @@ private:
   Vector3 FromSpaceFrame(TriangleIndex triangle, const FramePoint& point) const;
   Vector3 ToTiltedPlane(const Vector3& scaled) const;
   Vector3 FromTiltedPlane(const Vector3& normalized) const;
-  /// The corner opposite the longest edge, the first of equals.
+  /// The corner opposite the longest edge; the first one of equal ones.
   int FindApex(const Triangulation::Corners& corners) const;
   class MeshPoints;
   void FindPlane(

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MeshValidation.h
-/// The tests for defects of meshes and pairs of meshes. Each function finds one kind of defect
-/// and the triangles that have it. TriangulationPair refuses the meshes or masks the
-/// triangles.
+/// The tests for defects of meshes and pairs of meshes. Each function finds the triangles that have
+/// one kind of defect. TriangulationPair refuses the meshes or masks the triangles.
 
 #ifndef homeomorphism_MeshValidation_h
 #define homeomorphism_MeshValidation_h
@@ -26,17 +25,17 @@ namespace homeomorphism
 /// Triangle indices, ascending and unique.
 using TriangleList = std::vector<TriangleIndex>;
 
-/// Cell id of the first polygon of a mesh. Vertices and lines have lower ids than polygons.
+/// Cell id of the first polygon of a mesh. Vertices and lines have smaller ids than polygons.
 vtkIdType FirstPolygon(vtkPolyData* mesh);
 
-/// Reads the polygons of a vtkPolyData as triangles; vertices and lines beside them are no part of
-/// the triangulation. Reports polygons and strips that are not triangles, ids of points that do not
-/// exist, and counts beyond what can be numbered.
+/// Reads the polygons of a vtkPolyData as triangles; vertices and lines are not part of the
+/// triangulation. Reports polygons and strips that are not triangles, ids of points that do not
+/// exist, and more triangles or points than can be numbered.
 LargeArray<Triangulation::Corners> ReadTriangles(
   vtkPolyData* mesh, MeshDiagnostic::Mesh where, MeshDiagnostics& diagnostics);
 
-/// Reports differences between source and target: counts, and triangles that do not have the same
-/// three points. The order of the three points is free.
+/// Reports differences between source and target: different numbers of points or triangles, and
+/// triangles that do not have the same three points, in any order.
 void CompareConnectivity(vtkPolyData* source, vtkPolyData* target,
   const LargeArray<Triangulation::Corners>& sourceTriangles,
   const LargeArray<Triangulation::Corners>& targetTriangles, MeshDiagnostics& diagnostics);
@@ -57,30 +56,31 @@ TriangleList FindNotFinite(const Triangulation& triangulation, const MeshGeometr
 /// Degenerate triangles.
 TriangleList FindDegenerate(const Triangulation& triangulation, const MeshGeometry& geometry);
 
-/// For two planar meshes, the triangles that change their orientation if most do not, or keep it if
-/// most change it.
+/// For two planar meshes, the triangles that change their orientation although most do not, or that
+/// keep it although most change it.
 TriangleList FindFlipped(
   const Triangulation& triangulation, const MeshGeometry& source, const MeshGeometry& target);
 
 /// Triangles of a planar mesh whose interiors meet those of others.
 struct Overlaps
 {
-  /// Beyond the rounding of the coordinates.
+  /// Triangles that overlap by more than the rounding of the coordinates.
   TriangleList Triangles;
-  /// Only by the rounding of the coordinates.
+  /// Triangles that overlap only by the rounding of the coordinates.
   TriangleList WithinRounding;
   /// The depth of the deepest overlap found beyond the rounding, in normalized coordinates.
   double Depth = 0.0;
 };
 
-/// Finds overlaps by exact predicates. @a triangulation's adjacency and @a location must know which
-/// triangles are masked. Takes n log n time if there are no overlaps; @a location is used only if
-/// there are some.
+/// Finds overlaps by exact predicates. The adjacency of @a triangulation and @a location must have
+/// been computed with the masked triangles. Takes O(n log n) time if there are no overlaps;
+/// @a location is used only if there are some.
 ///
-/// The depth of an overlap is how far one triangle has to be moved until it ends. Coordinates are
-/// rounded, so triangles that should touch may overlap by MeshGeometry::GetRounding(). Such an
-/// overlap is none, if its depth is also at most a quarter of the heights of both triangles, and
-/// the two are not adjacent: the overlap of adjacent triangles is a fold.
+/// The depth of an overlap is the shortest distance by which one triangle must be moved to remove
+/// it. Coordinates are rounded, so triangles that should touch may overlap by
+/// MeshGeometry::GetRounding(). Such an overlap is ignored if its depth is also at most a quarter
+/// of the heights of both triangles, and if the two are not adjacent: the overlap of adjacent
+/// triangles is a fold.
 Overlaps FindOverlapping(
   const Triangulation& triangulation, const MeshGeometry& geometry, const PointLocation& location);
 

@@ -18,9 +18,9 @@
 namespace homeomorphism
 {
 
-/// Corner numbers are 0 to 2; edge k is opposite corner k and runs from NextCorner(k) to
-/// PreviousCorner(k). All triangles have positive area in Source and in Target, and neighbors run
-/// through their edge in opposite directions.
+/// A pair of plane triangulations. Corners are numbered 0 to 2; edge k is opposite corner k and
+/// runs from NextCorner(k) to PreviousCorner(k). All triangles have positive areas in Source and in
+/// Target, so neighbors traverse their common edge in opposite directions.
 struct PlanarPair
 {
   LargeVector<Vector2> Source;
@@ -32,7 +32,8 @@ struct PlanarPair
   int GetNumberOfTriangles() const { return static_cast<int>(this->Triangles.size()); }
   int GetNumberOfPoints() const { return static_cast<int>(this->Source.size()); }
 
-  /// Fills Neighbors from Triangles. Edges of more than two triangles count as boundary.
+  /// Fills Neighbors from Triangles. Edges of more than two triangles are treated as boundary
+  /// edges.
   void FindNeighbors();
 
   /// The edge of @a neighbor that it shares with @a triangle.
@@ -48,7 +49,8 @@ struct PlanarPair
     return corners[0] == point ? 0 : (corners[1] == point ? 1 : 2);
   }
 
-  /// Corners of a triangle relative to one of them: differences of nearby coordinates are exact.
+  /// The corners of a triangle relative to corner @a origin: differences of nearby coordinates are
+  /// exact.
   static std::array<Vector2, 3> GetCorners(
     const LargeVector<Vector2>& points, const std::array<std::int32_t, 3>& corners, int origin = 0)
   {
@@ -72,24 +74,26 @@ struct PlanarPair
     return AffineDerivative(this->GetSourceCorners(triangle), this->GetTargetCorners(triangle));
   }
 
-  /// Each triangle cut into four at the midpoints of its edges: triangle 4 t + c has corner c of
-  /// triangle t, 4 t + 3 is the middle one.
+  /// The pair with each triangle divided into four at the midpoints of its edges: triangle 4 t + c
+  /// has corner c of triangle t, and triangle 4 t + 3 is the middle one.
   PlanarPair Refine() const;
 
-  /// Gives each of the parts that touch in a point a point of its own, so that the triangles at
-  /// every point are one fan. Returns from which points those that are appended were taken.
+  /// Where several fans of triangles meet at a point, appends a copy of the point for each further
+  /// fan, so that the triangles at every point are one fan. Returns the original points of the
+  /// appended ones.
   std::vector<std::int32_t> SeparateParts();
 };
 
-/// The triangles around a point, counterclockwise, beginning at the boundary if the point is on it.
+/// The triangles around a point, counterclockwise; if the point is on the boundary, they begin
+/// there.
 struct PointFan
 {
   std::vector<int> Triangles;
   bool Closed = true;
 };
 
-/// Of each point, the triangle with which its fan begins, -1 for a point without triangles; and
-/// whether the triangles at the point are more than its fan (boundaries touch there).
+/// For each point, the first triangle of its fan, -1 for a point without triangles; and whether the
+/// point has triangles outside that fan (boundaries touch there).
 struct PointFans
 {
   explicit PointFans(const PlanarPair& pair);

@@ -32,18 +32,19 @@ struct SurfacePoint
   int Corner = -1;
 };
 
-/// What helps to find the next of many points; it changes how fast, never what is found.
+/// Information from previous points that makes the location of the next ones faster. It does not
+/// change results.
 struct LocationHint
 {
   TriangleIndex Triangle = -1;
-  /// How many points in a row were in one triangle lately.
+  /// The recent number of consecutive points in one triangle.
   int RunLength = 1;
-  /// Whether most points of the last block were in another triangle than the point before.
+  /// Whether most points of the last block were not in the triangle of the point before.
   bool IsScattered = false;
 };
 
-/// Some points that are located and mapped together, which takes a fraction of the time. Not
-/// copyable, because it refers to its own buffer.
+/// Up to Capacity points that are located and mapped together, which takes a fraction of the time
+/// of single points. Not copyable, because it refers to its own buffers.
 struct PointBlock
 {
   static constexpr int Capacity = SmoothBatch::Capacity;
@@ -56,11 +57,11 @@ struct PointBlock
   int Count = 0;
   /// The points, in the buffer or in an array of the caller.
   const double (*Points)[3] = this->PointBuffer;
-  /// The points' images, and outside points themselves; set by MapBlock, which may overwrite up to
-  /// WidestVector - 1 elements after the last. In the buffer or in an array of the caller.
+  /// The images of the points; points outside are copied. Set by MapBlock, which may overwrite up
+  /// to WidestVector - 1 elements after the last. In the buffer or in an array of the caller.
   double (*Images)[3] = this->ImageBuffer;
 
-  /// The located points (see SurfacePoint), as structure of arrays.
+  /// The located points (see SurfacePoint), as a structure of arrays.
   TriangleIndex Triangles[Capacity];
   int Corners[Capacity];
   double InPlane[2][Size];
@@ -71,17 +72,17 @@ struct PointBlock
   double First[Size];
   double Second[Size];
 
-  /// Set to keep what GetJacobian needs when points are mapped.
+  /// Whether the data that GetJacobian needs is kept when points are mapped.
   bool KeepsReferences = false;
-  /// Of the Smooth system: references, for a corner, the next one and the previous one, and which
-  /// corner that is. Of the Cubic system: points of the map's source, and their triangles.
+  /// In the Smooth system: the references for a corner, the next one and the previous one, and the
+  /// number of that corner. In the Cubic system: points of the map's source, and their triangles.
   double References[3][Size];
   int ReferencePlaces[Capacity];
 
   double PointBuffer[Capacity][3];
   double ImageBuffer[Size][3];
 
-  /// The Cubic map of the last points, and what is kept of triangles for those in the next block.
+  /// The Cubic map of the last points, and its working data, which is kept for the next block.
   std::shared_ptr<const CubicHomeomorphism> Cubic;
   std::shared_ptr<CubicTriangle> PreparedCubics;
 

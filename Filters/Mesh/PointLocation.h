@@ -31,7 +31,7 @@ struct PlaneRelation
   double Apex;
   double First;
   double Second;
-  /// The least of the three times the height of the triangle, and a bound of its error.
+  /// The smallest of the three times the height of the triangle, and a bound on its error.
   double Least;
   double Margin;
 
@@ -62,17 +62,19 @@ struct PlaneRelation
   bool IsOutside() const { return this->Least < -this->Margin; }
 };
 
-/// Finds the triangle that contains a point. The result depends on the point alone: neither on the
-/// hint nor on earlier points or other threads.
-/// In a plane, exact predicates find every point of the closed domain, including edges and
-/// vertices. If several triangles contain the point, the one with the lowest number is used. In
-/// 3-space the nearest triangle is used, and the lowest number among equally near ones. A point
-/// outside by no more than the tolerance is replaced by the nearest point of the domain.
+/// Finds the triangle that contains a point. The result depends only on the point, not on the hint,
+/// on earlier points, or on other threads. Any number of threads may call the const functions.
 ///
-/// In a plane the search walks from triangle to adjacent triangle. It starts from the hint if that
-/// is near, otherwise from a triangle that a grid stores for the neighborhood of the point. A walk
-/// that reaches the boundary or takes too long is replaced by a search of the box tree, which also
-/// decides whether a point is outside.
+/// In a plane, exact predicates locate every point of the closed domain, including points on edges
+/// and vertices. If several triangles contain the point, the one with the smallest number is used.
+/// In 3-space, the nearest triangle is used, and of equally near ones that with the smallest
+/// number. A point outside the domain whose distance is at most the tolerance is replaced by the
+/// nearest point of the domain.
+///
+/// In a plane, the search walks from triangle to adjacent triangle. It starts from the hint if that
+/// is near, otherwise from a triangle that a grid stores for the cell of the point. If the walk
+/// reaches the boundary or takes too many steps, a tree of boxes is searched instead, which also
+/// decides whether the point is outside.
 class PointLocation
 {
 public:
@@ -84,7 +86,7 @@ public:
   void FillSeeds();
 
   /// Sets the triangles of a planar mesh, ascending, that overlap others by the rounding of their
-  /// coordinates. Of several triangles that contain a point, the one with the lowest number counts.
+  /// coordinates. If several triangles contain a point, the one with the smallest number is used.
   void SetOverlapping(const std::vector<TriangleIndex>& triangles);
   /// Whether a triangle overlaps others by the rounding of their coordinates.
   bool IsOverlapping(TriangleIndex triangle) const
@@ -97,7 +99,8 @@ public:
   /// have its frames.
   SurfacePoint Find(const double point[3], double tolerance, TriangleIndex hint) const;
 
-  /// Finds the points of a block, to the same bits. Returns how many are outside.
+  /// Finds the points of a block. The results are the same, bit for bit, as those of Find. Returns
+  /// the number of points outside.
   int FindBlock(PointBlock& block, double tolerance, LocationHint& hint) const;
 
   /// A triangle of a planar mesh that is probably near a point, or -1.
@@ -116,11 +119,11 @@ public:
   }
 
 private:
-  /// Where a walk starts from a hint, the least barycentric coordinate of the point. From a
-  /// triangle many times its size away, the way from the seed is shorter.
+  /// A walk starts from the hint only if no barycentric coordinate of the point there is below
+  /// this. From a triangle at a distance of many times its size, the walk from the seed is shorter.
   static constexpr double Farthest = -4.0;
 
-  /// The largest distance from a plane at which points count.
+  /// The largest distance from a plane at which points are located.
   double GetHighest(double tolerance) const
   {
     return this->Geometry.IsColumnar() ? std::numeric_limits<double>::max() : tolerance;
@@ -133,7 +136,7 @@ private:
     return this->Geometry.IsPlanar() && std::abs(normalized[0]) <= huge &&
       std::abs(normalized[1]) <= huge && std::abs(normalized[2]) <= this->GetHighest(tolerance);
   }
-  /// The distance from the plane of a point of a planar mesh, where it counts.
+  /// The distance of a point from the plane of a planar mesh; 0 if distances are ignored.
   double GetOffset(const Vector3& normalized) const
   {
     return this->Geometry.IsColumnar() ? normalized[2] : 0.0;

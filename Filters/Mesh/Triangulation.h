@@ -40,8 +40,8 @@ inline void PrefetchToWrite(const void* address)
 #endif
 }
 
-/// How many points ahead of their use memory is prefetched. Processors wait for a few dozen cache
-/// lines at a time; more prefetches at once take longer.
+/// The number of points by which prefetching precedes use. Processors wait for a few dozen cache
+/// lines at the same time; more prefetches at once would take longer.
 constexpr int PrefetchDistance = 32;
 
 /// The same edge, seen from the neighboring triangle.
@@ -51,20 +51,20 @@ struct Twin
   TriangleIndex Triangle = -1;
   /// The shared edge in that triangle, 0 to 2.
   int Edge = 0;
-  /// Whether both triangles run through the edge in the same direction. This occurs in meshes with
-  /// mixed winding only.
+  /// Whether both triangles traverse the edge in the same direction. This occurs only in meshes
+  /// with mixed winding.
   bool SameDirection = false;
 };
 
-/// Triangles as triples of point ids, and their adjacency. Filled by ReadTriangulation and the
-/// validation, constant afterwards. Corners and edges are numbered 0 to 2 in the order of the
-/// points of the cell; edge k is opposite corner k.
+/// Triangles as triples of point ids, and their adjacency. Filled by TriangulationPair::Read,
+/// constant afterwards. Corners and edges are numbered 0 to 2 in the order of the points of the
+/// cell; edge k is opposite corner k.
 class Triangulation
 {
 public:
   using Corners = std::array<std::int32_t, 3>;
 
-  /// The greatest number of triangles that the adjacency can represent.
+  /// The number of triangles must be less than this; the adjacency cannot represent more.
   static constexpr vtkIdType MaximumTriangles = vtkIdType(1) << 28;
 
   TriangleIndex GetNumberOfTriangles() const
@@ -77,7 +77,7 @@ public:
   /// The cell id of the triangle in the vtkPolyData from which it was read.
   vtkIdType GetCellId(TriangleIndex triangle) const { return this->FirstCell + triangle; }
 
-  /// Whether the triangle is masked: not part of the domain, its edges are boundary.
+  /// Whether the triangle is masked, that is, not part of the domain. Its edges are boundary edges.
   bool IsMasked(TriangleIndex triangle) const { return this->Masked[triangle] != 0; }
 
   Twin GetTwin(TriangleIndex triangle, int edge) const
@@ -90,25 +90,26 @@ public:
     return { code >> 3, (code >> 1) & 3, (code & 1) != 0 };
   }
 
-  /// Prefetches what GetTwin reads.
+  /// Prefetches the data that GetTwin reads.
   void PrefetchTwin(TriangleIndex triangle) const { Prefetch(&this->Adjacency[triangle]); }
 
-  /// The neighbors are not known until FindAdjacency. @a scratch is an array of the
-  /// same size that is no longer needed, whose memory can be used again.
+  /// Sets the triangles. Their neighbors are not known until FindAdjacency is called. @a scratch is
+  /// an array of the same size that is no longer needed, whose memory is reused.
   void SetTriangles(
     LargeArray<Corners> triangles, vtkIdType firstCell, LargeArray<Corners> scratch = {});
   void Mask(TriangleIndex triangle) { this->Masked[triangle] = 1; }
 
-  /// Finds the neighbor across each edge. Linear in the number of triangles. Masked triangles take
-  /// no part. Returns, ascending, the triangles at edges that have more than two; such edges count
-  /// as boundary.
+  /// Finds the neighbor across each edge, in linear time. Masked triangles are ignored. Returns, in
+  /// ascending order, the triangles at edges of more than two triangles; such edges are treated as
+  /// boundary edges.
   std::vector<TriangleIndex> FindAdjacency(vtkIdType numberOfPoints);
 
-  /// Whether there are adjacent triangles that run through their edge in the same direction.
+  /// Whether there are adjacent triangles that traverse their edge in the same direction.
   bool HasMixedWinding() const { return this->MixedWinding; }
 
-  /// Returns, ascending, the triangles whose winding remains inconsistent with a neighbor after
-  /// orienting all triangles as far as possible: none if the surface is orientable.
+  /// Returns, in ascending order, the triangles whose winding remains inconsistent with that of a
+  /// neighbor after as many triangles as possible have been oriented consistently: none if the
+  /// surface is orientable.
   std::vector<TriangleIndex> FindNonOrientable() const;
 
 private:

@@ -36,17 +36,17 @@ inline Domain Opposite(Domain domain)
 class TriangulationPair
 {
 public:
-  /// Reads and validates. @a target may be null: then there is only the source.
+  /// Reads and validates the meshes. If @a target is null, there is only the source.
   ///
-  /// Defects are added to @a diagnostics. Returns null if they made the meshes be refused; with
-  /// @a maskInvalidTriangles, triangles that are defective by themselves are left out instead.
+  /// Defects are added to @a diagnostics. Returns null if the meshes are refused because of them.
+  /// With @a maskInvalidTriangles, triangles that are defective by themselves are left out instead.
   static std::shared_ptr<const TriangulationPair> Read(vtkPolyData* source, vtkPolyData* target,
     bool maskInvalidTriangles, MeshDiagnostics& diagnostics);
 
   const Triangulation& GetTriangulation() const { return *this->Topology; }
   bool HasTarget() const { return this->Geometries[1] != nullptr; }
   const MeshGeometry& GetGeometry(Domain domain) const { return *this->Geometries[int(domain)]; }
-  /// The pair with source and target exchanged. It shares all data with this one.
+  /// The pair with source and target exchanged. It shares all data with this pair.
   std::shared_ptr<const TriangulationPair> Inverted() const;
   const PointLocation& GetLocation(Domain domain) const { return *this->Locations[int(domain)]; }
 

@@ -51,14 +51,16 @@ inline Vector3 Unit(const Vector3& a)
   return { a[0] / length, a[1] / length, a[2] / length };
 }
 
-/// The unit vector perpendicular to a line, given by its unit tangent, towards a point beside it.
+/// The unit vector perpendicular to a line, given by a point and its unit tangent, towards the
+/// point
+/// @a beside.
 inline Vector3 UnitAcross(const Vector3& onLine, const Vector3& tangent, const Vector3& beside)
 {
   const Vector3 d = Unit(Difference(beside, onLine));
   return Unit(Sum(d, -Dot3(d, tangent), tangent));
 }
 
-/// Accurate in each component, so that normals of needles are accurate too.
+/// The cross product. Each component is accurate, so that normals of needles are accurate, too.
 inline Vector3 Cross3(const Vector3& a, const Vector3& b)
 {
   return { DifferenceOfProducts(a[1], b[2], a[2], b[1]),

@@ -18,8 +18,8 @@ class vtkDoubleArray;
 namespace homeomorphism
 {
 
-/// Transforms values at one point, where the Jacobian is J (row-major, invertible). Outside the
-/// domain J is NaN, and so are all results.
+/// Transforms values at a point with the Jacobian J (row-major, invertible). Outside the domain, J
+/// is NaN, and so are all results.
 class TensorTransformation
 {
 public:
@@ -51,9 +51,9 @@ enum class TransformationRule
 };
 
 /// A copy of @a array, transformed tuple by tuple by the Jacobians of @a jacobians (9 components).
-/// Arrays of 3 components are vectors, of 9 tensors (row-major), of 6 symmetric tensors in VTK's
-/// order XX, YY, ZZ, XY, YZ, XZ. Integers become doubles. Null if the rule does not apply to the
-/// array, or if it has another number of tuples.
+/// Arrays of 3 components are vectors, arrays of 9 components are tensors (row-major), and arrays
+/// of 6 components are symmetric tensors in VTK's order XX, YY, ZZ, XY, YZ, XZ. Integers become
+/// doubles. Null if the rule does not apply to the array, or if the numbers of tuples differ.
 vtkSmartPointer<vtkDataArray> TransformArray(
   vtkDataArray* array, vtkDoubleArray* jacobians, TransformationRule rule);
 

@@ -53,7 +53,7 @@ void ConvertLeaves(
       vtkWarningWithObjectMacro(self, << "Block " << iterator->GetCurrentFlatIndex()
                                       << (name ? std::string(" (") + name + ")" : "") << " is a "
                                       << iterator->GetCurrentDataObject()->GetClassName()
-                                      << ", which is no data set; it is left out.");
+                                      << ", not a data set; it is left out.");
     }
   }
   self->SetProgressShiftScale(shift, scale);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CoordinateLines.h
-/// Polylines of triangular coordinates: guides, contours and rings.
+/// Polylines of triangular coordinates: center and wing segments, contours, and rings.
 
 #ifndef homeomorphism_CoordinateLines_h
 #define homeomorphism_CoordinateLines_h

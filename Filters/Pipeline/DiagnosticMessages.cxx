@@ -25,7 +25,8 @@ namespace homeomorphism
 namespace
 {
 
-/// What follows "1 triangle of the source (cell 5) " or "2 triangles of the source (cells 5, 6) ".
+/// The defect, to follow "1 triangle of the source (cell 5) " or "2 triangles of the source (cells
+/// 5, 6) ".
 std::string GetFault(const MeshDiagnostic& diagnostic, bool one)
 {
   using Kind = MeshDiagnostic::Kind;
@@ -48,17 +49,17 @@ std::string GetFault(const MeshDiagnostic& diagnostic, bool one)
     case Kind::NotFinite:
       return choose("has a coordinate that is not finite", "have coordinates that are not finite");
     case Kind::DegenerateTriangle:
-      return choose("is degenerate (has no area)", "are degenerate (have no area)");
+      return choose("is degenerate (has zero area)", "are degenerate (have zero area)");
     case Kind::NonManifoldEdge:
-      return choose("is at a non-manifold edge (an edge of more than two triangles)",
-        "are at non-manifold edges (edges of more than two triangles)");
+      return choose("has a non-manifold edge (an edge of more than two triangles)",
+        "have non-manifold edges (edges of more than two triangles)");
     case Kind::NonOrientable:
       return choose(
         "cannot be wound consistently with its neighbors: the surface is non-orientable",
         "cannot be wound consistently with their neighbors: the surface is non-orientable");
     case Kind::Flipped:
-      return choose("is flipped between source and target relative to the rest",
-        "are flipped between source and target relative to the rest");
+      return choose("is flipped between source and target relative to the other triangles",
+        "are flipped between source and target relative to the other triangles");
     case Kind::Overlapping:
     {
       std::ostringstream text;
@@ -68,8 +69,8 @@ std::string GetFault(const MeshDiagnostic& diagnostic, bool one)
     }
     case Kind::Discordant:
       return choose("is discordant", "are discordant") +
-        ": the foot of a center segment is not inside its edge, so the Contour system does not "
-        "exist there";
+        ": the foot of a center segment is not inside its edge, so the Contour system is not "
+        "defined there";
     default:
       return "";
   }
@@ -88,10 +89,9 @@ const char* GetAdvice(MeshDiagnostic::Remedy remedy)
       return "Triangulate the source (vtkTriangleFilter) and give the target the source's cells, "
              "so that both are cut along the same diagonals.";
     case Remedy::ReadAgain:
-      return "The mesh is corrupt: read or make it again.";
+      return "The mesh is corrupt: read or create it again.";
     case Remedy::UseSourceCells:
-      return "Give the target the source's cells, with its own point coordinates in the same "
-             "order.";
+      return "Give the target the source's cells, and keep the order of its points.";
     case Remedy::RepairOrMask:
       return "Repair or remove them in both meshes, or leave them out (MaskInvalidTriangles).";
     case Remedy::CutOpen:
@@ -100,19 +100,19 @@ const char* GetAdvice(MeshDiagnostic::Remedy remedy)
       return "Move their points so that all triangles keep their orientation (or all are "
              "mirrored), or leave them out (MaskInvalidTriangles).";
     case Remedy::UseOtherSystem:
-      return "Use the Smooth system, which takes any triangle, or map them by the Linear system "
-             "(DiscordantTriangles).";
+      return "Use the Smooth system, which is defined in any triangle, or map them by the Linear "
+             "system (DiscordantTriangles).";
     case Remedy::UseSmoothSystem:
-      return "Use the Smooth system, which maps surfaces too.";
+      return "Use the Smooth system, which also maps surfaces.";
     case Remedy::RefineLess:
-      return "Use less FairnessRefinement, or the local CubicBending.";
+      return "Use a smaller FairnessRefinement, or local CubicBending.";
     case Remedy::FlattenOrUseTolerance:
       break;
   }
-  return "Project it to a plane, or use the Tolerance";
+  return "Project it onto a plane, or use a Tolerance of";
 }
 
-/// What is wrong with a mesh as a whole.
+/// The defect of a mesh as a whole.
 std::string DescribeWhole(const MeshDiagnostic& diagnostic)
 {
   using Kind = MeshDiagnostic::Kind;
@@ -128,29 +128,29 @@ std::string DescribeWhole(const MeshDiagnostic& diagnostic)
       break;
     case Kind::TooManyTriangles:
       text << "The " << GetName(diagnostic.Where) << " has " << first << " polygons and " << second
-           << " points; fewer than " << Triangulation::MaximumTriangles << " and "
-           << std::numeric_limits<std::int32_t>::max() << " can be numbered";
+           << " points; it must have fewer than " << Triangulation::MaximumTriangles << " and "
+           << std::numeric_limits<std::int32_t>::max();
       break;
     case Kind::NotPlanar:
       text << "The points of the " << GetName(diagnostic.Where)
-           << " do not lie in a plane, and the Cubic system maps planar meshes only";
+           << " do not lie in a plane, but the Cubic system maps only planar meshes";
       break;
     case Kind::TooManyRefined:
       text << "FairnessRefinement divides the " << first << " triangles of the "
            << GetName(diagnostic.Where) << " into " << second
-           << ", and the Cubic system with least bending maps at most "
+           << ", but the Cubic system with least bending maps at most "
            << CubicMapOptions::MostTriangles;
       break;
     default:
       text << "The points of the " << GetName(diagnostic.Where)
            << " do not lie in a plane, but within " << diagnostic.Size
-           << " of one: the mesh is treated as a surface";
+           << " of one; the mesh is treated as a surface";
       break;
   }
   return text.str();
 }
 
-/// The message without what became of the defect and what to do.
+/// The message without the outcome and the remedy.
 std::string DescribeDefect(const MeshDiagnostic& diagnostic)
 {
   using Kind = MeshDiagnostic::Kind;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file DiagnosticMessages.h
-/// Diagnostics of meshes in words, and as a table.
+/// Conversion of diagnostics to messages and to a table.
 
 #ifndef homeomorphism_DiagnosticMessages_h
 #define homeomorphism_DiagnosticMessages_h
@@ -36,18 +36,18 @@ const char* GetName(MeshDiagnostic::Remedy remedy);
 /// and the remedy.
 std::string Describe(const MeshDiagnostic& diagnostic);
 
-/// The messages of the diagnostics with an outcome, one to a line.
+/// The messages of the diagnostics with an outcome, one per line.
 std::string DescribeProblems(const MeshDiagnostics& diagnostics, MeshDiagnostic::Outcome outcome);
 
 /// Reports refused meshes as an error and masked triangles as a warning. The other diagnostics are
-/// debug output: nothing is wrong with the result.
+/// debug output, because they do not affect the result.
 void ReportProblems(vtkObject* self, const MeshDiagnostics& diagnostics);
 
-/// Makes a table of diagnostics, a row each: Kind, Domain, Outcome and Remedy (strings), Count (the
-/// number of defective triangles; 0 if a mesh is defective as a whole), FirstCount and SecondCount
-/// (the two numbers that differ or are too large), Size, Tolerance, Position (3 components), and
-/// FirstId and Message. The cell ids of all rows, one row after the other, are the array Ids of the
-/// field data; row i has those from FirstId[i] to FirstId[i] + Count[i].
+/// Makes a table with one row for each diagnostic. The columns are Kind, Domain, Outcome and Remedy
+/// (strings), Count (the number of defective triangles; 0 if a mesh is defective as a whole),
+/// FirstCount and SecondCount (the two numbers that differ or are too large), Size, Tolerance,
+/// Position (3 components), FirstId, Message and Defect. The field data array Ids has the cell ids
+/// of all rows; those of row i are the elements FirstId[i] to FirstId[i] + Count[i] - 1.
 void MakeTable(const MeshDiagnostics& diagnostics, vtkTable* table);
 
 } // namespace homeomorphism

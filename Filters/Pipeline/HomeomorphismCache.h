@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file HomeomorphismCache.h
-/// Keeps a homeomorphism until its meshes or its options change.
+/// A cache that keeps a homeomorphism until its meshes or its options change.
 
 #ifndef homeomorphism_HomeomorphismCache_h
 #define homeomorphism_HomeomorphismCache_h
@@ -22,14 +22,14 @@ class vtkPolyData;
 namespace homeomorphism
 {
 
-/// The last homeomorphism, with the state of its inputs. Not thread-safe, but several caches may
-/// use the same meshes in several threads, because a cache neither references nor changes them.
+/// The last homeomorphism, and the state of its inputs. Not thread-safe, but several caches may use
+/// the same meshes in several threads, because a cache neither references nor changes them.
 class HomeomorphismCache
 {
 public:
   /// The homeomorphism of these meshes. It is rebuilt only if their points or cells (not other
-  /// arrays) or the options have changed. Coordinates overwritten in place count as changed after
-  /// Modified() was called on the points or on the mesh. Null if the meshes are refused; see
+  /// arrays) or the options have changed. After coordinates have been overwritten in place,
+  /// Modified() must be called on the points or on the mesh. Null if the meshes are refused; see
   /// GetProblems.
   std::shared_ptr<const Homeomorphism> Get(
     vtkPolyData* source, vtkPolyData* target, const HomeomorphismOptions& options);

@@ -25,9 +25,9 @@ namespace homeomorphism
 vtkSmartPointer<vtkDataArray> NewEmptyLike(vtkDataArray* array, vtkIdType tuples);
 
 /// Fills arrays with the values of an image. Point arrays are interpolated linearly in each
-/// direction (rounded to the nearest number in integer arrays); cell arrays take the value of the
-/// cell that contains a point. A point outside by rounding is moved to the border. Different ranges
-/// may be sampled in parallel.
+/// direction (rounded to the nearest integer in integer arrays); cell arrays have the value of the
+/// cell that contains the point. A point that is outside only by rounding is moved to the border.
+/// Different ranges may be sampled in parallel.
 class ImageSampling
 {
 public:
@@ -38,7 +38,8 @@ public:
   /// named and of the correct size.
   static bool CanSample(vtkImageData* image);
 
-  /// Adds an array of NaN or 0 for each array of the image to @a output, in the same roles.
+  /// Adds an array of @a count tuples of NaN or 0 to @a output for each array of the image, with
+  /// the same role as active attribute.
   ImageSampling(vtkImageData* image, vtkDataSetAttributes* output, vtkIdType count);
 
   /// Sets tuples @a first to @a first + @a count - 1 of the arrays, at most Capacity, to the

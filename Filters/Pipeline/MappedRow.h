@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file MappedRow.h
-/// Blocks for callers that ask for the points of rows one by one.
+/// Mapping rows of points in blocks for callers that request the points one by one.
 
 #ifndef homeomorphism_MappedRow_h
 #define homeomorphism_MappedRow_h
@@ -16,17 +16,16 @@
 namespace homeomorphism
 {
 
-/// The points that a caller will probably ask for next, and their images. Callers such as
-/// vtkImageReslice ask for the points of a row, at equal steps. After a few equal steps, the points
-/// that follow are mapped as a block, which takes a fraction of the time and gives the same bits. A
-/// point has an image here only if its coordinates are equal to those that were mapped. Steps that
-/// are not equal to the last bit, because their coordinates are rounded, are not followed. For one
-/// thread.
+/// The points that a caller will probably request next, and their images. Callers such as
+/// vtkImageReslice request the points of a row, at equal steps. After a few equal steps, the next
+/// points are mapped as a block, which takes a fraction of the time; the results are the same, bit
+/// for bit. The image of a point is used only if its coordinates equal those that were mapped.
+/// Steps that differ by rounding are not followed. For one thread.
 class MappedRow
 {
 public:
-  /// The number of a point in GetBlock, or -1 if its image is not there. @a key identifies the map,
-  /// its tolerance, and the domain. mapBlock(block, hint) locates and maps a block.
+  /// The index of a point in GetBlock(), or -1 if its image is not there. @a key identifies the
+  /// map, its tolerance, and the domain. mapBlock(block, hint) locates and maps a block.
   template <typename MapBlock>
   int Find(const double point[3], std::uint64_t key, MapBlock&& mapBlock)
   {
@@ -65,7 +64,7 @@ public:
         this->Block.PointBuffer[i][axis] = this->Last[axis];
       }
     }
-    // Rows that continue are followed farther and farther.
+    // Blocks become longer while a row continues.
     this->Length = std::min(2 * this->Length, PointBlock::Capacity);
     mapBlock(this->Block, this->Hint);
     this->Next = 1;

@@ -26,26 +26,26 @@ namespace homeomorphism
 /// The relative rounding error of coordinates of a VTK type.
 double PrecisionOfType(int dataType);
 
-/// The relative rounding error of the points of a data set; that of doubles for implicit points.
+/// The relative rounding error of the points of a data set; that of double for implicit points.
 double PrecisionOfPoints(vtkDataSet* data);
 
-/// Reads the points of a block, the first of which is tuple @a first of an array of 3 components.
+/// Reads the points of a block from an array of 3 components, starting with tuple @a first.
 void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block);
 
-/// Reads the points of a block from a data set.
+/// Reads the points of a block from a data set, starting with point @a first.
 void ReadPoints(vtkDataSet* data, vtkIdType first, PointBlock& block);
 
-/// Lets MapBlock write the images of a block to an array of 3 components, from tuple @a first, if
-/// it can: if the array is of doubles and has room before tuple @a end for what is overwritten
-/// after the last image. Otherwise WritePoints copies them.
+/// If possible, lets MapBlock write the images of a block directly to an array of 3 components,
+/// from tuple @a first. The array must be of type double and have room before tuple @a end for the
+/// elements that MapBlock overwrites after the last image. Otherwise WritePoints copies the images.
 void SetImages(vtkDataArray* array, vtkIdType first, vtkIdType end, PointBlock& block);
 
-/// Writes points to an array of 3 components, from tuple @a first, if they are not there already.
+/// Writes points to an array of 3 components, from tuple @a first, unless they are already there.
 void WritePoints(const double (*points)[3], int count, vtkIdType first, vtkDataArray* array);
 
-/// Calls work(begin, end) in parallel over [0, count), in blocks between which progress is reported
-/// and abort requests are checked. A block should take a fraction of a second. Returns the number
-/// of items processed, which is less than count only after an abort.
+/// Calls work(begin, end) in parallel over [0, count), in blocks. Between blocks, progress is
+/// reported and abort requests are checked. A block should take a fraction of a second. Returns the
+/// number of items processed, which is less than @a count only after an abort.
 template <typename Work>
 vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin, double progressEnd,
   Work&& work, vtkIdType blockSize = 1 << 17)
@@ -65,8 +65,8 @@ vtkIdType RunInBlocks(vtkAlgorithm* self, vtkIdType count, double progressBegin,
 
 /// Reads, locates and maps the points of a data set in parallel, block by block, and calls
 /// use(first, block) with each block. Points for which isHidden(id) holds are treated as outside.
-/// Images are written to @a images at once if they can be (see SetImages). @a keepReferences is to
-/// be set if use asks for Jacobians. Returns the number of points processed; see RunInBlocks.
+/// Images are written directly to @a images if possible (see SetImages). @a keepReferences must be
+/// true if @a use computes Jacobians. Returns the number of points processed; see RunInBlocks.
 template <typename IsHidden, typename Use>
 vtkIdType MapInBlocks(vtkAlgorithm* self, const Homeomorphism& map, Domain from, vtkDataSet* data,
   double tolerance, double progressBegin, double progressEnd, IsHidden&& isHidden,

@@ -72,10 +72,10 @@ void WarnOfPointsOffSurface(vtkObject* self, const Homeomorphism& map, Domain do
   std::ostringstream tolerance;
   tolerance << std::setprecision(2) << std::ceil(1.01 * relative / unit) * unit;
   vtkWarningWithObjectMacro(self, << outside.size()
-                                  << " points are outside; some of them are only off the surface, "
-                                     "by up to "
+                                  << " points are outside; some of them are only slightly off the "
+                                     "surface, by up to "
                                   << largest << ". A Tolerance of " << tolerance.str()
-                                  << " includes those.");
+                                  << " includes them.");
 }
 
 } // namespace homeomorphism

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file PointsOffSurface.h
-/// Points that are outside only because a surface misses them by little.
+/// Points that are outside only because they lie slightly off a surface.
 
 #ifndef homeomorphism_PointsOffSurface_h
 #define homeomorphism_PointsOffSurface_h
@@ -16,10 +16,10 @@ class vtkUnsignedCharArray;
 namespace homeomorphism
 {
 
-/// If a mesh is not planar and points of @a data that @a mask excludes are close to it, within a
-/// thousandth of its diagonal, warns with their largest distance and the Tolerance that would
-/// include them. Rounded coordinates are the usual reason. At most a thousand of the excluded
-/// points are examined.
+/// If a mesh is not planar, and some points of @a data that @a mask excludes are within a
+/// thousandth of its diagonal, issues a warning with their largest distance and the Tolerance that
+/// would include them. The usual reason is the rounding of coordinates. At most a thousand of the
+/// excluded points are examined.
 void WarnOfPointsOffSurface(vtkObject* self, const Homeomorphism& map, Domain domain,
   vtkDataSet* data, vtkUnsignedCharArray* mask);
 

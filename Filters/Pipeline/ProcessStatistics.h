@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file ProcessStatistics.h
-/// Statistics of a filter over processes that have its data in pieces.
+/// Statistics of a filter over processes that each have a piece of its data.
 
 #ifndef homeomorphism_ProcessStatistics_h
 #define homeomorphism_ProcessStatistics_h
@@ -15,8 +15,8 @@ class vtkObject;
 namespace homeomorphism
 {
 
-/// The statistics of the last execution in its own process. Filters keep them apart from the totals
-/// that they report, so that reducing again does not count anything twice.
+/// The statistics of the last execution in this process. Filters store them separately from the
+/// totals that they report, so that repeated reduction does not count anything twice.
 struct ProcessStatistics
 {
   /// Counts to be summed, exact up to 2^53; negative if unknown.
@@ -25,9 +25,9 @@ struct ProcessStatistics
   std::vector<double> Largest;
 };
 
-/// The totals over the processes of @a controller (null: the global one), each of which must call
-/// this. A sum is -1 if it is unknown in one of them. Without a controller, and after an error,
-/// which @a self reports, returns the argument.
+/// The totals over the processes of @a controller (null: the global controller), each of which must
+/// call this function. A sum is -1 if it is unknown in one of them. Returns @a own if there is no
+/// controller, and after an error, which @a self reports.
 ProcessStatistics Total(
   vtkObject* self, const ProcessStatistics& own, vtkMultiProcessController* controller);
 

@@ -25,37 +25,37 @@ namespace homeomorphism
 /// the first type.
 void AcceptDataSetsAndTrees(vtkInformation* info);
 
-/// Whether the information of an input port allows data of this type. So it does if there is none,
-/// and if the data is composite and the executive goes through its blocks.
+/// Whether the information of an input port allows the type of @a data. This is also true if @a
+/// data is null, and if it is composite and the executive iterates over its blocks.
 bool IsAcceptedType(vtkInformation* portInformation, vtkDataObject* data);
 
-/// Announces that an output changes with the time steps of the first @a ports inputs: its time
-/// steps and time range are the union of theirs. By default they are those of port 0, and for other
-/// times the executive reuses the previous output.
+/// Declares that an output changes with the time steps of the first @a ports inputs: its time steps
+/// and time range are the union of theirs. By default, they are those of port 0, and for other
+/// times the executive would reuse the previous output.
 void DescribeTimesInOutput(vtkInformationVector** inputs, int ports, vtkInformation* outInfo);
 
-/// For a filter whose other inputs are meshes: copies the information of the data's port, if there
-/// is data, so that it describes the extent of the output. By default that comes from port 0.
+/// For filters whose other inputs are meshes: copies the information of the data's port, if there
+/// is data, so that it describes the extent of the output. By default, the information is that of
+/// port 0.
 void DescribeDataInOutput(vtkInformation* dataInfo, vtkInformation* outInfo);
 
 /// Requests an input as a whole, whatever piece of the output is requested.
 void RequestWhole(vtkInformation* info);
 
-/// In the information of an input port: the input is always requested whole.
+/// A key in the information of an input port: the input is always requested as a whole.
 vtkInformationIntegerKey* RequestedWhole();
 
-/// Adds the algorithms upstream of a port, including those connected to it. @a inPieces: only if
-/// the same piece is requested from them.
+/// Adds the algorithms upstream of a port, including those connected to it, to @a found. With
+/// @a inPieces, adds only those from which the same piece is requested.
 void CollectUpstream(
   vtkAlgorithm* algorithm, int port, bool inPieces, std::set<vtkAlgorithm*>& found);
 
-/// Whether a port and the ports before it, which are requested whole, depend
-/// on the same algorithms. Those cannot be requested both whole and in pieces,
-/// so this port must be requested whole too, and its results are part of piece
-/// 0.
+/// Whether a port depends upstream on the same algorithms as the ports before it, which are
+/// requested as a whole. An algorithm cannot be requested both as a whole and in pieces. This port
+/// must then also be requested as a whole, and its results are part of piece 0.
 bool SharesUpstreamWithPortsBefore(vtkAlgorithm* algorithm, int port);
 
-/// Puts a new object of a type into an output unless it has one of that type.
+/// Puts a new object of a type into an output, unless it already has one of that type.
 template <typename Type>
 void MakeOutput(vtkInformation* outInfo)
 {
@@ -65,11 +65,11 @@ void MakeOutput(vtkInformation* outInfo)
   }
 }
 
-/// Puts a new object of the type of @a data into an output unless it has one of that type.
+/// Puts a new object of the type of @a data into an output, unless it already has one of that type.
 void MakeOutputLike(vtkDataObject* data, vtkInformation* outInfo);
 
-/// Whether a request includes the results of the meshes alone. The meshes are read whole for every
-/// piece, and only the first piece contains these results.
+/// Whether a request includes the results that depend only on the meshes. The meshes are read as a
+/// whole for every piece, but only the first piece contains these results.
 bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 
 } // namespace homeomorphism

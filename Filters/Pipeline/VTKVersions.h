@@ -64,22 +64,22 @@ auto CopyCells(Grid* from, Grid* to, long) -> decltype(from->GetFaceLocations(),
 
 } // namespace versions
 
-/// Whether an algorithm has been asked to abort. Since VTK 9.3, requests to upstream algorithms
-/// count too.
+/// Whether an algorithm has been requested to abort. Since VTK 9.3, this includes requests to
+/// upstream algorithms.
 inline bool ShouldAbort(vtkAlgorithm* self)
 {
   return versions::ShouldAbort(self, 0);
 }
 
-/// Whether GetPoint of an image reads an implicit array of points. Since VTK 9.5 it does, and
-/// rounds otherwise than TransformIndexToPhysicalPoint.
+/// Whether GetPoint of an image reads an implicit array of points, as it does since VTK 9.5. Its
+/// rounding then differs from that of TransformIndexToPhysicalPoint.
 inline bool HasPointArray(vtkImageData* image)
 {
   return versions::HasPointArray(image, 0);
 }
 
 /// Copies the cells of one grid to another, including polyhedra. VTK 9.4 renamed the lists of
-/// faces, VTK 9.6 that of types.
+/// faces, and VTK 9.6 the list of types.
 inline void CopyCells(vtkUnstructuredGrid* from, vtkUnstructuredGrid* to)
 {
   versions::CopyCells(from, to, 0);

@@ -100,7 +100,7 @@ def test_conflicting_segments_are_named_or_left_out():
 
 def test_points_that_do_not_exist_are_refused():
     source, target = _landmarks(5)
-    with pytest.raises(ValueError, match="names a point that does not exist"):
+    with pytest.raises(ValueError, match="refers to a point that does not exist"):
         isomorphic_triangulation(source, target, segments=[[0, 99]])
 
 

@@ -12,7 +12,7 @@
 namespace homeomorphism
 {
 
-/// The rows and columns of GetBendingMatrix that belong to derivatives, of Size triangles.
+/// The rows and columns of GetBendingMatrix that belong to derivatives, for Size triangles.
 struct BendingBatch
 {
   static constexpr int Size = 4 * WidestVector;

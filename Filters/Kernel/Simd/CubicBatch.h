@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file CubicBatch.h
-/// Points of one cubic element, mapped and mapped back in batches.
+/// Images and preimages of points of one cubic element, in batches.
 
 #ifndef homeomorphism_CubicBatch_h
 #define homeomorphism_CubicBatch_h
@@ -12,10 +12,11 @@
 namespace homeomorphism
 {
 
-// All arrays have one element per point; l[i] has the barycentric coordinates for corner i.
+// All arrays have one element per point; l[i] contains the barycentric coordinates for corner i.
 
-/// Maps points @a begin to @a end - 1 of the net's element, plus @a origin, to the same bits as
-/// CubicNet does. Reads and overwrites up to WidestVector - 1 elements after the last.
+/// Maps points @a begin to @a end - 1 of the net's element and adds @a origin. The results are the
+/// same, bit for bit, as those of CubicNet. Reads and overwrites up to WidestVector - 1 elements
+/// after the last.
 void MapByNet(const CubicNet& net, const Vector2& origin, const double* const l[3], int begin,
   int end, double* x, double* y);
 
@@ -25,7 +26,8 @@ void MapMiddle(const std::array<Vector2, 3>& corners, const std::array<double, 3
   const std::array<double, 3>& greatest, const double* const l[3], int begin, int end, double* x,
   double* y, std::int64_t* isMiddle);
 
-/// Points on their way to their preimages in one element after another, as a structure of arrays.
+/// Points that are iterated towards preimages, in one element after another, as a structure of
+/// arrays.
 struct CubicWalkers
 {
   static constexpr int Capacity = 256;
@@ -34,35 +36,37 @@ struct CubicWalkers
   enum State : std::int8_t
   {
     OnTheWay,
-    /// Its coordinates are those of the preimage.
+    /// The coordinates are those of the preimage.
     Found,
-    /// A step left the element: its coordinates are those of the step's end, outside.
+    /// A step left the element; the coordinates are those of the end of the step, outside.
     Left,
     /// The steps do not converge.
     Failed
   };
 
-  /// Where the points are.
+  /// Barycentric coordinates of the points.
   double L[3][Size];
-  /// The wanted images, relative to what the net's are relative to.
+  /// The images whose preimages are computed, relative to the same origin as those of the net.
   double X[Size];
   double Y[Size];
-  /// How far the image of the last point was from the wanted one, infinity for none yet, and how
-  /// long the last step was, 0 for none yet.
+  /// The distance of the last point's image from the given image (infinity before the first step),
+  /// and the length of the last step (0 before the first step).
   double Residual[Size];
   double Move[Size];
-  /// By how much the last step would have missed without its part of second order, 0 for none yet.
+  /// The residual that the last step would have left without its second-order part, 0 before the
+  /// first step.
   double SecondOrder[Size];
   std::int64_t States[Size];
 };
 
-/// Starts walkers @a begin to @a end - 1 in a net's element: from coordinates of the piecewise
-/// linear preimage to those of the inverse's cubic Hermite interpolant, unless it is far away.
+/// Moves walkers @a begin to @a end - 1 in a net's element from the preimage under the piecewise
+/// linear map to the value of the inverse's cubic Hermite interpolant, unless that is far away.
 void StartByNet(const CubicNet& net, int begin, int end, CubicWalkers& walkers);
 
-/// Chebyshev's method, which is Newton's with second derivatives, for walkers @a begin to @a end -
-/// 1, which are on the way in a net's element, until none is. Finds preimages whose images differ
-/// by at most @a tolerance. What becomes of a walker does not depend on others.
+/// Iterates walkers @a begin to @a end - 1 in a net's element by Chebyshev's method (Newton's
+/// method with second derivatives) until none is OnTheWay. Accepts preimages whose images differ
+/// from the given ones by at most @a tolerance. The result of a walker does not depend on the
+/// others.
 void WalkByNet(const CubicNet& net, double tolerance, int begin, int end, CubicWalkers& walkers);
 
 } // namespace homeomorphism

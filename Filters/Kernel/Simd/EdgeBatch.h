@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file EdgeBatch.h
-/// Views from edges of the plane, and strips, in batches.
+/// Batches of views from edges in the plane, and of strips.
 
 #ifndef homeomorphism_EdgeBatch_h
 #define homeomorphism_EdgeBatch_h
@@ -36,7 +36,7 @@ struct ViewBatch
   double Height[EdgeBatchSize];
 };
 
-/// Computes ViewFromEdge of the first @a count edges, to the same bits.
+/// Computes ViewFromEdge of the first @a count edges; the same results, bit for bit.
 void ViewFromEdges(const PointBatch& start, const PointBatch& end, const PointBatch& opposite,
   int count, ViewBatch& views);
 

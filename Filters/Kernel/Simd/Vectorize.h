@@ -22,7 +22,8 @@
 #define HOMEOMORPHISM_WITH_FMA
 #endif
 
-/// Before a function called by one of those: inlines it, so that it has the same target.
+/// Before a function that one of those calls: inlines it, so that it is compiled for the same
+/// vector width.
 #if defined(__GNUC__)
 #define HOMEOMORPHISM_ALWAYS_INLINE inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
@@ -39,7 +40,8 @@ namespace homeomorphism
 /// are overwritten later or never read.
 constexpr int WidestVector = 8;
 
-/// The least number of points for which a vectorized loop is faster than one by one.
+/// The smallest number of points for which a vectorized loop is faster than processing them one by
+/// one.
 constexpr int LeastVector = 3;
 
 constexpr int InWholeVectors(int count)
