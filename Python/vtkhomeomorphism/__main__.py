@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command dhm: maps files from one triangulated domain to another."""
+"""The command dhm, which maps files from one triangulated domain to another."""
 
 import gc
 import os
@@ -20,8 +20,8 @@ from .vtkfiles import capture_messages
     epilog="""
     A pair of meshes is one file with both meshes (a PROJ triangulation file, or a mesh with the target's positions as a
     point array) or two files, SOURCE and TARGET. Formats: .json .vtp .vtk .vtu .obj .off .ply .stl, xmorph's .mesh.
-    A file of landmarks also defines a pair: .csv (source x, y, target x, y), QGIS .points, IIIF georeference
-    annotations, BigWarp. The name - stands for standard input or output.
+    A file of landmarks also defines a pair: .csv (source_x, source_y, target_x, target_y), QGIS .points, IIIF
+    georeference annotations (.json), BigWarp (.csv). The name - stands for standard input or output.
 
     \b
     Exit status: 0 success (check: valid pair), 1 data refused (check: invalid pair),
@@ -41,8 +41,7 @@ from .vtkfiles import capture_messages
 @click.version_option(__version__, prog_name="dhm", message="dhm %(version)s")
 @options.quiet
 def dhm():
-    """Map data between the domains of two triangulations with the same triangles, smoothly and one to one, with an
-    exact inverse."""
+    """Map data between the domains of two triangulations with the same triangles, smoothly and one to one."""
 
 
 for module in (check, convert, coordinates, figure, map, morph, refine, triangulate, warp):
@@ -50,16 +49,16 @@ for module in (check, convert, coordinates, figure, map, morph, refine, triangul
 
 
 def main():
-    # Interrupts end long computations at once.
+    # Interrupts end long computations immediately.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     capture_messages()
-    # GDAL's errors are raised and need not be printed.
+    # GDAL's errors are raised as exceptions; do not print them as well.
     os.environ.setdefault("CPL_LOG", os.devnull)
-    # By default GDAL keeps a twentieth of the memory.
+    # In megabytes; GDAL's default is a twentieth of the memory.
     os.environ.setdefault("GDAL_CACHEMAX", "200")
-    # Large tables have millions of rows, which are searched for cycles at every collection.
+    # Large tables have millions of rows, which each garbage collection would search for cycles.
     gc.set_threshold(1000000)
-    # Libraries also report failed writes when their objects are deleted.
+    # Libraries report failed writes a second time when their objects are deleted.
     sys.unraisablehook = lambda what: None
     try:
         dhm.main(prog_name="dhm", standalone_mode=False)
@@ -71,7 +70,7 @@ def main():
     except click.ClickException as failure:
         message, status = str(failure), failure.exit_code
     except ImportError as error:
-        # A library that is there may name what it lacks in words only.
+        # An installed library may report a missing dependency only in the text of the message.
         name, message, status = (error.name or "").partition(".")[0], f"A library is missing: {quote(error)}", FILE
         if name:
             message = (f"{name} is needed: install Debian's package python3-{name.lower()}, or run pip install "
@@ -79,7 +78,7 @@ def main():
     except MemoryError:
         message, status = "There is not enough memory.", FILE
     except OSError as error:
-        # Standard output is full or closed by its reader.
+        # Standard output is full, or was closed by its reader.
         discard_standard_output()
         message, status = f"Cannot write to standard output: {error.strerror or quote(error)}.", FILE
     print("dhm: " + message, file=sys.stderr)

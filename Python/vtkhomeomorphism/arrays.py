@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Homeomorphisms between two triangulations for numpy arrays."""
+"""The class Homeomorphism, for numpy arrays, and conversions between numpy and VTK."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from .vtkFiltersHomeomorphism import (
 MASK = "vtkValidPointMask"
 OPTIONS = {"MaskInvalidTriangles": "mask_invalid", "DiscordantTriangles": "discordant_by_linear",
            "FairnessRefinement": "fairness_refinement", "CubicBending": "cubic_bending", "Tolerance": "tolerance"}
-"""What options that messages of filters name are called here."""
+"""The names of options in messages of filters, and those of this module."""
 
 
 def values_of(kind, *names: str) -> dict:
-    """The values of a VTK class's constants by their names in small letters."""
+    """The values of constants of a VTK class, by their names in lower case."""
     return {name: getattr(kind, name.upper()) for name in names}
 
 
@@ -40,7 +40,7 @@ CENTERS = values_of(vtkDifferentiableHomeomorphism, "centroid", "incenter")
 
 
 def choose(names: dict, value: str, what: str) -> int:
-    """The value of a name, in any case."""
+    """The value of a name, in upper or lower case. Raises ValueError."""
     try:
         return names[value.lower()]
     except (KeyError, AttributeError):
@@ -59,7 +59,7 @@ def configure(
     fairness_refinement: int = 0,
     mask_invalid: bool = False,
 ):
-    """Sets the options of the map, those of Homeomorphism, in a filter of the module."""
+    """Sets the options of the map in a filter of the module. See Homeomorphism for the options."""
     if maximum_deviation is not None and not maximum_deviation > 0:
         raise ValueError(f"maximum_deviation must be positive, not {maximum_deviation!r}")
     algorithm.SetCoordinateSystem(choose(SYSTEMS, system, "system"))
@@ -73,14 +73,14 @@ def configure(
 
 
 def as_array(values) -> numpy.ndarray:
-    """The values as an array. Masked ones are NaN."""
+    """The values as an array. Masked values become NaN."""
     if numpy.ma.is_masked(values):
         return values.astype(numpy.result_type(values, numpy.float32)).filled(numpy.nan)
     return numpy.asarray(values)
 
 
 def as_points(points, what: str = "points") -> Tuple[vtkPoints, int]:
-    """vtkPoints and the number of coordinates per point. Contiguous arrays of shape (n, 3) share their memory."""
+    """vtkPoints and the number of coordinates per point. Contiguous arrays of shape (n, 3) are not copied."""
     array = as_array(points)
     if array.dtype not in (numpy.float32, numpy.float64):
         if array.dtype.kind not in "biuf":
@@ -92,7 +92,7 @@ def as_points(points, what: str = "points") -> Tuple[vtkPoints, int]:
     if dimension == 2:
         array = numpy.column_stack((array, numpy.zeros(len(array), array.dtype)))
     result = vtkPoints()
-    # It takes the array's type, and numpy_to_vtk keeps a reference to shared memory.
+    # vtkPoints adopts the type of the array, and numpy_to_vtk keeps a reference to shared memory.
     result.SetData(numpy_to_vtk(numpy.ascontiguousarray(array)))
     return result, dimension
 
@@ -110,7 +110,7 @@ def as_cells(polygons) -> vtkCellArray:
 
 
 def make_mesh(points, polygons=(), what: str = "points") -> vtkPolyData:
-    """A mesh of points of shape (n, 2) or (n, 3), and polygons."""
+    """A mesh of points, of shape (n, 2) or (n, 3), and polygons."""
     mesh = vtkPolyData()
     mesh.SetPoints(as_points(points, what)[0])
     mesh.SetPolys(polygons if isinstance(polygons, vtkCellArray) else as_cells(polygons))
@@ -124,13 +124,13 @@ def points_of(data) -> numpy.ndarray:
 
 
 def triangles_of(mesh) -> numpy.ndarray:
-    """The point ids of a mesh of triangles, of shape (m, 3); a copy."""
+    """The point ids of a mesh of triangles, a copy of shape (m, 3)."""
     return vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(numpy.int64)
 
 
 def add_array(data, name: str, values, of_cells: bool = False):
-    """Adds a point or a cell array, which shares the memory of contiguous values."""
-    # numpy_to_vtk takes the other byte order for the machine's.
+    """Adds a point or a cell array. Contiguous values are not copied."""
+    # numpy_to_vtk ignores the byte order.
     array = numpy_to_vtk(numpy.ascontiguousarray(values, values.dtype.newbyteorder("=")))
     array.SetName(name)
     (data.GetCellData() if of_cells else data.GetPointData()).AddArray(array)
@@ -143,17 +143,17 @@ def arrays_of(attributes) -> dict:
 
 
 def rename(text, options) -> str:
-    """The text with other names of options."""
+    """The text with options renamed."""
     return re.sub("|".join(options), lambda name: options[name[0]], text)
 
 
 def update(algorithm, options=OPTIONS, warn=functools.partial(warnings.warn, stacklevel=2)):
     """Updates a filter and returns its output. Raises ValueError with its errors instead of printing them, and calls
-    `warn` with its warnings, with these names of options."""
+    `warn` with its warnings. In both, options are renamed."""
     own, others, warned = [], [], []
 
     def collect(caller, event, text):
-        # Without VTK's prefix, the position in the C++ source.
+        # Remove VTK's prefix, the position in the C++ source.
         texts = warned if event == "WarningEvent" else own if caller is algorithm else others
         texts.append(rename(text.split("): ", 1)[-1].strip(), options))
 
@@ -164,7 +164,7 @@ def update(algorithm, options=OPTIONS, warn=functools.partial(warnings.warn, sta
     for sender, tag in tags:
         sender.RemoveObserver(tag)
     if own or others:
-        # The executive also says that the algorithm failed.
+        # The executive also reports that the algorithm failed.
         raise ValueError("\n".join(own or others))
     for text in warned:
         warn(text)
@@ -177,43 +177,45 @@ class Homeomorphism:
     Parameters
     ----------
     source, target : array of shape (n, 2) or (n, 3)
-        Points of the two triangulations, in the plane or on surfaces in 3-space. In the plane, z is the distance
-        from it and is preserved.
+        Points of the two triangulations, in a plane or on surfaces in 3-space. The distance of a point from the plane
+        is preserved by the map.
     triangles : array of int of shape (m, 3)
-        Point ids of the triangles, the same in both.
+        Point ids of the triangles, the same in both triangulations.
     system : {"smooth", "linear", "contour", "cubic"}
-        The coordinate system, see vtkDifferentiableHomeomorphism. Cubic maps meshes in a plane only.
+        The coordinate system, see vtkDifferentiableHomeomorphism. "cubic" maps only planar meshes.
     center : {"centroid", "incenter"}
-        Start of the contours of the Contour system.
+        The point where contours start. "contour" only.
     discordant_by_linear : bool
-        Map discordant triangles by the Linear system instead of raising an error (Contour only).
+        Map discordant triangles by the Linear system instead of raising an error. "contour" only. Default: False.
     tolerance : float
-        Greatest distance of a mapped point from the domain, relative to the domain's diagonal. 0: rounding only.
+        The largest distance from the domain at which points are mapped, relative to the diagonal of the domain. 0
+        (default) allows only for rounding.
     cubic_bending : {"least", "local"}
-        Of the Cubic system: the map that bends least, or one in closed form.
+        The map of least bending, or one in closed form. "cubic" only.
     maximum_deviation : float, optional
-        Of the Smooth and the Cubic system: the greatest distance of images from those of the Linear system, in the
-        target's units.
+        The largest distance of images from those in the Linear system, in the target's units. "smooth" and "cubic"
+        only. Default: unlimited.
     fairness_refinement : int
-        Of the Cubic system with least bending: how often triangles are cut into four first.
+        The number of times that triangles are first divided into four, 0 (default) to 4. "cubic" with "least" only.
     mask_invalid : bool
-        Leave out invalid triangles instead of raising an error.
+        Leave out invalid triangles instead of raising an error. Default: False.
 
     Attributes
     ----------
     source, target : array of shape (n, 2) or (n, 3)
     triangles : array of int of shape (m, 3)
 
-    Points outside the domain become NaN, and points of triangles in which a Cubic map is not certified (a warning gives
-    their number). Invalid meshes raise ValueError with a message that lists the triangles. Masked elements of arrays
-    count as NaN. Several threads may use an object: their calls take turns, because each is itself parallel.
+    The images of points outside the domain are NaN, and so are those of points in triangles in which a Cubic map is not
+    certified (a warning states the number of these triangles). Invalid meshes raise ValueError with a message that
+    lists the triangles. Masked elements of arrays are treated as NaN. Several threads may use an object at the same
+    time; their calls are executed one after the other, and each call is itself parallel.
     """
 
     def __init__(self, source, target, triangles, system: str = "smooth", **options):
         cells = numpy.asarray(triangles)
         if cells.ndim != 2 or cells.shape[1] != 3 or cells.dtype.kind not in "iu":
             raise ValueError(f"triangles must be integers with the shape (m, 3), not {cells.dtype} with {cells.shape}")
-        # A copy, so that validated points cannot change.
+        # Copy the points, so that they cannot change after validation.
         self._meshes = [make_mesh(as_array(points).copy(), cells, what)
                         for points, what in ((source, "source"), (target, "target"))]
         self._dimensions = [numpy.shape(points)[1] for points in (source, target)]
@@ -222,14 +224,15 @@ class Homeomorphism:
         self._filter.TransformActiveAttributesOff()
         self._filter.BlankOutsideOff()
         self._filter.SetOutputPointsPrecision(self._filter.DOUBLE_PRECISION)
-        # Report invalid meshes at once.
+        # Report invalid meshes now.
         self._run(numpy.empty((0, 3)), False)
 
     @classmethod
     def from_landmarks(cls, source, target, system: str = "smooth", **options):
-        """The homeomorphism that takes landmarks to landmarks, through isomorphic triangulations made for them, with
-        the options of `isomorphic_triangulation` and of this class. Warns of landmarks that are probably wrong. By
-        default, the domain extends half a spacing beyond the landmarks."""
+        """The homeomorphism of isomorphic triangulations made from landmarks, arrays of shape (n, 2) or (n, 3). It maps
+        the landmarks of the source to those of the target. `options` are those of `isomorphic_triangulation` and of
+        this class. Warns of landmarks that are probably wrong. By default, the domain extends beyond the landmarks by
+        half their spacing."""
         from .isomorphic import isomorphic_triangulation
 
         own = {name: options.pop(name) for name in list(options) if name in inspect.signature(configure).parameters}
@@ -281,16 +284,17 @@ class Homeomorphism:
         return result
 
     def __call__(self, points) -> numpy.ndarray:
-        """Images of points of the source's domain: float64, of shape (n, 2) or (n, 3); NaN outside."""
+        """The images of points of the source's domain, of shape (n, 2) or (n, 3): float64 of the same shape (of shape
+        (n, 3) if the target is in 3-space); NaN outside."""
         return self._map(points, False)
 
     def inverse(self, points) -> numpy.ndarray:
-        """Preimages of points of the target's domain; NaN outside."""
+        """The preimages of points of the target's domain, as __call__; NaN outside."""
         return self._map(points, True)
 
     def jacobian(self, points, inverse: bool = False) -> numpy.ndarray:
         """The derivative of the map at points of the source's domain, or of the inverse at points of the target's:
-        float64 of shape (n, k, d) for points of d coordinates whose images have k. Element [i, j, l] is the partial
+        float64 of shape (n, k, d), for points with d coordinates and images with k. Element [i, j, l] is the partial
         derivative of coordinate j of the image of point i with respect to coordinate l. NaN outside."""
         with self._lock:
             self._filter.ComputeJacobianOn()
@@ -302,8 +306,8 @@ class Homeomorphism:
             return numpy.array(jacobian.reshape(-1, 3, 3)[:, :rows, :columns])
 
     def coordinates(self, points):
-        """Triangular coordinates of points of the source's domain: triangle (-1 outside), e (1 to 3; 0 outside), p and
-        c (NaN outside); four arrays of shape (n,)."""
+        """The triangular coordinates of points of the source's domain, four arrays of shape (n,): triangle (-1
+        outside), e (1 to 3; 0 outside), p and c (0 to 1; NaN outside). Not for the Cubic system."""
         algorithm = self._set_up(vtkTriangularCoordinates())
         algorithm.GenerateLinesOff()
         algorithm.SetDataObject(make_mesh(points))
@@ -311,30 +315,33 @@ class Homeomorphism:
         return tuple(arrays[name].copy() for name in ("TriangleId", "EdgeLabel", "EdgeParameter", "ContourParameter"))
 
     def continuity(self, samples: int = 5):
-        """Measures whether the map is differentiable across the interior edges, from its values. Returns a dict of
-        arrays with one element per edge (`JacobianJump`, `JacobianJumpError`, `Verdict`, `EdgeTriangles`, ...; see
-        vtkJacobianContinuity)."""
+        """Measures from values of the map whether it is differentiable across the interior edges, at `samples` points
+        of each edge. Returns a dict of arrays with one element per edge (`JacobianJump`, `JacobianJumpError`,
+        `Verdict`, `EdgeTriangles`, ...; see vtkJacobianContinuity)."""
         algorithm = self._set_up(vtkJacobianContinuity())
         algorithm.SetSamplesPerEdge(samples)
         return {name: array.copy() for name, array in arrays_of(update(algorithm).GetCellData()).items()}
 
     def warp_image(self, image, shape: Optional[Tuple[int, int]] = None, *, spacing: float = 1.0,
                    background: float = 0.0, inverse: bool = False) -> numpy.ndarray:
-        """Warps an image of the source's domain to the target's: samples it at the exact preimages of the pixels, with
-        linear interpolation.
+        """Warps an image from the source's domain to the target's: interpolates it linearly at the preimages of the
+        pixels.
 
         Parameters
         ----------
         image : array of shape (rows, columns) or (rows, columns, channels)
-            Pixel [row, column] is the point (column, row) times `spacing` of the source's plane.
+            Pixel [row, column] is at the point (column, row) times `spacing` in the source's plane.
         shape : (rows, columns)
-            Shape of the result; that of the image by default. Its pixels are points of the target's plane likewise.
+            Shape of the result; by default that of the image. Its pixels are at points of the target's plane likewise.
+        spacing : float
+            The distance of neighboring pixels, in units of the meshes.
         background : float
             Value of pixels outside.
         inverse : bool
-            The image covers the target's domain instead, and the result the source's.
+            Whether the image covers the target's domain, and the result the source's.
 
-        Returns an array of the image's type. Integers are rounded, and values of a mask of at least 0.5 become True.
+        Returns an array of the image's type. Integers are rounded. In an image of bool, values of at least 0.5 become
+        True.
         """
         if numpy.ma.is_masked(image) and image.dtype.kind != "f":
             raise TypeError(f"masked pixels of {image.dtype} have no value: fill them, or convert the image to float")
@@ -346,14 +353,14 @@ class Homeomorphism:
         rows, columns, channels = numpy.atleast_3d(array).shape
         out_rows, out_columns = map(operator.index, shape or array.shape[:2])
         if min(out_rows, out_columns) < 1:
-            raise ValueError(f"there are no pixels in the shape {shape}")
+            raise ValueError(f"shape must be positive, not {shape}")
         if not (spacing > 0 and math.isfinite(spacing)):
-            raise ValueError(f"spacing must be a number greater than 0, not {spacing}")
+            raise ValueError(f"spacing must be a positive number, not {spacing}")
         if max(out_rows, out_columns) > numpy.iinfo(numpy.int32).max:
             raise MemoryError(f"an image of {out_rows} x {out_columns} pixels is too large")
-        # VTK aborts if there is not enough memory for values, mask and points.
+        # VTK aborts the process if there is not enough memory for values, mask and points.
         numpy.empty((out_rows, out_columns, channels + 4))
-        # VTK has integers, float32 and float64.
+        # VTK supports integers, float32 and float64.
         known = array.dtype.kind in "iu" or array.dtype in (numpy.float32, numpy.float64)
         vtk_image = vtkImageData()
         vtk_image.SetDimensions(columns, rows, 1)

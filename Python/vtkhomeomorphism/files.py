@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Input and output files, including standard input and output. Outputs are written completely or not at all."""
+"""Input and output files, including standard input and output. An output is written completely or not at all."""
 
 import contextlib
 import os
@@ -13,7 +13,7 @@ import uuid
 import click
 
 REFUSED, USAGE, FILE = 1, 2, 3
-"""Exit statuses: the data are refused, the command line is wrong, a file cannot be read or written."""
+"""Exit statuses: the data is refused, the command line is wrong, a file cannot be read or written."""
 
 PICTURES = ("png", "jpg", "jpeg", "tif", "tiff", "ppm", "pgm", "pnm", "bmp", "webp")
 TABLES = ("csv", "txt", "xyz", "tsv")
@@ -57,7 +57,7 @@ def quote(text, length=80):
 
 
 def quote_message(message, file):
-    """A library's message, in which the input or output has the name that the user gave it."""
+    """A message of a library, in which the input or output has the name that the user gave."""
     return quote(str(message).replace(file.path, file.name), 300)
 
 
@@ -81,8 +81,8 @@ def dotted(formats):
 
 @contextlib.contextmanager
 def scratch_folder(parent=None):
-    """A temporary folder. Another process removes it at the end of this context, or when this process ends in any
-    way: no signal can come too early or too late for it."""
+    """A temporary folder. Another process removes it at the end of this context, or when this process ends in any way,
+    even by a signal."""
     folder = os.path.join(parent or tempfile.gettempdir(), f".dhm-unfinished-{uuid.uuid4().hex}")
     remove = "import shutil, sys; sys.stdin.read(); shutil.rmtree(sys.argv[1], True)"
     with subprocess.Popen([sys.executable, "-ISc", remove, folder], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
@@ -92,7 +92,7 @@ def scratch_folder(parent=None):
 
 
 class Input:
-    """A file to read, as a context; `-` is standard input, of the given format, kept in a temporary file."""
+    """A file to read, as a context. `-` is standard input, of the given format, which is stored in a temporary file."""
 
     def __init__(self, name, standard_format=""):
         self.standard, self.path = name == "-", name
@@ -116,12 +116,12 @@ class Input:
         self._stack.close()
 
     def fail(self, message):
-        """Raises the failure to read this file."""
-        hint = f" It was read as .{self.format} (--input-format names another format)." if self.standard else ""
+        """Raises a Failure about this file."""
+        hint = f" It was read as .{self.format} (--input-format selects another format)." if self.standard else ""
         raise Failure(f"{self.name}: {message}{hint}", FILE) from None
 
     def fail_by(self, error):
-        """The same, with the message of a library."""
+        """Raises a Failure about this file, with the message of a library."""
         self.fail(f"it cannot be read as .{self.format}: {quote_message(error, self) or type(error).__name__}")
 
 
@@ -143,7 +143,7 @@ class Output:
         if not self.special:
             self._require_new(self.target)
             with self._named_failures():
-                # Found out before the work.
+                # Fail before the computation if the folder is not writable.
                 tempfile.TemporaryFile(dir=self.folder).close()
 
     def _require_new(self, path):
@@ -161,15 +161,15 @@ class Output:
 
     @contextlib.contextmanager
     def writing(self):
-        """A context in which `path` is a temporary file. If it ends without an exception, the file takes the output's
-        name, together with files beside it."""
+        """A context in which `path` is a temporary file. If it ends without an exception, the file gets the name of the
+        output, and files beside it are moved with it."""
         with self._named_failures(), scratch_folder(self.folder) as folder:
             self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
             yield
-            # Files beside the output come first, so that it exists only if it is complete.
+            # Move files beside the output first, so that the output exists only if it is complete.
             paths = sorted((entry.path for entry in os.scandir(folder)), key=self.path.__eq__)
             for path in paths:
-                # Some libraries do not tell that a disk is full: then there is no room for more.
+                # Some libraries do not report a full disk; writing more bytes then fails.
                 with open(path, "r+b") as file:
                     size = file.seek(0, os.SEEK_END)
                     file.write(bytes(1 << 16))
@@ -192,5 +192,6 @@ class Output:
 
 
 def discard_standard_output():
-    """Python flushes what is left when it closes standard output, and would end with another status."""
+    """Redirects standard output to the null device: otherwise Python would flush the rest when it closes standard
+    output, fail, and end with another exit status."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Images by Pillow and rasters by rasterio: read in windows and warped in tiles, so that only parts of large GeoTIFF
-files are in memory."""
+"""Images, read by Pillow, and rasters, read by rasterio. Rasters are read in windows and warped in tiles, so that only
+parts of large GeoTIFF files are in memory."""
 
 import logging
 import math
@@ -25,7 +25,7 @@ OPAQUE = ("jpg", "jpeg", "ppm", "pgm", "pnm", "bmp")
 
 @dataclass
 class Grid:
-    """The position of pixels: that of (column, row) has its center at first + steps @ (column, row). By default, the
+    """The positions of pixels: the center of pixel (column, row) is first + steps @ (column, row). By default, the
     center of the lower left pixel is (0, 0), and y points upwards."""
 
     width: int
@@ -48,14 +48,14 @@ class Grid:
         return (points - self.first) @ numpy.linalg.inv(self.steps).T
 
     def outline(self):
-        """Points of pixels along the border, all around: all of them up to 4000 on a side."""
+        """The points of the pixels along the border, at most 4000 on each side."""
         x, y = (numpy.linspace(0, n - 1, min(n, 4000)) for n in self.size)
         sides = (x, 0), (self.width - 1, y), (x[::-1], self.height - 1), (0, y[::-1])
         return self.at(numpy.vstack([numpy.column_stack(numpy.broadcast_arrays(*side)) for side in sides]))
 
     @property
     def bounds(self):
-        """Lowest and highest x and y of the pixels' centers."""
+        """The smallest and largest x and y of the pixels' centers."""
         corners = self.at(numpy.array([[x, y] for x in (0, self.width - 1) for y in (0, self.height - 1)]))
         return numpy.column_stack((corners.min(axis=0), corners.max(axis=0))).ravel()
 
@@ -69,7 +69,7 @@ class Grid:
         return math.sqrt(abs(numpy.linalg.det(self.steps)))
 
     def hanging(self):
-        """The same pixels with the upper left corner at (0, 0), as QGIS shows images that are not georeferenced."""
+        """The same pixels with the upper left corner at (0, 0), as in QGIS for images that are not georeferenced."""
         return self if self.placed else Grid(*self.size, numpy.array([0.5, -0.5]))
 
     def part(self, column, row, width, height):
@@ -114,13 +114,13 @@ class Raster:
         return self.pixels[slice(*rows), slice(*columns)]
 
     def known(self, pixels, columns, rows):
-        """Which pixels of a window, or values of them, are not without data: of shape (rows, columns, 1 or bands), or
-        None if all are."""
+        """Whether the pixels of a window, or their bands, have data: an array of shape (rows, columns, 1 or bands), or
+        None if all of them have."""
         known = self.read_mask(columns, rows)
         if self.nodata is not None:
             colors = pixels[:, :, : self.bands - self.has_alpha]
             have = ~numpy.isnan(colors) if numpy.isnan(self.nodata) else colors != self.nodata
-            # A color may have the value in one of its parts; other bands are independent.
+            # A single component of a color may have the value for no data; other bands are independent.
             have = have.any(axis=2, keepdims=True) if self.is_color else have
             known = have if known is None else have & known
         return known
@@ -133,8 +133,8 @@ class Raster:
         return self.has_alpha or self.bands == 3 and self.dtype in (numpy.uint8, numpy.uint16)
 
     def reduce(self, factor):
-        """The raster of the means of squares of `factor` by `factor` pixels; no data where one of them is none. Less
-        than a square at the end repeats the last one."""
+        """The raster of the means of squares of `factor` by `factor` pixels; no data where one of the pixels has none.
+        An incomplete square at the end has the value of the one before it."""
         (columns, rows), rest = (n.tolist() for n in numpy.divmod(self.grid.size, factor))
         means, mask = numpy.empty((rows, columns, self.bands), self.dtype), None
 
@@ -164,7 +164,7 @@ class Raster:
 
 
 class GdalRaster(Raster):
-    """A raster that rasterio reads piece by piece."""
+    """A raster that rasterio reads in windows."""
 
     def __init__(self, input, keep_palette=False):
         import rasterio
@@ -235,7 +235,7 @@ def read(name, standard_format="png", keep_palette=False):
 def _read_picture(input):
     from PIL import Image, ImageOps
 
-    # Images of twice as many pixels are refused.
+    # Pillow refuses images with twice as many pixels.
     Image.MAX_IMAGE_PIXELS = 2**30
     with Image.open(input.path, formats=[PILLOW_FORMATS.get(input.format, "PPM")]) as image:
         if "16B" in str(image.tile) and image.mode not in ("I", "I;16"):
@@ -255,7 +255,7 @@ def _read_picture(input):
 
 
 def read_background(text, format):
-    """A color as three numbers from 0 to 1, or None: transparent."""
+    """The color as three numbers from 0 to 1, or None if it is transparent."""
     from PIL import ImageColor
 
     text = text or ("white" if format in OPAQUE else "transparent")
@@ -270,7 +270,7 @@ def read_background(text, format):
 
 
 def require_overlap(grid, name, mesh, mesh_name):
-    """Raises Failure if no pixel of an image is within the mesh's box; warns if hardly any is."""
+    """Raises Failure if no pixel of an image is within the bounding box of the mesh; warns if only few are."""
     points = points_of(mesh)[:, :2]
     a, b = grid.bounds.reshape(2, 2).T, numpy.array([points.min(axis=0), points.max(axis=0)])
     sizes = numpy.minimum(a[1], b[1]) - numpy.maximum(a[0], b[0])
@@ -279,12 +279,12 @@ def require_overlap(grid, name, mesh, mesh_name):
     if sizes.min() < 0:
         raise Failure(f"{boxes} do not overlap: meshes must be in the image's coordinates (pixels, y upwards).")
     if sizes.prod() < 0.01 * numpy.ptp(a, axis=0).prod():
-        inform(f"{boxes} overlap in less than a hundredth of the image: meshes must be in its coordinates.")
+        inform(f"{boxes} overlap in less than 1 % of the image: meshes must be in the coordinates of the image.")
 
 
 class Warp:
-    """Warps images from one domain of a pair to the other, sampling at exact preimages, tile by tile: interpolates, or
-    takes the value of the pixel in whose area a preimage is."""
+    """Warps images from one domain of a pair to the other, sampling at preimages, tile by tile. Interpolates, or, if
+    `nearest`, uses the value of the pixel whose area contains the preimage."""
 
     def __init__(self, pair, settings, inverse=False, nearest=False):
         pair.require_flat()
@@ -298,7 +298,7 @@ class Warp:
         corners = [points_of(pair.meshes[side])[triangles, :2] for side in (inverse, not inverse)]
         areas = [numpy.abs(numpy.linalg.det(c[:, 1:] - c[:, :1])).sum() for c in corners]
         self.scale = math.sqrt(areas[1] / areas[0])  # the mean factor of lengths
-        # The boundary of the domain, in small pieces, in the image and in the result.
+        # The boundary of the domain, divided into small pieces, in the image and in the result.
         edges = numpy.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, counts = numpy.unique(edges, axis=0, return_counts=True)
         ends = points_of(pair.meshes[inverse])[edges[counts == 1], :2]
@@ -311,9 +311,9 @@ class Warp:
         return self.map.map_points(points)[0]
 
     def image_of(self, grid, forward):
-        """Points around the image (or the preimage) of a grid's rectangle, and the largest distance of neighbors; None
-        if it is not within the domain. The image is as large as that of its boundary: the rectangle's, and the part of
-        the domain's that is inside."""
+        """Points whose bounding box is that of the image (or the preimage) of a grid's rectangle, and the largest
+        distance of neighbors; None if the rectangle is outside the domain. The points are the images of the rectangle's
+        boundary and of the part of the domain's boundary that is inside the rectangle."""
         line = self._map(grid.outline(), forward)
         here, there = self.rims if forward else self.rims[::-1]
         pixels = grid.pixels(here)
@@ -326,7 +326,8 @@ class Warp:
         return points[numpy.isfinite(points[:, 0])], numpy.nanmax(numpy.abs(numpy.vstack(steps)), axis=0)
 
     def fit_grid(self, raster, size=None, resolution=0.0, crs=None):
-        """A grid over the image of a placed raster, with square pixels of its size unless that changes by 1 %."""
+        """A grid over the image of a georeferenced raster, with square pixels. They have the size of the raster's
+        pixels unless the map changes lengths by at least 1 %."""
         found = self.image_of(raster.grid, True)
         if found is None:
             raise Failure("No pixel of the image is within the mesh.")
@@ -340,13 +341,13 @@ class Warp:
             if math.prod(numbers) > LARGEST:
                 raise Failure("The result would have {:.6g} x {:.6g} pixels, more than 2^32: use a larger "
                               "--resolution, or --size.".format(*numbers), USAGE)
-            # A rounding error must not add a pixel.
+            # Rounding errors must not add a pixel.
             size = [int(math.ceil(n - 1e-6)) + 1 for n in numbers]
         return Grid(*size, numpy.array([low[0], high[1]]), numpy.diag(spacing * [1, -1]), crs, True)
 
     def tiles(self, raster, grid, text="Warping"):
-        """Yields (column, row, pixels, mask) of the tiles of a grid; pixels of shape (rows, columns, bands)."""
-        # How many pixels of the raster are as wide as one of the grid.
+        """Yields (column, row, pixels, mask) for the tiles of a grid; pixels have the shape (rows, columns, bands)."""
+        # The number of pixels of the raster that are as wide as one of the grid.
         factor = int(min(grid.pixel / self.scale / raster.grid.pixel + 0.01, *raster.grid.size))
         raster = raster.reduce(factor) if factor > 1 and not self.nearest else raster
         tiles = [(c, r) for r in range(0, grid.height, TILE) for c in range(0, grid.width, TILE)]
@@ -359,19 +360,19 @@ class Warp:
         begin, end = self._find_window(raster.grid, tile)
         if (begin >= end).any():
             return numpy.zeros((*shape, raster.bands), raster.dtype), numpy.zeros(shape, bool)
-        # At the raster's border, one more pixel of the same value, because pixels are areas and VTK's are points.
+        # Repeat the pixels at the raster's border, because pixels are areas here and points in VTK.
         added = numpy.array([begin == 0, end == raster.grid.size]).astype(int) * (not self.nearest)
         ranges = numpy.array([begin, end]).T.tolist()
         window = raster.window(*ranges)
         known = raster.known(window, *ranges)
         if known is not None:
-            # Values for no data can be so large that rounding errors of them are not small.
+            # Values for no data can be so large that their rounding errors would be large.
             window = numpy.where(known, window, window.dtype.type(0))
         window = numpy.pad(window, (*added.T[::-1], (0, 0)), "edge")
         rows, columns = window.shape[:2]
         data = raster.grid.part(*(begin - added[0]), columns, rows).to_vtk(window, self.nearest)
         if added.any():
-            # In each direction, from 1 in the middle to 0 at added pixels, and rounded: the area ends at a half.
+            # In each direction, 1 inside and 0 at added pixels. After rounding, the area ends halfway between them.
             x, y = (numpy.pad(numpy.ones(n - sum(pad), numpy.uint8), pad) for n, pad in zip((columns, rows), added.T))
             add_array(data, "Inside", numpy.stack(numpy.meshgrid(x, y[::-1]), axis=2).reshape(-1, 2))
         mixes_colors = raster.has_alpha and not self.nearest
@@ -393,7 +394,7 @@ class Warp:
         return arrays["Pixels"], mask
 
     def _find_window(self, grid, tile):
-        """The first pixel (column, row) that a tile needs of a raster, and the end."""
+        """The first pixel (column, row) of a raster that a tile needs, and the end."""
         found = self.image_of(tile, False)
         if found is None:
             return numpy.zeros((2, 2), int)
@@ -449,7 +450,7 @@ def brightest(dtype):
 
 
 def add_alpha(pixels, mask=True):
-    """The pixels with an alpha band: opaque, or transparent where the mask is 0."""
+    """The pixels with an added alpha band: opaque, but transparent where the mask is 0."""
     alpha = numpy.where(mask, brightest(pixels.dtype), 0).astype(pixels.dtype)
     return numpy.dstack((pixels, numpy.broadcast_to(alpha, pixels.shape[:2])))
 
@@ -475,7 +476,7 @@ def write(pixels, output, grid, profile=None):
     if format in ("tif", "tiff") or kind == numpy.uint16 and format == "png":
         _write_raster(output, grid, bands, kind, bands in (2, 4), None, [(0, 0, pixels)])
     elif bands > (3 if format in OPAQUE else 4) or kind != numpy.uint8 or bands == 2 and format in OPAQUE:
-        raise Failure(f"A .{format} image cannot hold {bands} bands of {kind}: write a .tif.")
+        raise Failure(f"A .{format} image cannot contain {bands} bands of {kind}: write a .tif.")
     else:
         from PIL import Image
 
@@ -485,7 +486,7 @@ def write(pixels, output, grid, profile=None):
 
 
 def _copy_metadata(source, result):
-    """Copies what a file says of its bands (their names, units, scales) and of itself."""
+    """Copies the metadata of a file and of its bands (names, units, scales)."""
     for name in ("descriptions", "units", "scales", "offsets"):
         known, own = getattr(source, name), getattr(result, name)
         setattr(result, name, known[: result.count] + own[source.count :])
@@ -498,8 +499,8 @@ def _copy_metadata(source, result):
 
 
 def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles, source=None):
-    """Writes tiles (column, row, pixels) to a TIFF, a GeoTIFF on a georeferenced grid, with the metadata of a source,
-    an open file with the same bands, or fewer."""
+    """Writes tiles (column, row, pixels) to a TIFF file, or to a GeoTIFF file if the grid is georeferenced, with the
+    metadata of `source`, an open file with the same or fewer bands."""
     import rasterio
 
     warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
@@ -519,15 +520,15 @@ def _write_raster(output, grid, bands, dtype, has_alpha, nodata, tiles, source=N
                 window = rasterio.windows.Window(column, row, *pixels.shape[1::-1])
                 file.write(numpy.moveaxis(pixels, 2, 0), window=window)
     except rasterio.errors.CRSError:
-        raise Failure(f"The coordinate reference system {quote(grid.crs)} is not known: give another (--crs).",
+        raise Failure(f"Unknown coordinate reference system {quote(grid.crs)}: give another one (--crs).",
                       USAGE) from None
     except rasterio.errors.RasterioError as error:
         raise Failure(f"Cannot write {output.name}: {error}", FILE) from None
 
 
 def write_warped(warp, raster, grid, output, background):
-    """Warps a raster and writes it. Outside are the background, the raster's value for no data, transparency, or else a
-    value for no data."""
+    """Warps a raster and writes it. Pixels outside have the background, the raster's value for no data, transparency,
+    or, if none of these is available, a new value for no data."""
     if output.format not in ("tif", "tiff"):
         write(finish(*warp.warp(raster, grid), raster.has_alpha, background), output, grid, raster.profile)
         return

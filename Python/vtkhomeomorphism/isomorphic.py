@@ -23,49 +23,51 @@ class IsomorphicTriangulation(NamedTuple):
     """A pair of triangulations with the same triangles."""
 
     source: numpy.ndarray
-    """The landmarks, unchanged and in their order, then points of a frame and added points: shape (n, 2) or (n, 3)."""
+    """Shape (n, 2) or (n, 3): the landmarks, unchanged and in their order, then points of a frame and added points."""
     target: numpy.ndarray
     triangles: numpy.ndarray
     """Shape (m, 3), int64."""
     residuals: numpy.ndarray
-    """For each landmark, the distance in the target from where a smooth map through its neighbors puts it; at the
-    border, where that is less certain, it is reduced accordingly."""
+    """For each landmark, the distance in the target from its prediction by a smooth map through its neighbors. Near the
+    border of the landmarks, where predictions are less certain, it is reduced accordingly."""
     added_points: int
-    """Number of points added, those of a frame not counted."""
+    """The number of added points, without those of a frame."""
     left_out: list
-    """(number, reason) of segments that conflict with others, if they were to be left out."""
+    """Tuples (number, reason) of the segments that were left out because they conflict with others."""
     report: dict
-    """Of both domains: smallest_angles (degrees), shares_of_angles_below_10_15_20, obtuse_share and discordant_share
-    (of triangles that are so in at least one), largest_distortion and largest_distortion_triangle."""
+    """Statistics: smallest_angles (of source and target, in degrees), shares_of_angles_below_10_15_20 (fractions in the
+    worse domain), obtuse_share and discordant_share (fractions of triangles that are obtuse, or discordant, in at least
+    one domain), largest_distortion and largest_distortion_triangle."""
 
     def suspicious(self) -> numpy.ndarray:
-        """At most ten landmarks with outstanding residuals, the worst first."""
+        """The indices of at most ten landmarks whose residuals exceed usual_residual(), the worst first."""
         worst = numpy.argsort(-self.residuals, kind="stable")[:10]
         return worst[self.residuals[worst] > self.usual_residual()]
 
     def usual_residual(self) -> float:
-        """The limit of usual residuals: six times the largest of all but a fifth, or 1e-5 of the spacing."""
+        """The limit of usual residuals: six times their 80 % quantile, but at least 1e-5 of the spacing."""
         landmarks = self.target[: len(self.residuals)]
         spacing = numpy.linalg.norm(numpy.ptp(landmarks, axis=0)) / len(landmarks) ** 0.5
         return max(6 * numpy.quantile(self.residuals, 0.8), 1e-5 * spacing)
 
 
 def rectangle(low, high, count):
-    """Points around a rectangle, `count` on each side."""
+    """Points along the boundary of a rectangle, `count` on each side."""
     t = numpy.arange(count)[:, None] / count
     corners = numpy.array([low, [high[0], low[1]], high, [low[0], high[1]]])
     return numpy.vstack([a * (1 - t) + b * t for a, b in zip(corners, numpy.roll(corners, -1, axis=0))])
 
 
 def within(source, target, rims, make):
-    """The pair within outlines of further points."""
+    """The pair whose domain is bounded by additional points, the rims of source and target."""
     points = [numpy.vstack(both) for both in zip((source, target), rims)]
     return make(*points, outlines=[range(len(source), len(points[0]))], domain="outline")
 
 
 def _smooth_frame(source, target, frame, trusted, smooth):
-    """Points around a rectangle that is enlarged by 1 % and to include all landmarks, and their images under the
-    quadratic polynomial that fits trusted landmarks best, corrected by a thin-plate spline (or the best affine map)."""
+    """Points along the boundary of a rectangle, which is enlarged to include all landmarks and then by 1 %, and their
+    images: under the quadratic polynomial that fits trusted landmarks best, corrected by a thin-plate spline, if
+    `smooth`, otherwise under the best affine map."""
     low = numpy.minimum(frame[::2], source.min(axis=0))
     high = numpy.maximum(frame[1::2], source.max(axis=0))
     low, high = low - 0.01 * (high - low), high + 0.01 * (high - low)
@@ -83,7 +85,7 @@ def _smooth_frame(source, target, frame, trusted, smooth):
         squares = numpy.maximum(((points[:, None] - a) ** 2).sum(axis=2), 1e-300)
         return numpy.hstack((squares * numpy.log(squares), columns(points, False)))
 
-    # What bends the sheet as a whole goes on beyond the landmarks.
+    # The quadratic part describes bending of the whole figure, which continues beyond the landmarks.
     bends = smooth and len(a) >= 12
     weights = numpy.linalg.lstsq(columns(a, bends), values, rcond=None)[0]
     images = columns(b, bends) @ weights + target[trusted[0]]
@@ -95,7 +97,7 @@ def _smooth_frame(source, target, frame, trusted, smooth):
 
 
 def _with_frame(source, target, frame, make):
-    """The pair with the image of the source's frame predicted, or with the filter's frame if landmarks are outside."""
+    """The pair with the predicted image of the source's frame, or with automatic frames if that is not possible."""
     source, target = (numpy.asarray(as_array(points), float) for points in (source, target))
     first = make(source, target)
     trusted = numpy.flatnonzero(first.residuals <= first.usual_residual())
@@ -111,7 +113,7 @@ def _figure(points, outlines, segments, names, what: str) -> vtkPolyData:
     if isinstance(points, vtkPolyData):
         figure.ShallowCopy(points)
     else:
-        # A copy, so that the points cannot change.
+        # Copy the points, so that they cannot change.
         figure.ShallowCopy(make_mesh(as_array(points).copy(), outlines, what))
         figure.SetLines(as_cells(segments))
     called = vtkStringArray()
@@ -136,38 +138,41 @@ def isomorphic_triangulation(
     leave_out_conflicting_segments: bool = False,
     names: Sequence[str] = (),
 ) -> IsomorphicTriangulation:
-    """Triangulates two drawings of a figure with the same triangles.
+    """Triangulates two drawings of a figure (source and target) with the same triangles.
 
     Parameters
     ----------
     source, target : array of shape (n, 2) or (n, 3)
-        Corresponding points; in 3-space those of each in a plane. Or two vtkPolyData with the same cells: polygons and
-        closed lines are outlines, other lines segments.
+        Corresponding points. In 3-space, the points of each drawing must lie in a plane. Or two vtkPolyData with the
+        same cells: polygons and closed lines are outlines, and other lines are segments.
     outlines : sequence of sequences of int
         Closed polygons of point ids: outlines, holes, islands in holes. The first point may be repeated at the end.
-        Without, the domain is a frame around points.
+        Default: the domain is a frame around the points.
     segments : sequence of sequences of int
         Polygonal lines of point ids that must become edges.
-    frame : pair of (least x, largest x, least y, largest y)
-        Rectangles around source and target, for example of images. If the target's is None, the source's, enlarged
-        by 1 %, goes where a smooth map through landmarks that are not suspicious takes it (in the plane, no outlines).
+    frame : pair of (smallest x, largest x, smallest y, largest y)
+        Rectangles around source and target, for example those of images. If that of the target is None, it is the image
+        of the source's, enlarged by 1 %, under a smooth map through landmarks that are not suspicious (only in the
+        plane, and without outlines). Default: automatic frames.
     domain : {"automatic", "outline", "frame", "convex_hull"}
-        "automatic": the inside of the outlines if there are any, otherwise a frame.
+        "automatic": the interior of the outlines if there are any, otherwise a frame.
     quality : {"minimum_angle", "concordance", "distortion", "non_obtuse"}
+        The quality measure that is optimized, see vtkIsomorphicTriangulation.
     target_minimum_angle : float
-        Points are added until no angle is smaller, in degrees. 0: only necessary points are added.
+        Points are added until no angle is smaller than this, in degrees, 0 to 60. 0 (default): only necessary points
+        are added.
     maximum_added_points : int, optional
-        How many points may be added. None: as many as necessary, and up to 100 more for target_minimum_angle.
+        The largest number of added points. None: as many as necessary, and up to 100 more for target_minimum_angle.
     maximum_triangle_size : float
-        Triangles that are larger, as a share of their domain, are divided. 0: none is.
+        Triangles with more than this fraction of the area of their domain are divided, 0 to 1. 0 (default): triangles
+        are not divided.
     leave_out_conflicting_segments : bool
-        Leave out segments that do not agree with others, as few as possible, instead of raising ValueError.
+        Leave out segments that conflict with others, as few as possible, instead of raising ValueError. Default: False.
     names : sequence of str
-        What messages call the first points; the others are called by their numbers.
+        The names of the first points in messages; the other points are identified by their numbers.
 
-    Returns an IsomorphicTriangulation: source, target, triangles, residuals, added_points, left_out, report, and
-    suspicious(), the landmarks that are probably wrong. Raises ValueError with a message that names the points if the
-    figures have no such triangulations.
+    Returns an IsomorphicTriangulation. Raises ValueError, with a message that names the points, if the figure has no
+    isomorphic triangulations.
     """
     for name, value, largest in (("target_minimum_angle", target_minimum_angle, 60),
                                  ("maximum_triangle_size", maximum_triangle_size, 1),
@@ -176,7 +181,7 @@ def isomorphic_triangulation(
             raise ValueError(f"{name} must be a number from 0 to {largest}, not {value}")
     for box in frame or ():
         if box is not None and not (box[0] < box[1] and box[2] < box[3]):
-            raise ValueError(f"frame must be the least and the largest x, and the least and the largest y, not {box}")
+            raise ValueError(f"frame must be (smallest x, largest x, smallest y, largest y), not {box}")
     if frame is not None and frame[1] is None:
         return _with_frame(source, target, frame[0], functools.partial(
             isomorphic_triangulation, segments=segments, quality=quality,

@@ -1,16 +1,17 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Landmark pairs, corresponding points of a source and a target domain: their files, and pairs of meshes made of them.
+"""Landmarks, that is, corresponding points of a source and a target domain: their files, and pairs of meshes made from
+them.
 
 Formats, recognized by their content:
 
 - CSV with the columns source_x, source_y, target_x, target_y and optionally id, or with four unnamed columns of numbers
-  in this order (five: an id first);
-- control points of QGIS's Georeferencer (``.points``), whose y axis points up from 0 at the upper edge of an image;
-  returned with y down, in pixels from the image's upper left corner. Disabled points are left out;
+  in this order (with five, the first one is an id);
+- control points of QGIS's Georeferencer (``.points``), whose y axis points upwards from 0 at the upper edge of an
+  image. They are returned in pixels from the upper left corner, with y downwards. Disabled points are left out;
 - IIIF Georeference Annotations (JSON): pixels from the upper left corner, longitude and latitude;
-- 2-D landmarks of BigWarp (CSV without a header): moving points are the source. Inactive points and points that are
-  set on one side only are left out.
+- 2-D landmarks of BigWarp (CSV without a header): moving points are the source. Inactive points, and points that are
+  set on only one side, are left out.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ _COLUMNS = ("source_x", "source_y", "target_x", "target_y")
 
 
 class LandmarkFileError(ValueError):
-    """A file of landmarks that cannot be understood. The message names file, line and remedy."""
+    """A file of landmarks is invalid. The message names the file, the line and the remedy."""
 
 
 @dataclass
@@ -45,14 +46,14 @@ class Landmarks:
 
     source: numpy.ndarray
     target: numpy.ndarray
-    names: List[str]  # the file's; where it has none, the number of the line (of a feature of JSON), from 1
+    names: List[str]  # ids of the file; without ids, the number of the line (of the feature in JSON), from 1
     left_out: List[Tuple[str, str]] = field(default_factory=list)  # name and reason of landmarks that are not used
-    image_coordinates: bool = False  # whether the source is in pixels with y down
-    crs: Optional[str] = None  # the target's coordinate reference system as the file states it
-    origin: float = 0.0  # what to add to coordinates in pixels so that 0 is at the edge of an image
+    image_coordinates: bool = False  # whether the source is in pixels with y downwards
+    crs: Optional[str] = None  # the target's coordinate reference system, as stated by the file
+    origin: float = 0.0  # the number to add to coordinates in pixels so that 0 is at the edge of an image
 
     def without(self, names: Sequence[str]) -> Landmarks:
-        """The landmarks except those of the given names, which are left out."""
+        """The landmarks without those of the given names. Raises LandmarkFileError for unknown names."""
         unknown = set(names) - {*self.names, *(name for name, _ in self.left_out)}
         if unknown:
             raise LandmarkFileError(f"there is no landmark {', '.join(sorted(unknown)[:5])} to leave out")
@@ -63,7 +64,7 @@ class Landmarks:
 
 
 def _collect(rows, path: str, **facts) -> Landmarks:
-    """rows: (name, four numbers, reason to leave the landmark out or None)."""
+    """The landmarks of `rows`: name, four numbers, and the reason to leave the landmark out, or None."""
     used, left_out = [], []
     for name, row, reason in rows:
         missing = [side for side, k in (("source", 0), ("target", 2)) if not numpy.isfinite(row[k : k + 2]).all()]
@@ -76,7 +77,7 @@ def _collect(rows, path: str, **facts) -> Landmarks:
 
 
 def _read_table(lines: List[str], path: str, columns: Sequence[str], header: Sequence[str] = ()):
-    """The rows of a table, as _collect takes them. Without a header, that is the first row."""
+    """The rows of a table, for _collect. If no header is given, it is the first row."""
     first, result = next((line for line in lines if line.strip()), ""), []
     try:
         for line, record in records(lines, next((s for s in ";\t" if first.count(s) >= 3), ",")):
@@ -105,7 +106,7 @@ def _read_table(lines: List[str], path: str, columns: Sequence[str], header: Seq
 def _read_qgis(lines: List[str], path: str) -> Landmarks:
     crs = [line[5:].strip() for line in lines if line.upper().startswith("#CRS:")]
     lines = ["" if line.startswith("#") else line for line in lines]
-    # QGIS 2 writes pixelX and pixelY.
+    # In QGIS 2, the columns are pixelX and pixelY.
     names = ("sourceX", "sourceY") if any("sourceX" in line for line in lines) else ("pixelX", "pixelY")
     rows = [(name, [u, -v, x, y], reason)
             for name, (u, v, x, y), reason in _read_table(lines, path, (*names, "mapX", "mapY"))]
@@ -143,7 +144,7 @@ def _read_csv(lines: List[str], path: str) -> Landmarks:
     start = next(i for i, line in enumerate(lines) if line.strip())
     first = [name.strip().lower() for name in re.split("[,;\t]", lines[start].replace('"', ""))]
     if len(first) == 6 and first[1] in ("true", "false"):
-        # BigWarp's; its pixels have their centers at whole numbers.
+        # The format of BigWarp, where pixels have their centers at integers.
         return _collect(_read_table(lines, path, _COLUMNS, ("id", "enable", *_COLUMNS)), path, origin=0.5)
     if all(column in first for column in _COLUMNS):
         header, lines = first, lines[:start] + [""] + lines[start + 1 :]
@@ -156,7 +157,7 @@ def _read_csv(lines: List[str], path: str) -> Landmarks:
 
 
 def _read_text(path) -> str:
-    """The text of a file in UTF-8, or else in Latin-1, in which older programs write names."""
+    """The text of a file in UTF-8, otherwise in Latin-1, which older programs use."""
     with open(path, "rb") as file:
         data = file.read()
     if b"\0" in data:
@@ -169,8 +170,8 @@ def _read_text(path) -> str:
 
 
 def read_landmarks(path) -> Landmarks:
-    """Reads a file of landmark pairs. Raises LandmarkFileError if the file is not one of the formats above or has fewer
-    than three usable landmarks, and OSError if it cannot be read."""
+    """Reads a file of landmarks. Raises LandmarkFileError if the file does not have one of the formats above or has
+    fewer than three usable landmarks, and OSError if it cannot be read."""
     text = _read_text(path)
     content = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     if not content:
@@ -182,7 +183,7 @@ def read_landmarks(path) -> Landmarks:
 
 
 def read_lines(path, names: Sequence[str]) -> List[List[int]]:
-    """Reads constraint lines: one polyline a line, as identifiers of landmarks separated by blanks or commas. Returns
+    """Reads constraint lines: one polygonal line per row, as ids of landmarks separated by blanks or commas. Returns
     indices into names."""
     index, lines = {name: i for i, name in enumerate(names)}, []
     for number, text in enumerate(_read_text(path).splitlines(), 1):
@@ -198,8 +199,8 @@ def read_lines(path, names: Sequence[str]) -> List[List[int]]:
 
 
 def is_landmark_file(path) -> bool:
-    """Whether a file name and content are those of landmarks: `.points`, `.csv` with at least four columns, or JSON
-    with a georeference annotation."""
+    """Whether a file is one of landmarks: `.points`, `.csv` with at least four columns, or JSON with a georeference
+    annotation."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in (".csv", ".json", ".geojson") or not os.path.isfile(path):
         return suffix == ".points"
@@ -214,7 +215,7 @@ def is_landmark_file(path) -> bool:
 
 
 def read(file, options) -> Landmarks:
-    """The landmarks of an input of dhm, without those to be left out, in the coordinate reference system asked for."""
+    """The landmarks of an input of dhm, without those of --without, in the coordinate reference system of --crs."""
     try:
         marks = read_landmarks(file.path).without([name for name in options.without.split(",") if name])
     except LandmarkFileError as error:
@@ -231,27 +232,28 @@ def read(file, options) -> Landmarks:
         try:
             known = rasterio.CRS.from_user_input(marks.crs)
         except ValueError:
-            inform(f"{file.name}: the line #CRS: {quote(marks.crs)} names no known coordinate reference system; "
+            inform(f"{file.name}: the coordinate reference system in the line #CRS: {quote(marks.crs)} is not known; "
                    f"{options.crs} (--crs) is used instead.")
             return replace(marks, crs=options.crs)
         try:
             target = rasterio.warp.transform(known, options.crs, *marks.target.T)
         except Exception as error:
-            raise Failure(f"Cannot take the landmarks from {marks.crs} to {options.crs}: {error}", FILE) from None
+            raise Failure(f"Cannot transform the landmarks from {marks.crs} to {options.crs}: {error}", FILE) from None
         marks = replace(marks, target=numpy.column_stack(target))
     return replace(marks, crs=options.crs or marks.crs)
 
 
 def _frame(grid, points):
-    """Lowest and highest coordinates of the pixels' centers, so that borders go to borders, and of landmarks beyond."""
+    """The smallest and largest coordinates of the centers of pixels, so that borders are mapped to borders, and of
+    landmarks outside them."""
     points = numpy.vstack((points, numpy.reshape(grid.hanging().bounds, (2, 2)).T))
     return points.min(axis=0), points.max(axis=0)
 
 
 def _between_images(points, grids, more):
-    """The pair within the images' rectangles. Landmarks within a pixel of the same border in both images go onto it.
-    Others close to a border in one image would make thin triangles there: then the domain extends half the landmarks'
-    spacing beyond the borders, with points around."""
+    """The pair whose domains are the rectangles of the images. Landmarks within a pixel of the same border in both
+    images are moved onto it. Other landmarks close to a border would make thin triangles there. In this case, the
+    domains extend beyond the borders by half the landmarks' spacing, and have points along their boundaries."""
     frames = [_frame(grid, p) for grid, p in zip(grids, points)]
     snapped = points
     for end in (0, 1):
@@ -263,7 +265,7 @@ def _between_images(points, grids, more):
     close = (gaps[0] < 0.1 * spacings[0]) | (gaps[1] < 0.1 * spacings[1])
     wider = [(low - 0.5 * s, high + 0.5 * s) for s, (low, high) in zip(spacings, frames)]
     if not close[(gaps[0] != 0) | (gaps[1] != 0)].any():
-        # Landmarks can be on different borders.
+        # This fails if landmarks are on different borders in the two images.
         with contextlib.suppress(ValueError):
             return isomorphic_triangulation(*snapped, frame=[numpy.column_stack(f).ravel() for f in frames], **more)
     make = functools.partial(isomorphic_triangulation, **more)
@@ -273,8 +275,8 @@ def _between_images(points, grids, more):
 
 
 def triangulate(marks, name, grids, **more):
-    """The IsomorphicTriangulation of landmarks in images with given pixel grids (None: not in an image). Says what was
-    made."""
+    """The IsomorphicTriangulation of landmarks in images with given pixel grids (None: not in an image). Prints a
+    summary."""
     points = [marks.source, marks.target]
     for side, grid in enumerate(grids):
         if grid or (side == 0 and marks.image_coordinates):
@@ -291,16 +293,16 @@ def triangulate(marks, name, grids, **more):
     except ValueError as error:
         raise Failure(f"{name}: {error}") from None
     angles, worst = made.report["smallest_angles"], made.suspicious()
-    inform(f"{name}: made {count(len(made.triangles), 'triangle')} of {count(len(marks.names), 'landmark')}, "
+    inform(f"{name}: made {count(len(made.triangles), 'triangle')} from {count(len(marks.names), 'landmark')}, "
            f"with {count(made.added_points, 'added point')}; the smallest angles are {angles[0]:.3g} and "
            f"{angles[1]:.3g} degrees.")
     if min(angles) < 1e-3:
-        inform(f"{name}: Cubic maps of such thin triangles take minutes; --system smooth (check: --quick) is fast.")
+        inform(f"{name}: with such thin triangles, Cubic takes minutes; --system smooth (check: --quick) is fast.")
     if len(worst):
         listed = ", ".join(f"{marks.names[i]} ({made.residuals[i]:.4g})" for i in worst)
-        inform(f"{name}: suspicious landmarks, and how far they are in the target from where their neighbors put them: "
-               f"{listed}; the median is {numpy.median(made.residuals):.3g}. Leave wrong ones out with --without and "
-               "their ids (the numbers of their lines in a file without ids).")
+        inform(f"{name}: suspicious landmarks, and their distances in the target from the predictions by their "
+               f"neighbors: {listed}; the median is {numpy.median(made.residuals):.3g}. Leave out wrong landmarks by "
+               "--without and their ids (line numbers in a file without ids).")
     for cell, reason in made.left_out:
         inform(f"{name}: line {cell} is left out: {reason}")
     return made

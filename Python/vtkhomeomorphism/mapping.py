@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use of the filters by the commands: settings, errors, and the additions of PROJ's triangulation files to the map
-(heights, points outside, the distance from the piecewise linear map on the ground)."""
+"""Use of the filters by the commands: settings, errors, and the parts of PROJ's triangulation files that the filters do
+not support (heights, the fallback strategy, the distance from the piecewise linear map in meters)."""
 
 from dataclasses import replace
 
@@ -17,8 +17,8 @@ from .vtkFiltersHomeomorphism import vtkDifferentiableHomeomorphism
 
 
 def choose_system(settings, pair, default="smooth"):
-    """The options of the map with a system: for triangulation files Linear, which is their official meaning, otherwise
-    the default. Informs of a system that was not asked for."""
+    """The options of the map, with a system. If none was chosen, it is Linear for triangulation files, which is their
+    official meaning, otherwise the default; then it is printed."""
     if settings["system"]:
         return settings
     system, why = ("linear", ", the official meaning of a triangulation file") if pair.shift else (default, "")
@@ -27,7 +27,7 @@ def choose_system(settings, pair, default="smooth"):
 
 
 def set_up(algorithm, settings, pair=None):
-    """The filter, with the options of the map, and the pair if it takes one."""
+    """The filter, with the options of the map, and with the pair if there is one."""
     configure(algorithm, **{**settings, "system": settings["system"] or "smooth"})
     if pair:
         algorithm.SetSourceData(pair.source)
@@ -36,7 +36,7 @@ def set_up(algorithm, settings, pair=None):
 
 
 def run(algorithm, name):
-    """Updates a filter. Raises Failure with its errors, and passes its warnings on."""
+    """Updates a filter. Raises Failure with its errors, and prints its warnings."""
     take_messages()
     warned = []
     try:
@@ -49,7 +49,7 @@ def run(algorithm, name):
 
 
 def find_inactive_vectors(data):
-    """Names of arrays of real numbers of 3 components that are no attributes of points or cells."""
+    """Names of floating-point arrays of 3 components that are not active attributes."""
     return list(dict.fromkeys(
         array.GetName() for leaf in leaves_of(data) for attributes in (leaf.GetPointData(), leaf.GetCellData())
         for i, array in enumerate(map(attributes.GetArray, range(attributes.GetNumberOfArrays())))
@@ -60,7 +60,7 @@ def find_inactive_vectors(data):
 class PointMap:
     """The map of a pair, for points and data."""
 
-    moves = True  # whether points move
+    moves = True  # whether points are moved, or only arrays are added
 
     def __init__(self, pair, settings, inverse=False):
         self.pair, self.settings, self.inverse, self.outside = pair, settings, inverse, 0
@@ -70,12 +70,12 @@ class PointMap:
         self.filter.SetOutputPointsPrecision(self.filter.DOUBLE_PRECISION)
 
     def map_data(self, data):
-        """A data object with moved points, whose point arrays include the mask and others requested of the filter. For
-        a triangulation file, the third coordinate is a height, and points mapped by its fallback strategy have 1 in the
-        array Fallback."""
+        """A data object with moved points. Its point arrays include the mask and the arrays requested from the filter.
+        For a triangulation file, the third coordinate is a height, and points mapped by the fallback strategy have 1 in
+        the array Fallback."""
         kept = find_inactive_vectors(data)
         if kept and self.filter.GetTransformActiveAttributes() and not self.filter.GetTransformAllInputVectors():
-            inform(f"Arrays that are not active remain as they are: {', '.join(kept)} (--vectors all transforms them).")
+            inform(f"Inactive arrays are not transformed: {', '.join(kept)} (--vectors all transforms them).")
         shift = self.shift if isinstance(data, vtkPointSet) else None
         requested = self.filter.GetComputeTriangleId()
         if shift:
@@ -88,7 +88,7 @@ class PointMap:
         try:
             result = run(self.filter, self.pair.name)
         except Failure:
-            # All kinds of defects; the filter reports the first only.
+            # Report all kinds of defects; the filter reports only the first.
             report.require_map(self.pair)
             raise
         self.filter.SetComputeTriangleId(requested)
@@ -100,8 +100,8 @@ class PointMap:
         return result
 
     def _complete(self, result, points):
-        """Adds what a triangulation file has besides, and informs of the largest distance from Linear, its official
-        meaning, in meters if the coordinate reference system is known."""
+        """Adds heights and the fallback of a triangulation file, and prints the largest distance from Linear, its
+        official meaning, in meters if the coordinate reference system is known."""
         images = points_of(result).copy()
         cells = arrays_of(result.GetPointData())["TriangleId"].astype(numpy.int64)
         fallback = self.shift.complete(points, images, cells, self.inverse)
@@ -119,11 +119,11 @@ class PointMap:
                    f"{self.pair.names[0]}, at point {worst}: {distances[worst]:.4g} {unit}.")
 
     def map_points(self, points):
-        """Images of points of shape (n, 2) or (n, 3), NaN outside, and the arrays of map_data by name (and z, if points
-        of two coordinates have images of three)."""
+        """Images of points of shape (n, 2) or (n, 3), NaN outside, and the arrays of map_data by name (with an array z
+        if points of two coordinates have images of three)."""
         dimension = points.shape[1]
         if dimension == 2 and numpy.ptp(points_of(self.domain)[:, 2]) > 0:
-            inform(f"{self.name} is not parallel to x and y, and the points have no z: it is taken for 0.")
+            inform(f"{self.name} is not parallel to the x and y axes, but the points have no z; 0 is used.")
         result = self.map_data(make_mesh(points))
         arrays, images = arrays_of(result.GetPointData()), points_of(result).copy()
         images[(arrays[MASK] == 0) & (arrays.get("Fallback", 0) == 0)] = numpy.nan
@@ -133,7 +133,7 @@ class PointMap:
 
 
 def ground_distances(a, b, crs):
-    """Distances of points, and their unit: meters, if pyproj knows the coordinate reference system."""
+    """Distances between points, and their unit: meters, if pyproj knows the coordinate reference system."""
     try:
         import pyproj
 

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes in files: by VTK's readers, by meshio, and Wavefront's OBJ, whose numbers are read here in double
-precision."""
+"""Meshes in files, read by VTK, by meshio, and here (Wavefront's OBJ, in double precision)."""
 
 import contextlib
 import io
@@ -18,12 +17,12 @@ from .files import USAGE, Failure, dotted, inform, quote
 
 MESHIO = ("off", "ply", "msh", "inp", "nas", "bdf", "xdmf", "med")
 READ = ("vtp", "vtk", "vtu", "obj", "stl") + MESHIO
-FLAT_WRITE = ("obj", "off", "ply")  # formats that hold points and polygons only
+FLAT_WRITE = ("obj", "off", "ply")  # formats that contain only points and polygons
 WRITE = ("vtp", "vtk") + FLAT_WRITE
 
 
 def lists_of(cells):
-    """The point ids of each cell of a vtkCellArray, a list of arrays."""
+    """The point ids of the cells of a vtkCellArray, a list with one array per cell."""
     offsets = vtk_to_numpy(cells.GetOffsetsArray())
     return numpy.split(vtk_to_numpy(cells.GetConnectivityArray()), offsets[1:-1]) if cells.GetNumberOfCells() else []
 
@@ -55,7 +54,7 @@ def _read_obj(input):
 
 @contextlib.contextmanager
 def _quiet_meshio():
-    """meshio, whose messages are kept from the terminal."""
+    """The module meshio; its messages are not printed."""
     import meshio
 
     said = io.StringIO()
@@ -73,14 +72,14 @@ def _read_meshio(input):
             if input.format != "ply":
                 mesh = meshio.read(input.path)
             else:
-                # Both names of the list are common. Binary files that have been cut off are read without an error.
+                # Both names of the list are common. meshio reads truncated binary files without an error.
                 data = file.read().replace(b" vertex_index\n", b" vertex_indices\n", 1)
                 mesh = meshio.ply._ply.read_buffer(io.BytesIO(data))
                 counts = [int(n) for n in re.findall(rb"element (?:vertex|face) (\d+)", data[:10000])]
                 if counts != [len(mesh.points), sum(len(block.data) for block in mesh.cells)]:
                     raise ValueError("points or faces are missing")
             if mesh.points.shape[1:] != (3,) and (input.format == "ply" or mesh.points.shape[1:] != (2,)):
-                raise ValueError("its points do not have the coordinates x, y and z one after the other")
+                raise ValueError("the coordinates of its points are not x, y and z, in this order")
     except ImportError:
         raise
     except Exception as error:
@@ -95,7 +94,8 @@ def _read_meshio(input):
 
 
 def read_data(input, tell=True):
-    """The data object in a file of one of VTK's formats, or the mesh in another. Says what is not read of it."""
+    """The data object in a file in one of VTK's formats, or the mesh in another file. Unless `tell` is false, prints
+    the contents that are not read."""
     if input.format in vtkfiles.FORMATS:
         return vtkfiles.read(input)
     points, polygons, others = _read_obj(input) if input.format == "obj" else _read_meshio(input)
@@ -103,7 +103,7 @@ def read_data(input, tell=True):
         inform(f"{input.name}: points and polygons are read, but not {quote(', '.join(others))}.")
     for cell, polygon in enumerate(polygons):
         if not 0 <= min(polygon) <= max(polygon) < len(points):
-            input.fail(f"cell {cell} has the points {quote(polygon)}, but there are {len(points)}, counted from 0.")
+            input.fail(f"cell {cell} has the point ids {quote(polygon)} (from 0), but there are {len(points)} points.")
     return make_mesh(points, polygons)
 
 
@@ -117,31 +117,31 @@ def read(input):
         grid, mesh = mesh, vtkPolyData()
         are_polygons = numpy.isin(vtk_to_numpy(grid.GetCellTypesArray()), (5, 7, 9))
         if not are_polygons.all():
-            input.fail(f"cell {are_polygons.argmin()} is not a polygon: a mesh consists of triangles only.")
+            input.fail(f"cell {are_polygons.argmin()} is not a polygon, but a mesh must consist of triangles.")
         mesh.SetPoints(grid.GetPoints())
         mesh.SetPolys(grid.GetCells())
         mesh.GetPointData().ShallowCopy(grid.GetPointData())
         mesh.GetCellData().ShallowCopy(grid.GetCellData())
     if not isinstance(mesh, vtkPolyData):
-        input.fail(f"it holds a {mesh.GetClassName()}, not a mesh of triangles.")
+        input.fail(f"it contains a {mesh.GetClassName()}, not a mesh of triangles.")
     if mesh.GetNumberOfPolys() == 0 and mesh.GetNumberOfStrips() == 0:
         input.fail("it has no triangles.")
     return mesh
 
 
 def write(mesh, output):
-    """Writes vtkPolyData, and other data to VTK's files."""
+    """Writes a vtkPolyData, or other data to a file in one of VTK's formats."""
     if output.format not in FLAT_WRITE:
         vtkfiles.write(mesh, output)
         return
     if not isinstance(mesh, vtkPolyData):
-        raise Failure(f"A .{output.format} file cannot hold a {mesh.GetClassName()}: write a .vtp or .vtk.", USAGE)
+        raise Failure(f"A .{output.format} file cannot contain a {mesh.GetClassName()}: write a .vtp or .vtk.", USAGE)
     lost = [name for data in (mesh.GetPointData(), mesh.GetCellData()) for name in arrays_of(data) if name != MASK]
     if lost:
-        inform(f"{output.name} holds points and polygons only, not the arrays {quote(', '.join(map(str, lost)))}.")
+        inform(f"{output.name} contains only points and polygons, not the arrays {quote(', '.join(map(str, lost)))}.")
     groups = itertools.groupby(lists_of(mesh.GetPolys()), len)
     blocks = [({3: "triangle", 4: "quad"}.get(size, "polygon"), numpy.array(list(group))) for size, group in groups]
     if output.format == "off" and any(kind != "triangle" for kind, _ in blocks):
-        raise Failure("A .off file holds triangles only: write a .obj.")
+        raise Failure("A .off file can contain only triangles: write a .obj.")
     with _quiet_meshio() as meshio:
         meshio.write_points_cells(output.path, points_of(mesh), blocks)

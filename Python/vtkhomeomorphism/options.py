@@ -17,7 +17,7 @@ from .landmarks import is_landmark_file
 
 
 class Number(click.FloatRange):
-    """A finite number within limits."""
+    """A finite number in a range."""
 
     def convert(self, value, param, context):
         number = super().convert(value, param, context)
@@ -34,7 +34,7 @@ class Size(click.ParamType):
     def convert(self, value, param, context):
         size = re.fullmatch(r"([1-9]\d{0,4})x([1-9]\d{0,4})", value)
         if not size or int(size[1]) * int(size[2]) > LARGEST:
-            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, such as 640x480, 2^32 at most", param, context)
+            self.fail(f"{value} is not WIDTHxHEIGHT in pixels, such as 640x480, at most 2^32 in all", param, context)
         return int(size[1]), int(size[2])
 
 
@@ -47,7 +47,7 @@ def add(*options):
 
 
 def replacing(new, convert, *options):
-    """A decorator that adds options; instead of them, the command takes what `convert` makes of them."""
+    """A decorator that adds options. The command gets the result of `convert`, as `new`, instead of their values."""
 
     def decorate(command):
         @functools.wraps(command)
@@ -66,17 +66,18 @@ quiet = click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Pr
                      callback=lambda context, param, value: set_quiet(value))
 force = click.option("-f", "--force", is_flag=True, help="Replace existing files.")
 inverse = click.option("-i", "--inverse", is_flag=True, help="Map from the target's domain to the source's.")
-mask_option = click.option("--mask-invalid", is_flag=True, help="Leave out invalid triangles, do not refuse the pair.")
+mask_option = click.option("--mask-invalid", is_flag=True,
+                           help="Leave out invalid triangles instead of refusing the pair.")
 format_option = click.option("--input-format", default="", metavar="EXTENSION",
                              help="Format of standard input (-); default: json (pairs), csv (data), png (images).")
 crs = click.option("--crs", metavar="CRS", help="Coordinate reference system of the result, such as EPSG:3067 "
-                   "(default: that of the file of the pair, or of the data).")
+                   "(default: that of the pair, otherwise that of the data).")
 background = click.option("--background", default="", metavar="COLOR", help="Color outside: transparent, a name or "
-                          "#rrggbb (default: transparent or no data; white in .jpg and .ppm).")
+                          "#rrggbb (default: transparent or no data; white in formats without transparency).")
 
 
 def output(help, default, formats, what):
-    """The options --output, --force and --output-format; the command takes `output`, an Output."""
+    """The options --output, --force and --output-format; the command gets `output`, an Output."""
     return replacing(
         "output", lambda output, force, output_format: Output(output, output_format, force, formats, what),
         click.option("-o", "--output", required=True, metavar="FILE", help=help), force,
@@ -84,7 +85,7 @@ def output(help, default, formats, what):
 
 
 def pair_files(names):
-    """The arguments SOURCE [TARGET] ..., and the options for reading the pair. The command takes `inputs`, with the
+    """The arguments SOURCE [TARGET] ..., and the options for reading the pair. The command gets `inputs`, with the
     files of the pair, the other file if there is one, and the options."""
     others = int(names.startswith("SOURCE [TARGET] "))
 
@@ -107,17 +108,18 @@ def pair_files(names):
         click.option("--target-array", default="Target", metavar="NAME",
                      help="Point array with the target's positions if one file has both meshes."),
         click.option("--working-size", type=Size(), metavar="WIDTHxHEIGHT",
-                     help="The size of xmorph's working image, for meshes that do not fill their images."),
+                     help="The size of xmorph's working image, for meshes that do not cover their images."),
         click.option("--scan", default=(), multiple=True, metavar="FILE",
-                     help="The image of landmarks in pixels: its rectangle is the domain (twice: source and target)."),
+                     help="The image to whose pixels the landmarks refer. Its rectangle is the domain. Give the option "
+                     "twice for source and target."),
         click.option("--without", default="", metavar="NAMES", help="Landmarks to leave out, separated by commas: "
-                     "their ids, or their lines in a file without ids."),
+                     "ids, or line numbers in a file without ids."),
         format_option,
     )
 
 
 def read_pair(inputs):
-    """The pair of the inputs of a command. Says what the files were taken for if they are of the wrong kinds."""
+    """The pair of the inputs of a command. If files are of the wrong kinds, the message states how they were used."""
     try:
         return pair.read(inputs.pair, inputs)
     except Failure as failure:
@@ -132,16 +134,17 @@ def map_settings(default):
     return add(
         click.option("-s", "--system", type=click.Choice(list(SYSTEMS), case_sensitive=False),
                      help="Coordinate system: linear (piecewise), contour (as published), smooth (differentiable "
-                          f"except at vertices) or cubic (at vertices too; planar meshes). Default: {default}."),
+                          f"except at vertices) or cubic (also at vertices; planar meshes). Default: {default}."),
         click.option("--bending", "cubic_bending", type=click.Choice(list(BENDINGS)), default="least",
-                     help="Cubic: least bending, or a local map that depends on nearby vertices only."),
+                     help="Cubic: the map of least bending, or a local map, which depends only on nearby vertices."),
         click.option("--max-deviation", "maximum_deviation", type=POSITIVE, metavar="DISTANCE",
-                     help="Cubic and Smooth: greatest distance from Linear, in units of the target."),
+                     help="Cubic and Smooth: largest distance from the images in Linear, in units of the target."),
         click.option("--fairness", "fairness_refinement", type=click.IntRange(0, 4), default=0, metavar="LEVELS",
-                     help="Cubic: how often triangles are divided into four, for less bending."),
+                     help="Cubic: number of times that triangles are divided into four, for less bending."),
         click.option("--linear-where-discordant", "discordant_by_linear", is_flag=True,
                      help="Contour: map discordant triangles by Linear instead of refusing the pair."),
         click.option("--tolerance", type=Number(min=0), default=0.0, metavar="NUMBER",
-                     help="Map points outside, up to this share of the domain's diagonal, like the nearest inside."),
+                     help="Map points outside like the nearest point of the domain, up to this distance relative to "
+                     "the domain's diagonal."),
         mask_option,
     )

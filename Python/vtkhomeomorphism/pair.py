@@ -14,7 +14,7 @@ from .arrays import add_array, as_points, make_mesh, points_of, triangles_of
 from .files import FILE, USAGE, Failure, Input, format_of, inform, quote
 from .landmarks import Landmarks
 
-FORMATS = ("json", "vtp", "vtk")  # formats that hold both meshes
+FORMATS = ("json", "vtp", "vtk")  # formats for both meshes in one file
 
 
 @dataclass
@@ -23,7 +23,7 @@ class Pair:
 
     meshes: list  # source and target, vtkPolyData
     names: list  # their files
-    shift: Optional[tinshift.Shift] = None  # the shift, for a pair from a triangulation file
+    shift: Optional[tinshift.Shift] = None  # the contents of the triangulation file, for a pair from such a file
     extents: Optional[list] = None  # for xmorph meshes: the largest x and y of their images, or None if unknown
     metadata: dict = field(default_factory=dict)  # metadata for writing a triangulation file
     landmarks: Optional[Landmarks] = None  # the landmarks that the pair was made from
@@ -39,7 +39,7 @@ class Pair:
         return self.names[side] if len(set(self.names)) > 1 else f"the {('source', 'target')[side]} of {self.name}"
 
     def crs(self, inverse=False):
-        """The coordinate reference systems of the domains mapped from and to: None if unknown, "" for pixels."""
+        """The coordinate reference systems of points and images: None if unknown, "" for pixels."""
         pixels = "" if self.landmarks and self.landmarks.crs else None
         both = self.metadata.get("input_crs") or pixels, self.metadata.get("output_crs") or None
         return both[::-1] if inverse else both
@@ -54,16 +54,17 @@ class Pair:
     def require_flat(self):
         for mesh, name in zip(self.meshes, self.names):
             if numpy.ptp(points_of(mesh)[:, 2]) != 0:
-                raise Failure(f"{name} is not in a plane parallel to x and y.")
+                raise Failure(f"{name} does not lie in a plane parallel to the x and y axes.")
 
     def fit(self, grids, rasters):
-        """Scales xmorph meshes to the pixel grids of source and target, and hangs rasters that landmarks were set on.
-        Rasters are by the side of their domain. Raises Failure if they are beside their meshes."""
+        """Scales xmorph meshes to the pixel grids of source and target, and moves the origin of rasters with landmarks
+        to the upper left corner. `rasters` maps 0 (source) and 1 (target) to rasters. Raises Failure if they do not
+        overlap their meshes."""
         for side, (grid, end) in enumerate(zip(grids, self.extents or ())):
             if end is None or not (numpy.asarray(end) > 0).all():
-                raise Failure(f"{self.names[side]} does not fill its picture, and does not say how large that is: give "
-                              "the size of xmorph's working picture (--working-size).", USAGE)
-            # Xmorph's units end at the last pixel.
+                raise Failure(f"{self.names[side]} does not cover its image, whose size is not known: give the size of "
+                              "xmorph's working image (--working-size).", USAGE)
+            # The largest coordinate of xmorph is that of the last pixel.
             points = points_of(self.meshes[side])[:, :2] * ((numpy.array(grid.size) - 1) / end)
             self.meshes[side] = make_mesh(points, self.meshes[side].GetPolys())
         for side, raster in rasters.items():
@@ -82,13 +83,13 @@ def are_same_crs(first, second):
 
 
 def read(files, options):
-    """The pair in one file or two. The options are those of options.pair_files."""
+    """The pair in one file or two. `options` has the options of options.pair_files."""
     formats = [options.format or "json" if name == "-" else format_of(name) for name in files]
     if len(files) == 1:
         return _read_one(files[0], options)
     if "json" in formats:
         name = files[formats.index("json")]
-        raise Failure(f"{name} is a triangulation file, which has both source and target: give it alone.", USAGE)
+        raise Failure(f"{name} is a triangulation file, which has both source and target: give no other mesh.", USAGE)
     if "mesh" in formats:
         return _read_xmorph(files, options)
     return Pair([read_mesh(name, options.format) for name in files], list(files))
@@ -107,7 +108,7 @@ def _read_one(name, options):
     positions = source.GetPointData().GetArray(options.target_array)
     if positions is None or positions.GetNumberOfComponents() not in (2, 3):
         raise Failure(f'{names[0]} has no point array "{options.target_array}" of 2 or 3 components with the target\'s '
-                      "positions: give the target's file, too, or name the array (--target-array).", USAGE)
+                      "positions: give the target's file, too, or the array's name (--target-array).", USAGE)
     target = vtkPolyData()
     target.CopyStructure(source)
     target.SetPoints(as_points(vtk_to_numpy(positions).astype(float))[0])
@@ -115,8 +116,8 @@ def _read_one(name, options):
 
 
 def from_landmarks(marks, name, options, **more):
-    """The pair made of landmarks, and the IsomorphicTriangulation. Landmarks of images are in pixels, y down, and
-    become those of images.Grid.hanging(). Says what was made."""
+    """The pair made from landmarks, and the IsomorphicTriangulation. Landmarks in images are in pixels, y downwards;
+    they become coordinates of images.Grid.hanging(). Prints a summary."""
     grids = options.grids[0], None if marks.crs else options.grids[1]
     made = landmarks.triangulate(marks, name, grids, **more)
     metadata = {"output_crs": marks.crs} if marks.crs else {}
@@ -142,10 +143,10 @@ def _read_xmorph(files, options):
                 file.fail(str(error))
         end = xmorph.extent(grid) if xmorph.fills_picture(grid) else None
         if options.working_size:
-            # Tenths of pixels.
+            # In tenths of pixels.
             end = 10.0 * (numpy.array(options.working_size) - 1)
         extents.append(end)
-        # With y upwards.
+        # Let y point upwards.
         bottom = (xmorph.extent(grid) if end is None else end)[1]
         grids.append(numpy.stack((grid[..., 0], bottom - grid[..., 1]), axis=-1))
     try:
@@ -156,7 +157,7 @@ def _read_xmorph(files, options):
 
 
 def write(pair, output):
-    """Writes both meshes to one file of one of FORMATS; the target is the point array Target."""
+    """Writes both meshes to one file in one of FORMATS, the target as the point array Target."""
     points = [points_of(mesh) for mesh in pair.meshes]
     if output.format != "json":
         both = vtkPolyData()
@@ -166,6 +167,6 @@ def write(pair, output):
         return
     for name, array in zip(pair.names, points):
         if array[:, 2].any():
-            raise Failure(f"A triangulation file (.json) holds x and y only, but z is not 0 everywhere in {name}.")
+            raise Failure(f"A triangulation file (.json) has only x and y, but z is not 0 everywhere in {name}.")
     shift = pair.shift or tinshift.Shift(*(array[:, :2] for array in points), triangles_of(pair.source))
     output.write_bytes(tinshift.text_of(replace(shift, metadata=pair.metadata)).encode("utf-8", "surrogateescape"))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plots of pairs by matplotlib."""
+"""Plots of pairs, drawn by matplotlib."""
 
 import io
 
@@ -15,8 +15,8 @@ INVALID, DISCORDANT, DUPLICATE, EDGE = "#d91a1a", "#fabf4d", "#990099", "#33496f
 
 
 def new_figure(width, titles, points, rows=1):
-    """A figure, and axes of shape (rows, titles) of about a width in pixels each: the first row for points, of shape
-    (n, 2), further rows square."""
+    """A figure, and axes of shape (rows, titles), each about `width` pixels wide. Those of the first row fit the
+    points, of shape (n, 2); those of further rows are square."""
     import matplotlib.figure
 
     matplotlib.rcParams.update({"svg.fonttype": "none", "pdf.fonttype": 42})
@@ -40,7 +40,8 @@ def flatten(points):
 
 
 def draw_polygons(axes, mesh, points, cells=None, **style):
-    """Draws polygons of a mesh (all by default) with other, finite points, and returns their centers."""
+    """Draws polygons of a mesh (all by default) with the given points, and returns their centers. Skips polygons with
+    points that are not finite."""
     from matplotlib.collections import PolyCollection
 
     ids = meshes.lists_of(mesh.GetPolys())
@@ -59,7 +60,7 @@ def draw_pair(pair, invalid, discordant):
         draw_polygons(panel, mesh, flat, cells, facecolors=DISCORDANT, edgecolors=DISCORDANT)
         draw_polygons(panel, mesh, flat, facecolors="none", edgecolors=EDGE, linewidths=0.7)
         centers = draw_polygons(panel, mesh, flat, invalid, facecolors=INVALID, edgecolors=INVALID, alpha=0.85)
-        # So that degenerate triangles are seen.
+        # Circles make degenerate triangles visible.
         panel.plot(*centers.T, "o", markersize=9, markerfacecolor="none", markeredgecolor=INVALID)
         _, first, counts = numpy.unique(points_of(mesh), axis=0, return_index=True, return_counts=True)
         panel.plot(*flat[first[counts > 1]].T, ".", color=DUPLICATE, markersize=7)
@@ -72,7 +73,7 @@ def draw_pair(pair, invalid, discordant):
 def save(figure, output):
     with output.writing():
         metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(output.format)
-        # Matplotlib fails in many ways on full disks.
+        # Writing to memory first avoids the various failures of matplotlib on full disks.
         buffer = io.BytesIO()
         figure.savefig(buffer, format=output.format, dpi=DPI, metadata=metadata, bbox_inches="tight")
         output.write_bytes(buffer.getbuffer())

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report of vtkTriangulationPairReport in words, and validation of pairs."""
+"""The results of vtkTriangulationPairReport for dhm check, and validation of pairs."""
 
 import re
 from dataclasses import replace
@@ -15,14 +15,14 @@ from .vtkfiles import take_messages
 
 OPTIONS = {"MaskInvalidTriangles": "--mask-invalid", "DiscordantTriangles": "--linear-where-discordant",
            "FairnessRefinement": "--fairness", "CubicBending": "--bending", "Tolerance": "--tolerance"}
-"""What options that messages of filters name are called here."""
+"""The names of options in messages of filters, and those of dhm."""
 ADVICE = {
     "Triangulate": "Write both meshes to one file (dhm convert -o both.vtp), and triangulate that (ParaView's "
                    "Triangulate), so that both are cut along the same diagonals.",
     "RepairOrMask": "Repair them in both meshes, or leave them out (--mask-invalid).",
     "MovePointsOrMask": "Move points, or leave them out (--mask-invalid).",
 }
-"""What to do, by remedies that the filters word for programs."""
+"""Remedies whose text in the filters is for programs, and the text for users of dhm."""
 
 
 def in_words(name):
@@ -49,7 +49,7 @@ class Report:
         return [] if array is None else numpy.flatnonzero(vtk_to_numpy(array) == value).tolist()
 
     def problems(self):
-        """The defects, a dict for each kind and mesh, with all cell ids and a message."""
+        """The defects, one dict for each kind and mesh, with all cell ids and a message."""
         table, result = self.filter.GetDefects(), []
         ids = table.GetFieldData().GetAbstractArray("Ids")
         for i in range(table.GetNumberOfRows()):
@@ -64,8 +64,8 @@ class Report:
         return result
 
     def statistics(self):
-        """The filter's statistics for JSON: a dict, with one each of the source, the target and the systems in it.
-        Values that occur in a cell are dicts with value and cell; what was not measured is left out."""
+        """The filter's statistics for JSON: a dict that contains one dict each for the source, the target and the
+        systems. Values that occur in a cell are dicts with value and cell; values not measured are left out."""
         table, groups = self.filter.GetStatistics(), ("source", "target", *SYSTEMS)
         columns = {table.GetColumnName(k): table.GetColumn(k) for k in range(table.GetNumberOfColumns())}
         result = {name: {} for name in groups}
@@ -84,7 +84,7 @@ class Report:
 
 
 def require_map(pair, mask_invalid=False):
-    """The pair, without its invalid triangles on request. Raises Failure, with all defects, if it does not define a
+    """The pair, on request without its invalid triangles. Raises Failure, with all defects, if it does not define a
     map."""
     report = Report(pair)
     if report.valid:

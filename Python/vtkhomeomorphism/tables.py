@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of points as text. All fields keep their text, to the last digit, except changed coordinates."""
+"""Text tables of points. The text of all fields is kept, except that of changed coordinates."""
 
 import csv
 import re
@@ -17,13 +17,13 @@ USUAL_NAMES = [
         "longitude latitude, long lat, lon lat, lng lat"
     ).split(", ")
 ]
-"""What coordinates are called; the first that a table has are taken."""
+"""Usual names of coordinates. The first entry that a table has is used."""
 HEIGHT_NAMES = ("z", "h", "height", "altitude", "alt", "elevation", "elev", "hoehe", "höhe")
 ENCODING = {"errors": "surrogateescape", "newline": ""}
 
 
 def records(lines, separator):
-    """Yields the number of the first line, from 1, and the fields of each row that is not empty. Raises csv.Error."""
+    """Yields the number of the first line (from 1) and the fields of each row that is not empty. Raises csv.Error."""
     if separator == " ":
         fields = ([field[1:-1].replace('""', '"') if field[0] == '"' else field
                    for field in re.findall(r'"(?:[^"]|"")*"|\S+', line)] for line in lines)
@@ -37,7 +37,7 @@ def records(lines, separator):
 
 
 def number_of(text):
-    """A number, or None. Excludes notations that only Python accepts."""
+    """The number in a text, or None. Notations that only Python accepts are excluded."""
     try:
         value = float(text)
     except ValueError:
@@ -49,9 +49,9 @@ class Table:
     """A table of points.
 
     columns : text
-        Names or numbers (from 1) of the coordinate columns, separated by commas; empty: those with usual names.
+        Names or numbers (from 1) of the coordinate columns, separated by commas. Empty: columns with usual names.
     with_height : bool
-        Whether a third coordinate may be a column with the usual name of a height.
+        Whether a column with a usual name of heights may be the third coordinate.
     """
 
     def __init__(self, input, columns="", with_height=False):
@@ -76,8 +76,8 @@ class Table:
         self.columns = self._choose_named(columns) if columns else self._choose(with_height)
         if self.names is None and all(number_of(self.first[column]) is None for column in self.columns):
             if not columns:
-                input.fail(f"none of its columns ({self._list()}) has a name that is usual for coordinates, such as x "
-                           "and y: name them (--columns).")
+                input.fail(f"none of its columns ({self._list()}) has a usual name for coordinates, such as x and y: "
+                           "name the columns (--columns).")
             self.names = self.first
         if len(rows) == (self.names is not None):
             input.fail("it has no points.")
@@ -86,7 +86,7 @@ class Table:
         self.coordinates = numpy.column_stack([self._numbers(column) for column in self.columns])
 
     def _find(self, name):
-        """The column with a name, or else with the same in another case, or None."""
+        """The column with a name, otherwise one whose name differs only in case, otherwise None."""
         if name in self.first:
             return self.first.index(name)
         simple, name = [field.strip().lower() for field in self.first], name.strip().lower()
@@ -100,13 +100,13 @@ class Table:
                 heights = [self._find(name) for name in HEIGHT_NAMES] if with_height and len(found) == 2 else []
                 return found + [column for column in heights if column is not None][:1]
         if len(self.first) < 2:
-            self.input.fail("it has only one column: points need two coordinates.")
+            self.input.fail("it has only one column, but points need two coordinates.")
         return [0, 1] + [2] * (with_height and len(self.first) > 2 and number_of(self.first[2]) is not None)
 
     def _choose_named(self, columns):
         chosen = []
         for name in columns.split(","):
-            # A number is not a name: in a table without names it may be a coordinate.
+            # A number is never a name: in a table without names, it may be a coordinate.
             is_number = re.fullmatch(r"\s*\d+\s*", name)
             column = int(name) - 1 if is_number else self._find(name)
             if column is None or not 0 <= column < len(self.first) or column in chosen:
@@ -133,7 +133,7 @@ class Table:
         return values
 
     def move(self, points):
-        """Replaces the coordinates. Unchanged ones keep their text."""
+        """Replaces the coordinates. The text of unchanged ones is kept."""
         for k, column in enumerate(self.columns):
             changed = points[:, k] != self.coordinates[:, k]
             for row in numpy.flatnonzero(changed).tolist():
@@ -152,7 +152,7 @@ class Table:
 
     def write(self, output):
         """Writes the table with its original separator."""
-        # What would be taken for a comment or a byte order mark is quoted, and fields between blanks.
+        # Quote text that would be read as a comment or a byte order mark, and fields that are separated by blanks.
         quoted = (self.names or self.fields[0])[0][:1] in ("#", "\ufeff") or self.separator == " " and any(
             not text or "\t" in text for column in self.fields for text in column)
         with open(output.path, "w", encoding="utf-8", **ENCODING) as file:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""PROJ's triangulation files ("tinshift"), in which national coordinate shifts are published:
+"""PROJ's triangulation files ("tinshift"), a format of published coordinate shifts:
 https://proj.org/en/stable/specifications/triangulation.html"""
 
 import json
@@ -22,24 +22,24 @@ class Shift:
     """The contents of a triangulation file."""
 
     source: numpy.ndarray  # vertices in the source, of shape (n, 2)
-    target: numpy.ndarray  # the same in the target; the source's own of a file that shifts heights only
+    target: numpy.ndarray  # vertices in the target; equal to the source if the file shifts only heights
     triangles: numpy.ndarray
     heights: dict = field(default_factory=dict)
-    """The heights in the file's own columns: offset_z, or source_z and target_z."""
+    """The columns of heights: offset_z, or source_z and target_z."""
     horizontal: bool = True
     fallback: str = "none"
     metadata: dict = field(default_factory=dict)
-    """The file without its vertices and triangles, members in the file's order."""
+    """The members of the file in its order, without vertices and triangles."""
 
     @property
     def offsets(self) -> Optional[numpy.ndarray]:
-        """What is added to heights, of shape (n,), if the file shifts them."""
+        """The changes of heights at the vertices, of shape (n,); None if the file does not shift heights."""
         if "target_z" in self.heights:
             return self.heights["target_z"] - self.heights["source_z"]
         return self.heights.get("offset_z")
 
     def interpolate(self, values, points, cells, inverse=False):
-        """Values at the vertices, interpolated linearly at points in triangles, as PROJ computes it."""
+        """Values at the vertices, interpolated linearly at points in triangles, with the formula of PROJ."""
         corners = (self.target if inverse else self.source)[self.triangles[cells]]
         (x1, y1), (x2, y2), (x3, y3) = (corners[:, k].T for k in range(3))
         x, y = points[:, 0] - x3, points[:, 1] - y3
@@ -63,15 +63,15 @@ class Shift:
             else:
                 t = ((point - corners) * (ends - corners)).sum(axis=2) / numpy.maximum(squared, 1e-10)
                 foot = corners + t.clip(0, 1)[..., None] * (ends - corners)
-                # Exactly the vertex at the ends, so that triangles that share it are equally far.
+                # Use exactly the vertex at the ends, so that triangles that share it have equal distances.
                 foot = numpy.where((t >= 1)[..., None], ends, foot)
                 distances = ((point - foot) ** 2).sum(axis=2).min(axis=1)
             result[i] = numpy.where(usable, distances, numpy.inf).argmin()
         return result
 
     def complete(self, points, images, cells, inverse=False):
-        """Changes the images of points, of shape (n, 3), in triangles (-1: outside), as PROJ does: shifts heights, and
-        maps points outside by the fallback strategy. Returns a mask of these if there is a strategy."""
+        """Changes the images, of shape (n, 3), of points in triangles `cells` (-1: outside) as PROJ does: shifts
+        heights, and maps points outside by the fallback strategy. Returns a mask of these points if there is one."""
         flat, fallback = points[:, :2], None
         if self.fallback != "none":
             outside = numpy.flatnonzero((cells < 0) & numpy.isfinite(flat).all(axis=1))
@@ -85,17 +85,17 @@ class Shift:
             images[inside, :2] = flat[inside]
         images[:, 2] = points[:, 2]
         if self.offsets is not None:
-            # By the position in the source, in both directions.
+            # In both directions, the change depends on the position in the source.
             change = self.interpolate(self.offsets, (images if inverse else points)[inside, :2], cells[inside])
             images[inside, 2] += -change if inverse else change
         return fallback
 
 
 def _take_columns(file, document, member, names):
-    """Columns of an array of rows, as a float array of shape (rows, names)."""
+    """Columns of an array of rows, as an array of float of shape (rows, names)."""
     rows, columns = (document.pop(name, None) for name in (member, member + "_columns"))
     if not (isinstance(rows, list) and isinstance(columns, list)):
-        file.fail(f'there are no arrays "{member}" and "{member}_columns": this is not a triangulation file.')
+        file.fail(f'it has no arrays "{member}" and "{member}_columns": this is not a triangulation file.')
     missing = [name for name in names if name not in columns]
     if missing:
         file.fail(f'"{member}_columns" has no column "{missing[0]}".')
@@ -112,14 +112,14 @@ def _take_columns(file, document, member, names):
 
 
 def read(file):
-    """The shift in an input of format 1.x. Raises Failure, naming the line or the member."""
+    """The contents of a file of format 1.x. Raises Failure with the line or the member."""
     with open(file.path, encoding="utf-8-sig", errors="replace") as opened:
         text = opened.read()
-    # Brackets outside of strings. What Python's parser accepts, and how fast it fails, depends on its version.
+    # Count brackets outside strings: the depth that Python's parser accepts depends on its version.
     signs = numpy.frombuffer(re.sub(r'"(?:[^"\\]|\\.)*"', "", text).encode(), numpy.uint8)
     steps = numpy.isin(signs, list(b"[{")).astype(int) - numpy.isin(signs, list(b"]}"))
     if numpy.cumsum(steps).max(initial=0) > DEEPEST:
-        file.fail("its arrays are nested too deep for a triangulation file.")
+        file.fail("its arrays are nested too deeply for a triangulation file.")
     try:
         document = json.loads(text)
     except json.JSONDecodeError as error:
@@ -158,7 +158,7 @@ def read(file):
 
 
 def text_of(shift):
-    """The text of the file, with one vertex or triangle per line and all digits of numbers."""
+    """The text of the file, with one vertex or triangle per line, and with all digits of numbers."""
     columns = dict(zip(("source_x", "source_y"), shift.source.T))
     if shift.horizontal:
         columns.update(zip(("target_x", "target_y"), shift.target.T))

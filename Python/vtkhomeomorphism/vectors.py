@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vector data (GeoPackage, GeoJSON, Shapefile, FlatGeobuf) by geopandas: geometries are mapped vertex by vertex,
-attributes and layers are kept."""
+"""Vector data (GeoPackage, GeoJSON, Shapefile, FlatGeobuf), read and written by geopandas. Geometries are mapped vertex
+by vertex; attributes and layers are kept."""
 
 import contextlib
 import copy
@@ -16,8 +16,8 @@ MARK = "outside"  # the column of features that are not within the domain; their
 
 
 def read(input):
-    """The layers of a file by name, GeoDataFrames; tables without geometry may be DataFrames. With geopandas before
-    1.0, their attrs have the schema, because frames know less of the columns' types."""
+    """The layers of a file, a dict from names to GeoDataFrames; tables without geometry may be DataFrames. With
+    geopandas before 1.0, their attrs have the schema, which has more information about the types of columns."""
     import geopandas
 
     try:
@@ -61,13 +61,13 @@ def _write_layer(frame, path, driver, **options):
 
 
 def write(layers, output):
-    """Writes layers to one file; only GeoPackage holds several."""
+    """Writes layers to one file; only GeoPackage can contain several."""
     tables = [name for name in layers if is_table(layers[name])]
     if tables and output.format != "gpkg":
-        inform(f"{output.name} holds no tables without geometry: {', '.join(tables)} is left out.")
+        inform(f"{output.name} cannot contain tables without geometry: {', '.join(tables)} is left out.")
         layers = {name: layer for name, layer in layers.items() if name not in tables}
     if len(layers) > 1 and output.format != "gpkg":
-        raise Failure(f"{output.name} can hold one layer, not {len(layers)} ({', '.join(layers)}): write a .gpkg.")
+        raise Failure(f"{output.name} can contain one layer, not {len(layers)} ({', '.join(layers)}): write a .gpkg.")
     try:
         # GDAL's messages are in the exceptions.
         with contextlib.redirect_stderr(io.StringIO()):
@@ -81,16 +81,16 @@ def write(layers, output):
 
 
 def divide(points, step):
-    """A polygonal line of shape (n, 2) or (n, 3), with points added so that no segment is longer than a step."""
+    """A polygonal line of shape (n, 2) or (n, 3), with points added so that no segment is longer than `step`."""
     parts = numpy.maximum(1, numpy.ceil(numpy.hypot(*numpy.diff(points[:, :2], axis=0).T) / step)).astype(int)
     ends = numpy.concatenate(([0], numpy.cumsum(parts)))
     return numpy.column_stack([numpy.interp(numpy.arange(ends[-1] + 1), ends, column) for column in points.T])
 
 
 def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None):
-    """The layers with each vertex mapped, once for all of them: `map_points` takes an array of shape (n, 3) and returns
-    images, NaN outside. Their coordinate reference system becomes `target_crs`; with None it stays, with "" there is
-    none. Returns the layers, and the number of features that are not entirely inside the domain."""
+    """Maps the vertices of layers, all in one call: `map_points` maps an array of shape (n, 3) to the images, NaN
+    outside. The coordinate reference system becomes `target_crs`; None keeps it, and "" removes it. Returns the layers,
+    and the number of features that are not entirely inside the domain."""
     from shapely.ops import transform
 
     collected, lost = [], []
@@ -110,7 +110,7 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
         return tuple((numpy.zeros_like(part) if lost[-1] else part).T[: len(coordinates)])
 
     def map_shape(shape):
-        """The mapped shape, and whether a part of it is outside; it is empty then."""
+        """The mapped shape, and whether a part of it is outside; if so, the shape is empty."""
         lost.clear()
         mapped = change(place, shape)
         return (type(shape)() if any(lost) else mapped), any(lost)
@@ -125,8 +125,8 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
             result[name] = layer
             continue
         if source_crs and layer.crs and layer.crs != source_crs:
-            inform(f"Layer {name}: its coordinate reference system is {layer.crs.to_string()}, but the map is from "
-                   f"{source_crs}.")
+            inform(f"Layer {name}: its coordinate reference system is {layer.crs.to_string()}, but that of the map's "
+                   f"domain is {source_crs}.")
         shapes, marks = zip(*map(map_shape, divided[name])) if divided[name] else ((), ())
         result[name] = layer.set_geometry(list(shapes), crs=layer.crs)
         result[name].attrs = copy.deepcopy(layer.attrs)
@@ -135,8 +135,8 @@ def map_layers(layers, map_points, densify=0.0, source_crs=None, target_crs=None
             try:
                 result[name].crs = target_crs or None
             except Exception:
-                raise Failure(f"The coordinate reference system {quote(target_crs)} is not known: give another "
-                              "(--crs).", USAGE) from None
+                raise Failure(f"Unknown coordinate reference system {quote(target_crs)}: give another one (--crs).",
+                              USAGE) from None
         if any(marks):
             if MARK in layer.columns:
                 inform(f"Layer {name}: the column {MARK} is replaced.")

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's readers and writers. Run as `python -m vtkhomeomorphism.vtkfiles FILE FORMAT SECONDS` it reads a file and
-reports success: damaged files crash some of VTK's readers or block them for minutes, so a child process tries first."""
+"""VTK's readers and writers. Damaged files crash some of VTK's readers or block them for minutes, so a child process
+reads each file first: `python -m vtkhomeomorphism.vtkfiles FILE FORMAT SECONDS` reads a file and reports success."""
 
 import os
 import re
@@ -22,16 +22,16 @@ from vtkmodules.vtkIOGeometry import vtkSTLReader
 from .files import FILE, USAGE, Failure, quote
 
 FORMATS = ("vtp", "vtu", "vts", "vtr", "vti", "vtm", "vtmb", "vtpd", "vtpc", "vtk", "stl")
-SECONDS, SECONDS_A_MEGABYTE = 10, 2  # of processor time for reading
+SECONDS, SECONDS_A_MEGABYTE = 10, 2  # limits of the processor time for reading
 
 def capture_messages():
-    """Keeps VTK's errors and warnings from standard error."""
+    """Captures VTK's errors and warnings instead of printing them."""
     vtkOutputWindow.SetInstance(vtkStringOutputWindow())
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
 
 
 def take_messages():
-    """What was captured since the last call, without VTK's prefixes, the positions in its source."""
+    """The messages captured since the last call, without VTK's prefixes (positions in the source)."""
     window = vtkOutputWindow.GetInstance()
     text = window.GetOutput() if isinstance(window, vtkStringOutputWindow) else ""
     capture_messages()
@@ -40,7 +40,7 @@ def take_messages():
 
 
 def _read(path, format):
-    """Data and errors. Warnings count as errors, because many readers only warn of missing data."""
+    """Data and errors. Warnings are treated as errors, because many readers only warn of missing data."""
     take_messages()
     if format == "vtk":
         reader = legacy.vtkGenericDataObjectReader()
@@ -63,7 +63,7 @@ def leaves_of(data):
 
 
 def _find_bad_cell(data):
-    """A defect of the point ids of cells, which VTK's readers do not check. They would be read out of bounds."""
+    """A defect of the point ids of cells, which VTK's readers do not check, and which would be used out of bounds."""
     for leaf in leaves_of(data):
         last = leaf.GetNumberOfPoints() - 1
         for name in ("Verts", "Lines", "Polys", "Strips", "Cells"):
@@ -71,7 +71,7 @@ def _find_bad_cell(data):
             if cells is None or cells.GetNumberOfCells() == 0:
                 continue
             if not cells.IsValid():
-                return "the offsets that say where each cell's points begin are wrong."
+                return "the offsets of its cells are invalid."
             ids, offsets = (vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
             sizes, bad = numpy.diff(offsets), numpy.flatnonzero((ids < 0) | (ids > last))
             if len(bad):
@@ -83,26 +83,26 @@ def _find_bad_cell(data):
 
 
 def read(input):
-    """The data object in a file of one of FORMATS. Raises Failure."""
+    """The data object in a file in one of FORMATS. Raises Failure."""
     limit = int(SECONDS + SECONDS_A_MEGABYTE * os.path.getsize(input.path) / 1e6)
     command = [sys.executable, "-m", __spec__.name, input.path, input.format, str(limit)]
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
     child = subprocess.run(command, env=environment, capture_output=True)
     if child.returncode not in (0, 1):
         what = f"takes longer than {limit} seconds" if child.returncode == -signal.SIGXCPU else "crashes"
-        input.fail(f"VTK's reader {what}: the file is damaged or has been cut off.")
+        input.fail(f"VTK's reader {what}: the file is damaged or truncated.")
     if child.returncode == 1:
         input.fail_by(child.stdout.decode("utf-8", "replace"))
     return _read(input.path, input.format)[0]
 
 
 def write(data, output):
-    """Writes a data object to a .vtk, or to the XML file of its type. (Via memory, because on full disks some writers
-    of VTK 9.1 crash and others do not report an error.)"""
+    """Writes a data object to a .vtk file, or to the XML file of its type. It is first written to memory, because on
+    full disks some writers of VTK 9.1 crash and others do not report an error."""
     writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
     right = writer.GetDefaultFileExtension() if writer else "vtk"
     if output.format not in ("vtk", right):
-        raise Failure(f"A .{output.format} file cannot hold a {data.GetClassName()}: use a .{right}.", USAGE)
+        raise Failure(f"A .{output.format} file cannot contain a {data.GetClassName()}: use a .{right}.", USAGE)
     take_messages()
     if output.format == "vtk":
         writer = legacy.vtkGenericDataObjectWriter()
@@ -113,8 +113,8 @@ def write(data, output):
                  for i in range(attributes.GetNumberOfArrays())}
         wrong = [name for name in names if set(name) & set("&<>\"'")]
         if wrong:
-            raise Failure(f"The name of the array {quote(wrong[0])} has a character that VTK's XML files cannot hold "
-                          "(& < > \" '): rename it, or write a .vtk.")
+            raise Failure(f"The name of the array {quote(wrong[0])} has a character that VTK's XML files do not "
+                          "support (& < > \" '): rename the array, or write a .vtk.")
         # VTK before 9.4 cannot read appended data with every version of expat.
         writer.SetDataModeToBinary()
     writer.WriteToOutputStringOn()
@@ -134,6 +134,6 @@ if __name__ == "__main__":
         resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[3]), int(sys.argv[3]) + 5))
         found = _read(*sys.argv[1:3])[1]
     except MemoryError:
-        found = "it asks for more memory than there is."
+        found = "it requires more memory than is available."
     sys.stdout.buffer.write(found.encode("utf-8", "replace"))
     sys.exit(1 if found else 0)

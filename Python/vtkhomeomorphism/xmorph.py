@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes of xmorph and gtkmorph: grids of quadrilaterals placed on two photographs by hand. Rows run from the top,
-y downwards."""
+"""Meshes of xmorph and gtkmorph: grids of quadrilaterals, placed on two photographs by hand. The first row is at the
+top, and y points downwards."""
 
 import re
 
@@ -9,11 +9,11 @@ import numpy
 
 
 def read(path):
-    """The grid's points, of shape (rows, columns, 2). Raises ValueError, naming the line."""
+    """The points of the grid, of shape (rows, columns, 2). Raises ValueError with the number of the line."""
     with open(path, encoding="utf-8", errors="replace") as text:
         header = re.fullmatch(r"M2\s*\n\s*([1-9]\d{0,3})\s+([1-9]\d{0,3})\b.*\n?", text.readline() + text.readline())
         if not header or "1" in header.groups():
-            raise ValueError("expected M2 in line 1, and in line 2 the numbers of columns and rows, 2 to 9999.")
+            raise ValueError("expected M2 in line 1, and the numbers of columns and rows, 2 to 9999, in line 2.")
         columns, rows = map(int, header.groups())
         lines = text.readlines()[: columns * rows]
     points = []
@@ -32,8 +32,8 @@ def extent(grid):
 
 
 def fills_picture(grid):
-    """Whether the boundary is the rectangle from the origin to the largest x and y, up to one pixel. Then it becomes
-    exactly that."""
+    """Whether the boundary is the rectangle from the origin to the largest x and y, up to one pixel. If so, moves it
+    onto that rectangle."""
     end = extent(grid)
     rims = ((grid[0, :, 1], 0), (grid[-1, :, 1], end[1]), (grid[:, 0, 0], 0), (grid[:, -1, 0], end[0]))
     fills = all((numpy.abs(rim - value) <= 0.005 * end.max()).all() for rim, value in rims)
@@ -51,11 +51,11 @@ def _smallest_angle(grid, triangles):
 
 
 def triangulate(first, second):
-    """Divides each quadrilateral along the diagonal with the larger smallest angle in both grids (y upwards)."""
+    """Divides each quadrilateral along the diagonal that gives the larger minimum angle in both grids (y upwards)."""
     if first.shape != second.shape:
         raise ValueError("the two meshes do not have the same numbers of columns and rows.")
     ids = numpy.arange(first[..., 0].size).reshape(first.shape[:2])
-    # The corners a, b and below them d, c.
+    # The corners are a and b, and below them d and c.
     a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
     cuts = [numpy.stack(corners, axis=1).reshape(-1, 2, 3) for corners in ((a, b, c, a, c, d), (a, b, d, b, c, d))]
     along_ac, along_bd = (

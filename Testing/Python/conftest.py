@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command dhm as a process, in a folder for each test that it must leave in order."""
+"""Runs the command dhm as a process, in a separate folder for each test, and checks that it leaves no files behind."""
 
 import collections
 import io

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far the differentiable maps stray from the piecewise linear one when MaximumDeviation limits them. Run as a
-program, it prints the table of Documentation/cubic.md; a part of it is a test."""
+"""Measures the distance of the differentiable maps from the piecewise linear one if MaximumDeviation limits it. As a
+program, prints the table of Documentation/cubic.md; test_deviation.py runs a part of it."""
 
 import sys
 
@@ -15,8 +15,8 @@ MAPS = {"SMOOTH": ("smooth", {}), "CUBIC, LOCAL": ("cubic", {"cubic_bending": "l
 
 
 def make_network(points=300, size=100e3, noise=0.05, seed=4):
-    """A national network: coordinates of seven digits, a smooth shift of meters, noise of centimeters, and a point
-    beside the middle of every tenth edge, so that needles of 1000:1 and more arise."""
+    """A generated national network: coordinates of seven digits, a smooth shift of meters, noise of centimeters, and a
+    point beside the middle of every tenth edge, which makes needles with aspect ratios of more than 1000:1."""
     random = numpy.random.default_rng(seed)
     source = random.uniform(0, size, (points, 2))
     edges = scipy.spatial.Delaunay(source).simplices[::10, :2]

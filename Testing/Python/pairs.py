@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pairs of meshes for tests, what numpy makes of them, and files of them written by hand or by other libraries."""
+"""Pairs of meshes for tests, computations on them by numpy, and their files, written here or by other libraries."""
 
 import collections
 import csv

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Cubic map beside the least-bending Clough-Tocher interpolant (matplotlib's CubicTriInterpolator, kind="min_E") of
-the same pairs. Prints the table of Documentation/cubic.md; fails if a Cubic map is not certified."""
+"""Compares the Cubic map with the least-bending Clough-Tocher interpolant (matplotlib's CubicTriInterpolator,
+kind="min_E") of the same pairs. Prints the table of Documentation/cubic.md. Fails if a Cubic map is not certified."""
 
 import pathlib
 import sys

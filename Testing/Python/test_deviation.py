@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""MaximumDeviation of the Smooth and the Cubic map, on a made network, and on real data where it is there."""
+"""MaximumDeviation of the Smooth and the Cubic map, on a generated network, and on real data if it is available."""
 
 import deviation
 import numpy

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What every command promises about files: outputs whole or absent, nothing overwritten, pipes, interrupts, damaged
-files; and meshes of many formats, with meshio as an independent writer."""
+"""Properties of all commands with respect to files: complete outputs or none, no overwriting, pipes, interrupts,
+damaged files; and meshes in many formats, with meshio as an independent writer."""
 
 import json
 import os
@@ -287,7 +287,7 @@ def test_command_line(dhm, pair):
     dhm.refuse(USAGE, "map", "pair.json", "-o", "new.csv", says="SOURCE [TARGET] DATA")
     write_mesh(dhm.path("a.off"), pair.source, pair.triangles)
     dhm.refuse(USAGE, "map", "points.csv", "pair.json", "-o", "new.vtp", says="pair.json was taken for DATA")
-    dhm.refuse(USAGE, "check", "pair.json", "pair.json", says="alone")
+    dhm.refuse(USAGE, "check", "pair.json", "pair.json", says="no other mesh")
     arguments = ("map", "pair.json", "points.csv", "-o", "new.csv")
     dhm.refuse(USAGE, *arguments, "--system=bicubic", says=("--system", "smooth", "bicubic"))
     for tolerance in ("-1", "nan", "inf", "x"):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""dhm map on vector data, with geopandas, and GDAL's own ogrinfo, as independent readers."""
+"""dhm map of vector data, with geopandas and GDAL's ogrinfo as independent readers."""
 
 import shutil
 import sqlite3

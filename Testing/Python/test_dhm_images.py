@@ -252,7 +252,7 @@ def test_meshes_beside_the_image(dhm, pair, image):
         dhm.refuse(REFUSED, "warp", *options, "beside.json", "image.png", "-o", "new.png",
                    says=("image.png", "beside.json", "x from 1000 to 1001", "do not overlap"))
     write_json(dhm.path("unit.json"), small)
-    assert "less than a hundredth" in dhm("warp", "unit.json", "image.png", "-o", "unit.png").err
+    assert "less than 1 %" in dhm("warp", "unit.json", "image.png", "-o", "unit.png").err
     write_json(dhm.path("pair.json"), pair)
     assert dhm("warp", "-s", "smooth", "pair.json", "image.png", "-o", "pair.png").err == ""
 

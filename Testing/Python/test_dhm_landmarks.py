@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""dhm on landmark pairs: pairs made of them, and the georeferencing of a generated scan whose truth is known, with
+"""dhm with landmarks: the pairs made from them, and the georeferencing of a generated scan with a known map, with
 GDAL's programs as independent readers."""
 
 import json
@@ -79,7 +79,7 @@ def test_landmarks_are_called_by_their_lines_as_in_errors(dhm):
     rows = [",".join(map(repr, row)) for row in numpy.hstack((source, target)).tolist()]
     dhm.path("marks.csv").write_text("\n".join(["source_x,source_y,target_x,target_y", "", *rows]) + "\n")
     said = dhm("check", "marks.csv", "--quick").err
-    assert re.search(r"put them: 20 \(.*ids \(the numbers of their lines", said)
+    assert re.search(r"neighbors: 20 \(.*ids \(line numbers", said)
     assert "left out: 20 (on request)" in dhm("check", "marks.csv", "--quick", "--without", "20").err
     dhm.path("marks.csv").write_text(dhm.path("marks.csv").read_text().replace(rows[17], rows[17] + ",7"))
     dhm.refuse(FILE, "check", "marks.csv", says="line 20")
@@ -240,7 +240,7 @@ def test_conflicts_and_necessary_points_are_named(dhm):
     write_landmarks(dhm.path("narrow.csv"), *2 * [[[0, 0], [1, 0], [1, 0.01], [0, 1]]])
     narrow = dhm("triangulate", "narrow.csv", "--target-angle", "50", "--maximum-added-points", "1",
                  "-o", "narrow.json")
-    assert "misses --target-angle 50" in narrow.err
+    assert "less than --target-angle 50" in narrow.err
     assert "line 1 is left out" in dhm(*words, "--leave-out-conflicts").err
     # Landmarks that change places on a line, between others: not without a point.
     random = numpy.random.default_rng(2)
@@ -287,7 +287,7 @@ def test_mistyped_control_points_are_the_first_of_the_list(dhm, scan, points):
     disabled = re.search(r"4 landmarks left out: (.*)\.", said)[1].split(", ")
     assert all(name.endswith(" (disabled)") and lines[int(name.split()[0]) - 1].split(",")[4] == "0"
                for name in disabled)
-    listed = re.findall(r"(\d+) \([0-9.e+]+\)", said.split("put them:")[1])
+    listed = re.findall(r"(\d+) \([0-9.e+]+\)", said.split("neighbors:")[1])
     assert sorted(listed[:2]) == sorted(wrong)
 
 

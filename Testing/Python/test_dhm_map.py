@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""dhm map and dhm coordinates: what they compute, against numpy, and tables in and out."""
+"""dhm map and dhm coordinates: comparison with numpy, and reading and writing of tables."""
 
 import csv
 import io

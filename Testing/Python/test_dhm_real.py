@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""dhm on real data: Finland's published shift against PROJ's own tinshift, photographs, and inputs that failed once.
-Without the files (environment variable DHM_SHARED_DATA, or ../shared/data) these tests are skipped."""
+"""dhm with real data: Finland's published shift compared with PROJ's tinshift, photographs, and inputs that revealed
+defects. The tests are skipped without the files (in the folder DHM_SHARED_DATA, by default ../shared/data)."""
 
 import json
 import pathlib

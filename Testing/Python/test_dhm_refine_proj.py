@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A refined pair in PROJ itself: its piecewise linear map, evaluated by cct, is within the maximum error of Smooth."""
+"""A refined pair in PROJ: its piecewise linear map, evaluated by cct, is within the maximum error of Smooth."""
 
 import json
 import os

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Examples/Interactive/landmarks.py, driven by events of a mouse in a process of its own, under a virtual display where
-there is none. As a script this file is that process:
+"""Runs Examples/Interactive/landmarks.py in a separate process and sends it mouse events, with a virtual display if
+there is none. As a script, this file is that process:
 
-    test_interactive.py [PICTURE.png]     prints frames a second, of the clock and of the processor
+    test_interactive.py [PICTURE.png]     prints frames per second of elapsed time and of processor time
 """
 
 import os

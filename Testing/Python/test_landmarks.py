@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of landmark pairs: each format, what is left out, and what is refused."""
+"""Files of landmarks: each format, landmarks that are left out, and files that are refused."""
 
 import json
 import os

@@ -23,7 +23,7 @@ def show(value):
 
 
 def print_table(columns):
-    """A table of dicts side by side, with a row for each member."""
+    """Prints dicts as the columns of a table, with a row for each key."""
     hidden = re.compile("file|valid|measured|problems|.*_[xyz]")
     rows = dict.fromkeys(name for column in columns.values() for name in column if not hidden.fullmatch(name))
     if rows:
@@ -35,7 +35,7 @@ def print_table(columns):
 
 @click.command("check")
 @click.option("--json", "as_json", is_flag=True, help="Write the report as JSON, with all cell ids.")
-@click.option("--quick", is_flag=True, help="Validate the meshes only; do not measure determinants and continuity.")
+@click.option("--quick", is_flag=True, help="Only validate the meshes; do not measure the maps.")
 @click.option("--plot", default="", metavar="FILE", help="Plot the pair and mark invalid triangles: .png .svg .pdf.")
 @options.force
 @options.pair_files("SOURCE [TARGET]")
@@ -43,8 +43,8 @@ def command(inputs, as_json, quick, plot, force):
     """Validate a pair of meshes and measure its maps.
 
     The exit status is 0 if the pair is valid, otherwise 1. Invalid triangles are not measured. A crease is an interior
-    edge at which the derivatives on the two sides differ, as measured from values of the map. Lengths and areas are in
-    the meshes' units."""
+    edge at which the derivatives on the two sides differ, measured from values of the map. Lengths and areas are in the
+    units of the meshes."""
     output = Output(plot, "", force, plots.FORMATS, "a plot") if plot else None
     pair = options.read_pair(inputs)
     report = Report(pair, not quick)
@@ -68,8 +68,8 @@ def command(inputs, as_json, quick, plot, force):
         print_table({name: found[name] for name in SYSTEMS if name in found})
     duplicates = min(found[side]["duplicate_points"] for side in ("source", "target"))
     if duplicates > found.get("interior_edges", duplicates):
-        inform(f"the triangles share hardly any points: {duplicates} points coincide with others, and "
-               f"{found['interior_edges']} edges join two triangles. If they are to be one mesh, join such points, in "
+        inform(f"few triangles share points: {duplicates} points coincide with others, and "
+               f"{found['interior_edges']} edges join two triangles. If they are to be one mesh, merge such points in "
                "both meshes alike (dhm convert -o both.vtp, then ParaView's Clean).")
     if output:
         discordant = [found[side].get("discordant_triangles", []) for side in ("source", "target")]

@@ -36,8 +36,8 @@ class Coordinates(PointMap):
 def command(files, input_format, output, columns, require_inside, **settings):
     """Attach triangular coordinates in a mesh to points.
 
-    MESH is the triangulation (the source of a pair in one file). DATA is the same as for dhm map. The arrays are
-    TriangleId, EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1
-    on the edge) and vtkValidPointMask."""
+    MESH is the triangulation (of a file with a pair, the source). DATA is as for dhm map. The arrays are TriangleId,
+    EdgeLabel (e, 1 to 3), EdgeParameter (p, 0 to 1 along the edge), ContourParameter (c, 0 at the center, 1 on the
+    edge) and vtkValidPointMask."""
     work = Coordinates(pair.read_mesh(files[0], input_format), settings, files[0])
     process(work, output, columns, require_inside, files[1], input_format)

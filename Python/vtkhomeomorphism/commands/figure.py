@@ -50,7 +50,7 @@ def command(inputs, output, all_systems, grid, image, close_up, **settings):
         both.fit((raster.grid, raster.grid), {0: raster})
     both.require_flat()
     settings = {**settings, "discordant_by_linear": True} if all_systems else choose_system(settings, both)
-    # Heights and fallback are not drawn.
+    # Heights and the fallback strategy do not matter for figures.
     both = replace(both, shift=None)
     points = [points_of(mesh)[:, :2] for mesh in both.meshes]
     lines = grid_lines(points[0], grid)
@@ -87,7 +87,8 @@ def command(inputs, output, all_systems, grid, image, close_up, **settings):
 
 
 def _picture(raster, both, settings, side):
-    """The image, or the warped one with three pixels for one, so that close-ups show lines, and its extent."""
+    """The image and its extent. On side 1, it is warped, with three times as many pixels in each direction, so that
+    close-ups show lines."""
     grid, pixels = raster.grid, raster.all()
     if side == 1:
         warp = images.Warp(both, settings)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""dhm map, and what dhm coordinates has in common with it: tables, vector data, meshes and VTK files in and out"""
+"""dhm map, and the reading and writing of tables, vector data, meshes and VTK files that dhm coordinates also uses"""
 
 import click
 
@@ -11,21 +11,21 @@ from ..mapping import PointMap, choose_system
 
 MESHES = tuple(dict.fromkeys(meshes.READ + vtkfiles.FORMATS))
 FAMILIES = {TABLES: TABLES, VECTORS: VECTORS, MESHES: vtkfiles.FORMATS[:-1] + meshes.FLAT_WRITE}
-"""Formats that can be read, and those that each can be written as."""
+"""Formats that can be read, and for each the formats in which the result can be written."""
 
 data_options = options.add(
-    options.output("The result: of the data's kind (images become .vts), or - for standard output.", "csv",
+    options.output("The result, of the same kind as the data (images become .vts), or - for standard output.", "csv",
                    sum(FAMILIES.values(), ()), "data"),
     click.option("--columns", default="", metavar="LIST",
-                 help="Names or numbers (from 1) of a table's coordinate columns, separated by commas (default: usual "
-                      "names, such as x,y,z, E,N or lon,lat; of a table without names, the first two)."),
+                 help="Names or numbers (from 1) of the coordinate columns of a table, separated by commas (default: "
+                      "columns with usual names, such as x,y,z, E,N or lon,lat; without names, the first two)."),
     click.option("--require-inside", is_flag=True, help="Write nothing and fail (status 1) if a point is outside."),
 )
 
 
 def process(work, output, columns, require_inside, name, format, densify=0.0, crs=(None, None)):
-    """Reads data from a file (or standard input, in a format), processes them by a PointMap, and writes them. `crs` are
-    the coordinate reference systems of source and target for vectors.map_layers."""
+    """Reads data from a file (or from standard input, in the given format), processes it by a PointMap, and writes it.
+    `crs` are the coordinate reference systems of source and target for vectors.map_layers."""
     input = Input(name, format or "csv")
     kind, known = input.format, sum(FAMILIES, ())
     if kind not in known:
@@ -71,10 +71,12 @@ def process(work, output, columns, require_inside, name, format, densify=0.0, cr
 @options.map_settings("smooth; for a PROJ triangulation file linear, which is its official meaning")
 @options.inverse
 @options.crs
-@click.option("--densify", type=options.POSITIVE, metavar="LENGTH", help="Divide longer segments of vector data first.")
-@click.option("-j", "--jacobian", is_flag=True, help="Add the array Jacobian: the derivative, 9 numbers row by row.")
+@click.option("--densify", type=options.POSITIVE, metavar="LENGTH",
+              help="First divide segments of vector data that are longer than this.")
+@click.option("-j", "--jacobian", is_flag=True, help="Add the array Jacobian: the derivative, 9 numbers, row-major.")
 @click.option("--determinant", is_flag=True, help="Add the array JacobianDeterminant: the ratio of areas.")
-@click.option("--triangle-id", is_flag=True, help="Add the array TriangleId: the cell id of each point's triangle.")
+@click.option("--triangle-id", is_flag=True,
+              help="Add the array TriangleId: the cell id of the triangle that contains the point.")
 @click.option("--vectors", type=click.Choice(["active", "all", "none"]), default="active",
               help="Vectors, normals and tensors to transform with the points.")
 @options.pair_files("SOURCE [TARGET] DATA")
@@ -85,8 +87,9 @@ def command(inputs, output, columns, require_inside, inverse, crs, densify, jaco
     DATA is a table of points (.csv .txt .xyz), vector data (.gpkg .geojson .shp .fgb), a mesh (.obj .off .ply .stl),
     or a VTK file (.vtp .vtu .vts .vtr .vti .vtm .vtk).
 
-    Points outside the domain become nan and have the value 0 in vtkValidPointMask; features outside become empty. For a
-    PROJ triangulation file, heights (a third coordinate) and the fallback strategy are handled as in PROJ."""
+    Points of tables that are outside the domain become nan. All points outside have the value 0 in vtkValidPointMask.
+    Features outside become empty. For a PROJ triangulation file, heights (a third coordinate) and the fallback strategy
+    are treated as in PROJ."""
     inputs.crs = None if inverse else crs
     pair = options.read_pair(inputs)
     work = PointMap(pair, choose_system(settings, pair), inverse)

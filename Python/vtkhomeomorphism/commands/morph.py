@@ -34,19 +34,19 @@ def make_meshes(both, mask_invalid, path, times):
         result.append(mesh)
         folded += [f"frame {frame} (at {time:.4g})"] * (filter.GetNumberOfFoldedTriangles() > 0)
     if filter.GetMirrored():
-        raise Failure(f"{both.name}: the target is a mirror image of the source: all triangles fold on the way.")
+        raise Failure(f"{both.name}: the target is a mirror image of the source, so all triangles fold.")
     if filter.GetNumberOfFoldingTriangles():
         where = (f"{both.name}: triangle {filter.GetFirstFoldingTriangle()} folds first, at "
                  f"{filter.GetFirstFoldTime():.4g} of the way; {filter.GetNumberOfFoldingTriangles()} fold before "
                  f"{filter.GetLastFoldTime():.4g}")
         if folded:
-            raise Failure(f"{where}: {folded[0]} has folded triangles. Put a mesh in between and morph in two steps.")
+            raise Failure(f"{where}: {folded[0]} has folded triangles. Morph in two steps, with a mesh in between.")
         inform(where + ", but in none of the frames.")
     return result
 
 
 def grid_between(grids, size, t):
-    """The pixels of a frame, over the rectangle in between those of two images: their borders go to its borders."""
+    """The pixels of a frame, over the rectangle between those of two images, whose borders are mapped to its border."""
     steps = [grid.steps * numpy.maximum(numpy.subtract(grid.size, 1), 1) / numpy.maximum(numpy.subtract(size, 1), 1)
              for grid in grids]
     first = grids[0].first + t * (grids[1].first - grids[0].first)
@@ -54,7 +54,7 @@ def grid_between(grids, size, t):
 
 
 def blend(first, second, masks, t, has_alpha):
-    """Pixels and mask. Where one of the images ends, the other is alone, except in the first and the last frame."""
+    """Pixels and mask. Where only one image has pixels, it is shown alone, except in the first and the last frame."""
     if first.dtype != second.dtype or first.shape != second.shape:
         raise Failure(f"The two images are not of the same kind: {first.shape[2]} bands of {first.dtype}, and "
                       f"{second.shape[2]} of {second.dtype}.")
@@ -71,18 +71,21 @@ def blend(first, second, masks, t, has_alpha):
               "number, such as frame-%03d.png.")
 @options.force
 @click.option("--source-image", default="", metavar="FILE", help="Image over the source.")
-@click.option("--target-image", default="", metavar="FILE", help="Image over the target, into which a first one fades.")
+@click.option("--target-image", default="", metavar="FILE",
+              help="Image over the target, into which the source image fades.")
 @click.option("-n", "--frames", type=click.IntRange(2), default=11, metavar="NUMBER", help="Number of frames.")
 @click.option("--path", type=click.Choice(list(PATHS)), default="best",
-              help="Paths of the points: straight, rotating with the mesh as a whole, or the one with fewer folds.")
-@click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT", help="Size of the frames (default: the source's).")
+              help="Paths of the points: straight, rotating with the mesh as a whole, or the better of the two, "
+              "with fewer folds.")
+@click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT",
+              help="Size of the frames (default: that of the source image).")
 @options.background
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.pair_files("SOURCE [TARGET]")
 def command(inputs, output, force, source_image, target_image, frames, path, size, background, **settings):
-    """Morph images or the mesh from the source to the target, in frames.
+    """Morph images, or the mesh, from the source to the target, in frames.
 
-    If a triangle is folded in a frame, nothing is written (status 1)."""
+    If a triangle is folded in a frame, nothing is written, and the exit status is 1."""
     names, format = (source_image, target_image), format_of(output)
     if not any(names) and format in PICTURES:
         raise Failure(f"Meshes are not images (.{format}): write .vtp, or give --source-image.", USAGE)
@@ -90,7 +93,8 @@ def command(inputs, output, force, source_image, target_image, frames, path, siz
     try:
         outputs = [Output(output % k, "", force, known, "frames") for k in range(frames)]
     except (TypeError, ValueError):
-        raise Failure(f"{output} must have one place for the frame's number, such as frame-%03d.png.", USAGE) from None
+        raise Failure(f"{output} must have one placeholder for the frame's number, such as frame-%03d.png.",
+                      USAGE) from None
     color = images.read_background(background, format) if any(names) else None
     rasters = {side: images.read(name) for side, name in enumerate(names) if name}
     if rasters:

@@ -15,11 +15,11 @@ from ..landmarks import LandmarkFileError, Landmarks, is_landmark_file, read_lin
 def read_figure(name):
     with Input(name) as file:
         if file.format not in ("vtp", "vtk"):
-            raise Failure(f"{name} is not a figure: landmarks are one file, figures two of .vtp or .vtk.", USAGE)
+            raise Failure(f"{name} is not a figure: give one file of landmarks, or two figures (.vtp or .vtk).", USAGE)
         data = vtkfiles.read(file)
         if isinstance(data, vtkPolyData):
             return data
-        file.fail(f"it holds a {data.GetClassName()}, not points, lines and polygons.")
+        file.fail(f"it contains a {data.GetClassName()}, not points, lines and polygons.")
 
 
 def print_report(made, marks):
@@ -42,19 +42,21 @@ def print_report(made, marks):
 @click.command("triangulate")
 @options.output("The pair: .json (PROJ triangulation file), .vtp or .vtk (the target is the point array Target).",
                 "json", pair.FORMATS, "a pair")
-@click.option("--lines", default="", metavar="FILE", help="Constraint lines: names of landmarks, a line per row.")
-@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: names of landmarks, a loop per row.")
+@click.option("--lines", default="", metavar="FILE", help="Constraint lines: ids of landmarks, one line per row.")
+@click.option("--outlines", default="", metavar="FILE", help="Outlines and holes: ids of landmarks, one loop per row.")
 @click.option("--domain", type=click.Choice(list(DOMAINS)), default="automatic",
-              help="The inside of outlines, a frame, or the convex hulls; automatic: outline if given, else frame.")
-@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle", help="What is optimized.")
+              help="The interior of outlines, a frame, or the convex hulls; automatic: outline if there are outlines, "
+              "otherwise frame.")
+@click.option("--quality", type=click.Choice(list(QUALITIES)), default="minimum_angle",
+              help="The quality measure that is optimized.")
 @click.option("--target-angle", "target_minimum_angle", type=options.Number(0, 60), default=0.0, metavar="DEGREES",
-              help="Add points until no angle is smaller than this (default: necessary points only).")
+              help="Add points until no angle is smaller than this (default: only necessary points).")
 @click.option("--maximum-added-points", type=click.IntRange(0), metavar="NUMBER",
-              help="Greatest number of added points (default: the necessary ones, and up to 100 for --target-angle).")
+              help="Largest number of added points (default: the necessary ones, and up to 100 for --target-angle).")
 @click.option("--maximum-size", "maximum_triangle_size", type=options.Number(0, 1), default=0.0, metavar="SHARE",
-              help="Divide triangles with more than this share of the domain's area.")
+              help="Divide triangles with more than this fraction of the domain's area.")
 @click.option("--leave-out-conflicts", "leave_out_conflicting_segments", is_flag=True,
-              help="Leave out and list lines that conflict with others.")
+              help="Leave out constraint lines that conflict with others, and list them.")
 @click.option("--report", is_flag=True, help="Print angles, distortion and the landmarks with the largest residuals.")
 @options.pair_files("LANDMARKS | SOURCE TARGET")
 def command(inputs, output, lines, outlines, report, **settings):
@@ -62,8 +64,8 @@ def command(inputs, output, lines, outlines, report, **settings):
 
     LANDMARKS is a .csv file (source_x, source_y, target_x, target_y, optionally id; or BigWarp's format), a QGIS
     .points file, or an IIIF georeference annotation (.json). SOURCE and TARGET are VTK files of points, closed loops
-    (polygons or lines) and constraint lines, with the same cells. Triangles do not fold in either domain; points are
-    added where necessary."""
+    (polygons or lines) and constraint lines, with the same cells. No triangle folds in either domain; points are added
+    where necessary."""
     figure = {}
     if len(inputs.pair) == 2:
         figures = [read_figure(name) for name in inputs.pair]
@@ -85,8 +87,8 @@ def command(inputs, output, lines, outlines, report, **settings):
     both, made = pair.from_landmarks(marks, " and ".join(inputs.pair), inputs, **figure, **settings)
     smallest, target = min(made.report["smallest_angles"]), settings["target_minimum_angle"]
     if smallest < target:
-        inform(f"the smallest angle is {smallest:.3g} degrees and misses --target-angle {target:g}: allow more points "
-               "(--maximum-added-points); angles between landmarks and lines cannot be enlarged.")
+        inform(f"the smallest angle is {smallest:.3g} degrees, less than --target-angle {target:g}: allow more points "
+               "(--maximum-added-points). Angles between landmarks and lines cannot be enlarged.")
     with output.writing():
         pair.write(both, output)
     if report:

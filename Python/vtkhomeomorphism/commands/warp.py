@@ -17,9 +17,11 @@ from ..pair import are_same_crs
 @options.map_settings("cubic; for a PROJ triangulation file linear")
 @options.inverse
 @click.option("--size", type=options.Size(), metavar="WIDTHxHEIGHT", help="Size of the result in pixels.")
-@click.option("--resolution", type=options.POSITIVE, metavar="LENGTH", help="Pixel size of the result on the ground.")
+@click.option("--resolution", type=options.POSITIVE, metavar="LENGTH",
+              help="Pixel size of the result, in units of its coordinate reference system.")
 @click.option("--like", default="", metavar="FILE", help="Use the pixel grid of this GeoTIFF for the result.")
-@click.option("--nearest", is_flag=True, help="Take the value of the nearest pixel, do not interpolate (for classes).")
+@click.option("--nearest", is_flag=True,
+              help="Use the value of the nearest pixel instead of interpolating (for classes).")
 @options.crs
 @options.background
 @options.pair_files("SOURCE [TARGET] IMAGE")
@@ -30,10 +32,10 @@ def command(inputs, output, inverse, size, resolution, like, nearest, crs, backg
     (0, 0), y points upwards); xmorph meshes are in their own units. A GeoTIFF is warped in its coordinate reference
     system, in tiles, to a GeoTIFF.
 
-    The value of each pixel is interpolated linearly at its exact preimage. Up to half a pixel beyond the centers of the
-    pixels at the border, where the image ends, it is that of the border. If the result's pixels are at least twice as
-    wide, the image is reduced first, by averaging. With --nearest, it is the value of the pixel in whose area the
-    preimage is, and a GeoTIFF keeps its palette, unless it is to have a --background."""
+    The value of each pixel is interpolated linearly at its preimage. In the outer half of the pixels at the border of
+    the image, it is that of these pixels. If the result's pixels are at least twice as wide as the image's, the image
+    is first reduced by averaging. With --nearest, the value is that of the pixel whose area contains the preimage, and
+    a GeoTIFF keeps its palette unless there is a --background."""
     color = images.read_background(background, output.format)
     inputs.crs = None if inverse else crs
     order = slice(None, None, -1 if inverse else 1)
@@ -47,15 +49,15 @@ def command(inputs, output, inverse, size, resolution, like, nearest, crs, backg
     both = options.read_pair(inputs)
     settings, marks = choose_system(settings, both, "cubic"), both.landmarks
     if marks and marks.image_coordinates and not (marks.crs or own.placed or inverse):
-        raise Failure(f"{both.name} does not name the coordinate reference system of its target: give --crs.", USAGE)
+        raise Failure(f"{both.name} does not name the coordinate reference system of its target: use --crs.", USAGE)
     # A layer that goes back onto a scan becomes an image without georeference.
     scan = marks and inverse and own.placed and inputs.grids[0]
     placed = not scan and (own.placed or bool(marks and marks.crs and not inverse))
     for name, value in (("--resolution", resolution), ("--like", like), ("--crs", crs)):
         if value and not placed:
-            raise Failure(f"{name} is for georeferenced rasters, which {raster.name} is not.", USAGE)
+            raise Failure(f"{name} is for georeferenced rasters, but {raster.name} is not georeferenced.", USAGE)
     if placed and output.format not in ("tif", "tiff"):
-        raise Failure(f"A georeferenced raster becomes a .tif, not a .{output.format}.", USAGE)
+        raise Failure(f"A georeferenced raster must be written as .tif, not as .{output.format}.", USAGE)
     grid = scan or (own if placed else sized or own)
     expected = both.crs(inverse)[0]
     if own.crs and expected and own.crs != expected:
