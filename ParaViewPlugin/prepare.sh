@@ -2,12 +2,12 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Makes a private ParaView on Debian, once, in build/paraview-prefix. Run it, or source it for $paraview_prefix,
-# $paraview_dir (what CMake needs) and the packages to be there. With --install, missing packages are installed.
+# Sets up a private ParaView on Debian, once, in build/paraview-prefix. Run it, or source it to get $paraview_prefix and
+# $paraview_dir (for CMake). With --install, missing packages are installed.
 #
-# Debian's python3-paraview, which has pvpython and what CMake needs to find ParaView, cannot be installed
-# beside libvtk9-dev: the Python modules of the two VTKs are in the same folder. So it is unpacked into a
-# folder of its own, with links to the rest of ParaView, which is installed as usual.
+# Debian's python3-paraview, which has pvpython and ParaView's CMake files, cannot be installed together with
+# libvtk9-dev, because the Python modules of both VTKs are in the same folder. So it is unpacked into a separate folder,
+# with links to the rest of ParaView, which is installed as usual.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 source "$root/Testing/setup.sh"
@@ -40,13 +40,13 @@ prepare_paraview()
       echo "$file"
     fi
   done >"$paraview_prefix/files"
-  # Programs look for their Python modules beside where they really are, so those are copied.
+  # Programs search for their Python modules relative to their real location, so they are copied.
   (
     cd "$paraview_prefix"
     grep -v '^/usr/bin/' files | xargs -d '\n' cp --symbolic-link --parents --target-directory=.
     grep '^/usr/bin/' files | xargs -d '\n' cp --no-dereference --parents --target-directory=.
     rm files
-    # ParaView's CMake files of newer Debians name Python's modules without the tag of the interpreter.
+    # In newer Debian suites, ParaView's CMake files name Python modules without the tag of the interpreter.
     find usr/lib -name '*.cpython-*.so' | while read -r file; do
       [[ -e "${file%%.cpython-*}.so" ]] || ln -s "$(basename "$file")" "${file%%.cpython-*}.so"
     done

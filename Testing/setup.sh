@@ -2,11 +2,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Sourced by the scripts in Testing and Examples, and by ParaViewPlugin/prepare.sh. Takes the argument --install
-# out of theirs: without it, and unless continuous integration runs them (CI is set), no package is installed.
+# Sourced by the scripts in Testing and Examples, and by ParaViewPlugin/prepare.sh. Removes --install from their
+# arguments. Packages are installed only with --install, or in continuous integration (CI is set).
 
-# The distribution's compilers, CMake and Python, which go with the distribution's VTK, even if
-# others come first on the caller's PATH.
+# Use the distribution's compilers, CMake and Python, which match the distribution's VTK, even if others come first on
+# the caller's PATH.
 export PATH="/usr/bin:/bin:$PATH" CC=/usr/bin/gcc CXX=/usr/bin/g++
 
 [[ -z "${CI:-}" ]] || export DHM_INSTALL=yes
@@ -20,17 +20,17 @@ for argument in "$@"; do
 done
 set -- "${remaining_arguments[@]}"
 
-# What the library is built with, and what the command dhm needs besides; rasterio and geopandas are for
-# georeferenced files only.
+# Packages for building the library, and further packages for the command dhm; rasterio and geopandas are only for
+# geographic files and 16-bit images.
 build_packages=(g++ cmake ninja-build libvtk9-dev libeigen3-dev)
 dhm_packages=(python3-dev python3-numpy python3-click python3-meshio python3-pil
   python3-matplotlib python3-tqdm python3-rasterio python3-geopandas)
-# What the tests need besides.
+# Further packages for the tests.
 test_packages=(libgtest-dev openmpi-bin python3-dev python3-mpi4py python3-mpmath python3-numpy python3-scipy
   python3-vtk9 python3-pytest python3-tifffile binutils xvfb xauth proj-bin)
 
-# with_display COMMAND...: runs it with a virtual display of its own. Programs in a chroot see other displays' sockets
-# but not their locks, so its number is one that no socket has.
+# with_display COMMAND...: runs a command with a virtual display. Programs in a chroot see the sockets of other displays
+# but not their locks, so the number of the display is one that no socket has.
 with_display()
 {
   local number=$((100 + RANDOM % 900))
@@ -40,13 +40,13 @@ with_display()
   xvfb-run --auto-servernum --server-num="$number" "$@"
 }
 
-# list_sources FOLDER...: the C++ files of this project in these folders.
+# list_sources FOLDER...: lists the C++ files of this project in these folders.
 list_sources()
 {
   find "$@" -type f \( -name '*.cxx' -o -name '*.h' \) | LC_ALL=C sort
 }
 
-# install_missing PACKAGE...: installs those Debian packages that are not installed yet, if that is allowed.
+# install_missing PACKAGE...: installs the Debian packages that are missing, if this is allowed.
 install_missing()
 {
   local package missing=() as_root=()

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Makes a test chart (chart.ppm) and landmarks on it that are moved at random (landmarks.csv).
+"""Makes a test chart (chart.ppm), and landmarks on it that are displaced at random (landmarks.csv).
 
     chart.py FOLDER
 """
@@ -30,14 +30,14 @@ def chart():
 
 
 def points(generator):
-    """A grid over the chart whose points are moved at random, those of the border along it."""
+    """A grid over the chart whose points are displaced at random, those on the border along it."""
     unit = (SIZE - 1) / CELLS
     return [[unit * (k + (generator.uniform(-0.3, 0.3) if 0 < k < CELLS else 0.0)) for k in (column, row)]
             for row in range(CELLS + 1) for column in range(CELLS + 1)]
 
 
 def write_landmarks(name, source, target):
-    """In pixels from the upper left corner of the image, y down."""
+    """Writes landmarks in pixels from the upper left corner of the image, y downwards."""
     with open(name, "w", encoding="ascii") as file:
         file.write("source_x,source_y,target_x,target_y\n")
         for pair in zip(source, target):

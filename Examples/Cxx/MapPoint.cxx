@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Maps a point there and back, with the Jacobian of the map.
+// Maps a point and maps its image back, with the Jacobian of the map.
 
 #include <vtkCellArray.h>
 #include <vtkHomeomorphismTransform.h>
@@ -13,7 +13,8 @@
 
 int main()
 {
-  // A square of two triangles. In the target, one of its corners is pulled up to the given height.
+  // A square of two triangles, one of whose corners has the given height: 1 in the source, 1.5 in
+  // the target.
   vtkNew<vtkPolyData> source;
   vtkNew<vtkPolyData> target;
   const auto makeMesh = [](vtkPolyData* mesh, double height) {

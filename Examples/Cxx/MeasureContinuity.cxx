@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Measures across how many edges the Jacobian of the map between two meshes is discontinuous:
+// Counts the edges across which the Jacobian of the map between two meshes is discontinuous:
 //   MeasureContinuity SOURCE.vtp TARGET.vtp
 
 #include <vtkJacobianContinuity.h>

@@ -21,7 +21,7 @@ CONTOUR, RING, CENTER, WING = "#2166ab", "#d97321", "#cc5c14", "#29854d"
 
 
 class Page:
-    """A figure of a size in pixels, y upwards."""
+    """A figure with a size in pixels, y upwards."""
 
     def __init__(self, width, height):
         self.figure = Figure(figsize=(width / 100, height / 100), dpi=100)
@@ -37,7 +37,7 @@ class Page:
         return axes
 
     def label(self, x, y, text, size, **options):
-        """Text about a point of the page; sizes in pixels."""
+        """Draws text centered at a point of the page; sizes are in pixels."""
         options = {"ha": "center", "va": "center", "color": INK, **options}
         self.figure.text(x / self.width, y / self.height, text, fontsize=0.72 * size, **options)
 
@@ -48,7 +48,7 @@ class Page:
 
 
 def label(axes, point, text, size, offset=(0, 0), **options):
-    """Text beside a point of a panel, in pixels."""
+    """Draws text beside a point of a panel; `size` and `offset` are in pixels."""
     options = {"ha": "center", "va": "center", "color": INK, **options}
     axes.annotate(text, point, xytext=0.72 * numpy.array(offset, float), textcoords="offset points",
                   fontsize=0.72 * size, annotation_clip=False, **options)
@@ -72,14 +72,15 @@ def dot(axes, point, radius, color, edge=None, width=0.0):
 
 
 def right_angle(axes, corner, first, second, size, color, width):
-    """The sign of a right angle at a corner, between the directions to two points; its size in units of the panel."""
+    """Draws the symbol of a right angle at a corner, between the directions to two points; `size` is in units of the
+    panel."""
     corner, first, second = (numpy.asarray(p, float) for p in (corner, first, second))
     u, v = ((p - corner) * size / numpy.linalg.norm(p - corner) for p in (first, second))
     stroke(axes, [corner + u, corner + u + v, corner + v], color, width)
 
 
 def edges_of(triangles):
-    """Each edge once, and how many triangles it has."""
+    """The edges, each one once, and the numbers of their triangles."""
     edges = numpy.sort(numpy.vstack([numpy.take(triangles, [k, (k + 1) % 3], axis=1) for k in range(3)]), axis=1)
     return numpy.unique(edges, axis=0, return_counts=True)
 
@@ -89,7 +90,7 @@ def draw_edges(axes, points, triangles, color, width):
 
 
 def close_up(axes, page, box, center, half_width, half_height):
-    """A panel that shows a part of another, which is marked there."""
+    """A panel that shows a part of another panel, in which this part is marked."""
     x, y = center
     corners = numpy.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)]) * (half_width, half_height)
     stroke(axes, corners + center, INK, 1.2, linestyle=(0, (4, 3)))
@@ -99,13 +100,13 @@ def close_up(axes, page, box, center, half_width, half_height):
 
 
 def curves_of(data, values=None):
-    """The polylines of a data set, arrays of points, or of other values at the points."""
+    """The polylines of a data set, as arrays of points, or of other values at the points."""
     values = points_of(data)[:, :2] if values is None else values
     return [values[ids] for ids in lists_of(data.GetLines())]
 
 
 class Coordinates:
-    """The triangular coordinates of a triangulation: their lines by type and triangle, and concordant triangles."""
+    """The triangular coordinates of a triangulation: lines by type and triangle, and the concordant triangles."""
 
     def __init__(self, points, triangles, system="contour", contours=1, rings=1, center="centroid"):
         self.filter = vtkTriangularCoordinates()
@@ -128,7 +129,7 @@ class Coordinates:
 
 
 def measure_continuity(source, target, triangles, system, samples=5):
-    """vtkJacobianContinuity of a map, updated."""
+    """An updated vtkJacobianContinuity of a map."""
     continuity = vtkJacobianContinuity()
     continuity.SetSourceData(make_mesh(source, triangles))
     continuity.SetTargetData(make_mesh(target, triangles))
@@ -143,8 +144,8 @@ def map_between(source, target, triangles, system):
 
 
 def cross(points, triangles, start, end):
-    """Where a segment crosses a triangulation: arrays of points on edges in order along it, one for each piece that is
-    inside."""
+    """The points where a segment crosses the edges of a triangulation, in order: an array for each piece of the segment
+    that is inside."""
     edges, counts = edges_of(triangles)
     along = numpy.subtract(end, start)
     a, b = points[edges[:, 0]], points[edges[:, 1]]

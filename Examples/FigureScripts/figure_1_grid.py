@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The grid of triangular coordinates over adjacent triangles, in the three coordinate systems. The second patch has
-the same triangles and other points, which make two of them discordant."""
+the same triangles and other points, so that two triangles are discordant."""
 
 import numpy
 from drawing import CONTOUR, INK, RING, SYSTEMS, Coordinates, Page, draw_edges, fill, label, strokes

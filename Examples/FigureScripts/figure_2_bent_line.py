@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A straight line: the piecewise linear map bends it at every edge, Smooth at none."""
+"""The image of a straight line: the piecewise linear map bends it at every edge, Smooth at none."""
 
 import numpy
 from drawing import Page, close_up, cross, dot, draw_edges, fill, label, map_between, stroke

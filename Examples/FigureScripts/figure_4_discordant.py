@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A discordant triangle: not all feet of the centroid are on the edges. The incenter's are; Smooth needs none."""
+"""A discordant triangle: not all feet of the centroid are inside the edges. Those of the incenter are, and Smooth does
+not use feet."""
 
 import numpy
 from drawing import CENTER, CONTOUR, INK, RING, Coordinates, Page, dot, draw_edges, fill, label, right_angle, \

@@ -27,7 +27,7 @@ BESIDE = numpy.array([
 
 
 def turn(points):
-    """Like a rotating ball, whose nearest point moves farthest; then tilted."""
+    """Moves points like the projection of a rotating sphere, and then rotates them in the plane."""
     x, y = points.T
     depth = numpy.maximum(0, 1 - x * x / 1.1 - y * y / 1.9)
     x, y, tilt = x + 0.19 * depth, y + 0.05 * depth, -0.10
@@ -35,7 +35,7 @@ def turn(points):
 
 
 def curve(points, closed):
-    """A smooth curve through points (Catmull and Rom's)."""
+    """A smooth curve through points (Catmull-Rom spline)."""
     points = numpy.array(points)
     around = numpy.vstack((points[-1:], points, points[:2]) if closed else (points[:1], points, points[-1:]))
     t = numpy.arange(24)[:, None] / 24

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Landmarks in two squares, and the image of a grid by the Linear and by the Cubic map that they define."""
+"""Landmarks in two squares, and the image of a grid under the Linear and the Cubic map that they define."""
 
 import numpy
 from drawing import CENTER, CONTOUR, INK, Page, dot, draw_edges, fill, strokes
@@ -8,7 +8,7 @@ from drawing import CENTER, CONTOUR, INK, Page, dot, draw_edges, fill, strokes
 from vtkhomeomorphism import Homeomorphism
 from vtkhomeomorphism.isomorphic import isomorphic_triangulation
 
-# The landmarks: around a middle that turns, and a few that stay.
+# Landmarks around a center that rotates, and a few that are fixed.
 SOURCE = numpy.array([(0.5, 0.5), (0.3, 0.35), (0.62, 0.3), (0.72, 0.58), (0.45, 0.72), (0.25, 0.6), (0.14, 0.15),
                       (0.86, 0.16), (0.88, 0.85), (0.13, 0.87)])
 middle = SOURCE - (0.48, 0.5)

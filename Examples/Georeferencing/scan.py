@@ -23,16 +23,16 @@ import numpy
 CRS = "EPSG:3857"
 ORIGIN, METERS, ANGLE = numpy.array([1490000.0, 6890000.0]), 2.5, 0.12
 BENDS = 0.004, 0.0075
-"""How far the middle of a vertical and of a horizontal edge is bent, as a share of the image's width."""
+"""The displacement of the middle of a vertical and of a horizontal edge, as a fraction of the image's width."""
 MISTYPED = {17: (30.0, 0.0), 41: (-18.0, 24.0)}
 """Errors in pixels, by the number of the control point."""
 DISABLED = (5, 23, 38, 50)
-"""Rows before which a disabled control point is listed."""
+"""The rows before which a disabled control point is inserted."""
 
 
 class Sheet:
-    """The map of a scan's pixels (from the upper left corner, y down) to the ground: each row is shifted along a
-    parabola, then each column, and the result is turned and scaled."""
+    """The map from the scan's pixels (from the upper left corner, y downwards) to the ground: each row is displaced by
+    a parabola, then each column, and the result is rotated and scaled."""
 
     def __init__(self, width=4000, height=3000):
         self.size = numpy.array([width, height], float)
@@ -57,7 +57,7 @@ class Sheet:
         return numpy.column_stack((x.ravel(), y.ravel()))
 
     def control_points(self):
-        """60 pixels, on a grid with some disorder, and their places on the ground, two of them wrong."""
+        """60 pixels, on a perturbed grid, and their positions on the ground, two of them wrong."""
         i, j = numpy.meshgrid(numpy.arange(10), numpy.arange(6))
         own = numpy.column_stack(((i.ravel() + 0.5) / 10, (j.ravel() + 0.5) / 6))
         own = (own + numpy.random.default_rng(3).uniform(-0.02, 0.02, own.shape)) * self.size
@@ -68,7 +68,7 @@ class Sheet:
         return pixels, ground
 
     def bend_beyond_affine(self):
-        """The largest distance in pixels from the affine map that fits the whole sheet best."""
+        """The largest distance, in pixels, from the affine map that fits the whole sheet best."""
         t = numpy.linspace(0, 1, 41)
         pixels = numpy.stack(numpy.meshgrid(t, t), axis=-1).reshape(-1, 2) * self.size
         ground = self.to_ground(pixels)
@@ -101,7 +101,7 @@ class Sheet:
 
 
 def write_points(path, pixels, ground, version):
-    """Control points as QGIS 2 and 3 save them: its y axis points up, from 0 at the upper edge of the image."""
+    """Control points as QGIS 2 and 3 save them. The y axis points upwards, from 0 at the upper edge of the image."""
     rows = [(*p, *g, 1) for p, g in zip(pixels, ground)]
     for k in reversed(DISABLED):
         rows.insert(k, (*(pixels[k] + 3), *(ground[k] + 500), 0))
@@ -115,7 +115,7 @@ def write_points(path, pixels, ground, version):
 
 
 def names_of_mistyped(version=3):
-    """The names by which dhm calls the mistyped control points: their lines in the file, which has a header."""
+    """The names of the wrong control points in dhm: their line numbers in the file, which has a header."""
     return [str(k + version + sum(row <= k for row in DISABLED)) for k in MISTYPED]
 
 
@@ -130,7 +130,7 @@ def write_tiff(path, pixels):
 
 
 def write_roads(path, sheet):
-    """A layer on the ground: lines over the sheet, true to its map."""
+    """A layer of lines on the ground, which agree with the map of the sheet."""
     import geopandas
     from shapely.geometry import LineString
 
@@ -147,7 +147,7 @@ def write(folder, width=4000, height=3000):
     sheet = Sheet(width, height)
     os.makedirs(folder, exist_ok=True)
     write_tiff(os.path.join(folder, "scan.tif"), sheet.draw())
-    # Of an image with two bands, the second is transparency.
+    # In an image with two bands, the second is transparency.
     positions = numpy.column_stack((sheet.pixel_centers(), numpy.zeros(width * height)))
     write_tiff(os.path.join(folder, "positions.tif"), positions.reshape(height, width, 3).astype(numpy.float32))
     points = sheet.control_points()
@@ -159,8 +159,9 @@ def write(folder, width=4000, height=3000):
 
 
 def errors(sheet, rectified):
-    """Distances in pixels of the scan between where the pixels of a rectified positions.tif came from and the truth,
-    for all pixels whose true position is on the scan; infinite where the result is empty."""
+    """The distances, in pixels of the scan, between the positions from which the pixels of a rectified positions.tif
+    were taken and the true ones, for all pixels whose true position is on the scan; infinite where the result is
+    empty."""
     import rasterio
 
     with rasterio.open(rectified) as file:
@@ -168,7 +169,7 @@ def errors(sheet, rectified):
         column, row = numpy.meshgrid(numpy.arange(file.width) + 0.5, numpy.arange(file.height) + 0.5)
         ground = numpy.column_stack(file.transform * (column.ravel(), row.ravel()))
     truth = sheet.to_pixels(ground)
-    # Values at the rim would need pixels beyond it.
+    # Values at the border would require pixels beyond it.
     inside = ((truth > 1) & (truth < sheet.size - 1)).all(axis=1)
     distances = numpy.hypot(*(found.reshape(len(found), -1)[:2].T[inside] - truth[inside]).T)
     return numpy.where(numpy.isfinite(distances), distances, numpy.inf)
@@ -205,7 +206,7 @@ def draw(folder):
     warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
     figure, axes = pyplot.subplots(1, 3, figsize=(15, 4.3), layout="constrained")
     roads = geopandas.read_file(os.path.join(folder, "roads.gpkg"))
-    titles = ("the scan and its control points", "rectified with all of them", "rectified without the suspicious two")
+    titles = ("the scan and its control points", "rectified with all points", "rectified without the suspicious two")
     for panel, title, name in zip(axes, titles, ("scan.tif", "all-points.tif", "rectified.tif")):
         with rasterio.open(os.path.join(folder, name)) as file:
             shape = (file.height * 1000 // file.width, 1000)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Drag landmarks of a source (left) or a target (right): the pair of triangulations, the grid and the image follow.
+"""Drag landmarks of a source (left) or a target (right). The triangulations, the grid and the image are updated.
 
-Landmarks that do not fit their neighbors are red, and so are the triangles that would fold if the source's Delaunay
-triangulation were reused for the target. There are 300 landmarks on a generated image."""
+Landmarks that do not agree with their neighbors are red, and so are the triangles that would fold if the source's
+Delaunay triangulation were reused for the target. There are 300 landmarks on a generated image."""
 
 import time
 

@@ -2,13 +2,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Landmarks for Examples/run, and what becomes of the usual way to triangulate them.
+"""Landmarks for Examples/run, and the folds that result if a Delaunay triangulation is reused.
 
     landmarks.py extract FOLDER LANDMARKS.csv
-        the points of gtkmorph's meshes image1.png.mesh and image2.png.mesh, in pixels, without their cells
+        writes the points of gtkmorph's meshes image1.png.mesh and image2.png.mesh, in pixels
     landmarks.py folds LANDMARKS.csv PAIR.vtp SOURCE_IMAGE TARGET_IMAGE PICTURE.png
-        the Delaunay triangulation of one domain's landmarks drawn in the other, where more triangles fold or lose
-        their area, these in red, and the pair that dhm triangulate made (y upwards from 0 at the image's upper edge)
+        counts the triangles that fold or degenerate if the Delaunay triangulation of one domain is reused in the other,
+        and in the pair that dhm triangulate made; draws both in the domain with more folds, with folded triangles in
+        red (y upwards from 0 at the image's upper edge)
 """
 
 import os
@@ -25,7 +26,7 @@ def extract(folder, output):
     columns = []
     for name in ("image1.png", "image2.png"):
         rows, size = image.imread(os.path.join(folder, name)).shape[:2]
-        # M2, the numbers of columns and rows, x y label of each point, more.
+        # The file has M2, the numbers of columns and rows, x, y and label of each point, and further data.
         with open(os.path.join(folder, name + ".mesh"), encoding="ascii") as file:
             words = file.read().split()[1:]
         count = int(words[0]) * int(words[1])
@@ -62,26 +63,26 @@ def folds(landmarks, pair, source_image, target_image, output):
         areas = doubled_areas(second, triangles)
         reused.append((triangles, areas))
         print(f"{landmarks}: of the {len(triangles)} Delaunay triangles of the {name}'s {len(first)} landmarks, "
-              f"{(areas < 0).sum()} fold in the other domain and {(areas == 0).sum()} have no area there")
+              f"{(areas < 0).sum()} fold in the other domain, and {(areas == 0).sum()} have zero area there")
     ours, made = read_pair(pair)
     bad = [int((doubled_areas(points, made) * doubled_areas(ours[0], made) <= 0).sum()) for points in ours]
-    print(f"{pair}: of {len(made)} triangles, {max(bad)} fold or have no area")
+    print(f"{pair}: of {len(made)} triangles, {max(bad)} fold or have zero area")
 
-    # The picture shows the domain in which more triangles are bad.
+    # Show the domain in which more triangles are bad.
     shown = 1 if (reused[0][1] <= 0).sum() > (reused[1][1] <= 0).sum() else 0
     triangles, areas = reused[1 - shown]
     folded = areas <= 0
     if not folded.any():
-        print(f"{output} is not drawn, since no triangle folds")
+        print(f"{output} is not drawn, because no triangle folds")
         return
     points = (source, target)[shown]
     panels = ((f"Delaunay triangles of the {('target', 'source')[shown]}'s landmarks:\n{(areas < 0).sum()} folded, "
-               f"{(areas == 0).sum()} without area", points, triangles, folded),
-              (f"made for both domains:\n{max(bad)} folded or without area", ours[shown], made,
+               f"{(areas == 0).sum()} of zero area", points, triangles, folded),
+              (f"made for both domains:\n{max(bad)} folded or of zero area", ours[shown], made,
                numpy.zeros(len(made), bool)))
     pixels = image.imread((source_image, target_image)[shown])
     rows, columns = pixels.shape[:2]
-    # The whole, and the place with the most folded triangles.
+    # Show the whole domain, and the region with the most folded triangles.
     centers = points[triangles[folded]].mean(axis=1)
     near = numpy.hypot(*(centers[:, None] - centers).transpose(2, 0, 1)) < 0.12 * rows
     r = 0.11 * rows

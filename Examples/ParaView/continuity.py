@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Differentiability of the map between two triangulations, for the three coordinate systems side by side: a
-grid mapped from one triangulation to another, over the images of the edges, colored by the jump of the Jacobian.
+"""Shows where the map between two triangulations is differentiable, for the systems Linear, Contour and Smooth side by
+side: the image of a grid, and the images of the edges, colored by the jump of the Jacobian.
 
 In ParaView: load the plugin, then File > Run Script... In a shell, with the plugin's folder in PV_PLUGIN_PATH
 or the plugin's file as the second argument:
 
     pvbatch continuity.py FOLDER [DifferentiableHomeomorphism.so]
 
-The folder (default: Output) gets continuity.png, and for each system grid-SYSTEM.vtp and edges-SYSTEM.vtp.
+Writes continuity.png, and grid-SYSTEM.vtp and edges-SYSTEM.vtp for each system, to the folder (default: Output).
 """
 
 import os
@@ -21,7 +21,7 @@ SYSTEMS = "Linear", "Contour", "Smooth"
 
 
 def moved(mesh, name, x, y):
-    """The triangles with interior points moved."""
+    """The triangles, with displaced interior points."""
     fade = "1.3*coordsX*(1 - coordsX)*coordsY*(1 - coordsY)"
     return Calculator(registrationName=name, Input=mesh, CoordinateResults=1,
                       Function=f"coords + {fade}*(iHat*sin({x}) + jHat*sin({y}))")
@@ -42,7 +42,7 @@ def color_by_jump(display):
     ColorBy(display, ("CELLS", "JacobianJump"))
     colors = GetColorTransferFunction("JacobianJump")
     colors.AutomaticRescaleRangeMode = "Never"
-    # On a logarithmic scale: rounding errors at one end, creases at the other.
+    # A logarithmic scale, with rounding errors at one end and creases at the other.
     colors.RGBPoints = [1e-9, 0.10, 0.35, 0.75,
                         1e-6, 0.45, 0.75, 0.85,
                         1e-3, 0.98, 0.80, 0.35,
@@ -54,16 +54,16 @@ def color_by_jump(display):
 
 
 def show_system(system, source, target, grid, view):
-    """Shows the mapped grid over the images of the edges; returns the proxies to be saved."""
+    """Shows the mapped grid over the images of the edges. Returns the proxies to be saved, and the colors."""
     settings = {"Source": source, "Target": target, "CoordinateSystem": system,
                 "DiscordantTriangles": "Use Linear"}
-    carried = DifferentiableHomeomorphism(registrationName="Grid " + system, Data=grid, **settings)
-    display = Show(carried, view)
+    mapped = DifferentiableHomeomorphism(registrationName="Grid " + system, Data=grid, **settings)
+    display = Show(mapped, view)
     display.ColorArrayName = ["POINTS", ""]
     display.AmbientColor = display.DiffuseColor = [0.45, 0.45, 0.5]
     display.LineWidth = 2.0
     display.RenderLinesAsTubes = 1
-    # Called Position before ParaView 5.13.
+    # The property was called Position before ParaView 5.13.
     name = "Translation" if "Translation" in display.ListProperties() else "Position"
     setattr(display, name, [0.0, 0.0, 0.01])
 
@@ -72,7 +72,7 @@ def show_system(system, source, target, grid, view):
     edges = DifferentiableHomeomorphism(registrationName="Edges " + system, Data=measured, **settings)
     display = Show(edges, view)
     display.LineWidth = 6.0
-    # Plain wide lines may have gaps and be thinner where they are oblique. Unshaded, like the color scale.
+    # Wide lines that are not tubes may have gaps. Do not shade them, so that colors match the color scale.
     display.RenderLinesAsTubes = 1
     display.Ambient = 1.0
     display.Diffuse = 0.0
@@ -83,7 +83,7 @@ def show_system(system, source, target, grid, view):
     display.WindowLocation = "Upper Center"
     display.FontSize = 24
     display.Color = [0.0, 0.0, 0.0]
-    return carried, edges, colors
+    return mapped, edges, colors
 
 
 if __name__ == "__main__":
@@ -116,8 +116,8 @@ if __name__ == "__main__":
         view.Background = [1.0, 1.0, 1.0]
         view.OrientationAxesVisibility = 0
         view.InteractionMode = "2D"
-        carried, edges, colors = show_system(system, source, target, grid, view)
-        for name, result in ("grid", carried), ("edges", edges):
+        mapped, edges, colors = show_system(system, source, target, grid, view)
+        for name, result in ("grid", mapped), ("edges", edges):
             SaveData(os.path.join(folder, "%s-%s.vtp" % (name, system)), proxy=result,
                      DataMode="Binary")
 
@@ -137,7 +137,7 @@ if __name__ == "__main__":
     bar.UseCustomLabels = 1
     bar.CustomLabels = [1e-9, 1e-6, 1e-3, 1.0]
 
-    # The first screenshot of a view moves its camera.
+    # Render once first, because the first rendering of a view resets its camera.
     RenderAllViews()
     for view in left, middle, right:
         view.CameraParallelProjection = 1
@@ -148,7 +148,7 @@ if __name__ == "__main__":
     RenderAllViews()
     SaveScreenshot(os.path.join(folder, "continuity.png"), layout, ImageResolution=[1920, 800],
                    SeparatorWidth=0, FontScaling="Do not scale fonts")
-    # Views in a window have other aspect ratios.
+    # In a window, views have different aspect ratios.
     for view in left, middle, right:
         ResetCamera(view)
         view.CameraParallelScale *= 0.75

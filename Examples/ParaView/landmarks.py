@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A pair of triangulations made from landmarks with an outline and a hole, and a grid mapped by it.
+"""A pair of triangulations made from landmarks, an outline and a hole, and the image of a grid under its map.
 
 In ParaView: load the plugin, then File > Run Script... In a shell, with the plugin's folder in PV_PLUGIN_PATH
 or the plugin's file as the second argument:
 
     pvbatch landmarks.py FOLDER [DifferentiableHomeomorphism.so]
 
-The folder (default: Output) gets landmarks.png, source-triangulation.vtp, target-triangulation.vtp and mapped-grid.vtp.
+Writes landmarks.png, source-triangulation.vtp, target-triangulation.vtp and mapped-grid.vtp to the folder (default:
+Output).
 """
 
 import os
@@ -16,7 +17,7 @@ import sys
 from paraview.simple import *
 
 
-# Turns inner points by a right angle, outer ones less, and stretches the whole.
+# Rotates points by up to 1.5 radians at the center, less far from it, and stretches the figure in x.
 ANGLE = "1.5*exp(-coordsX*coordsX - coordsY*coordsY)"
 BEND = (f"iHat*1.4*(cos({ANGLE})*coordsX - sin({ANGLE})*coordsY)"
         f" + jHat*(sin({ANGLE})*coordsX + cos({ANGLE})*coordsY)")
@@ -69,7 +70,7 @@ if __name__ == "__main__":
     source, target = OutputPort(pair, 0), OutputPort(pair, 1)
     mapped = DifferentiableHomeomorphism(Source=source, Target=target, Data=grid)
     pair.UpdatePropertyInformation()
-    print("Points added:", pair.NumberOfAddedPoints)
+    print("Added points:", pair.NumberOfAddedPoints)
 
     layout = CreateLayout("A pair made from landmarks")
     layout.SetSize(1500, 700)
@@ -92,7 +93,7 @@ if __name__ == "__main__":
         view.CameraParallelProjection = 1
     bar = GetScalarBar(colors, views[1])
     bar.Visibility = 1
-    bar.Title, bar.ComponentTitle = "smallest angle of both", ""
+    bar.Title, bar.ComponentTitle = "smallest angle in both domains", ""
     bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
     bar.TitleFontSize = bar.LabelFontSize = 8
     RenderAllViews()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A photograph of 4096 x 4096 pixels warped onto another face by Linear, Smooth, Cubic and a thin plate spline, with
-straight lines drawn across it, side by side (photographs of Debian's package gtkmorph-example).
+"""Warps a photograph of 4096 x 4096 pixels, with straight lines drawn across it, onto another face by Linear, Smooth,
+Cubic and a thin-plate spline (photographs of Debian's package gtkmorph-example). Writes an image for each map.
 
     photograph.py [FOLDER]"""
 

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
-# A square of 300 x 300 pixels, triangulated by a grid of 6 x 6 points, of which the inner ones move.
+# A square of 300 x 300 pixels, triangulated by a grid of 6 x 6 points, whose inner points are moved.
 size, count = 300, 6
 random = numpy.random.default_rng(4)
 x, y = numpy.meshgrid(*2 * [numpy.linspace(0, size - 1, count)])
@@ -29,8 +29,8 @@ f = Homeomorphism(source, target, triangles)
 points = random.uniform(0, size - 1, (100000, 2))
 error = numpy.abs(f.inverse(f(points)) - points).max()
 determinants = numpy.linalg.det(f.jacobian(points))
-print(f"{len(points)} points there and back: off by at most {error:.1e} pixels")
-print(f"areas change by factors from {determinants.min():.2f} to {determinants.max():.2f}")
+print(f"round trip of {len(points)} points: errors of at most {error:.1e} pixels")
+print(f"areas change by factors between {determinants.min():.2f} and {determinants.max():.2f}")
 
 # A checkerboard of two grays, with lines.
 row, column = numpy.mgrid[0:size, 0:size]

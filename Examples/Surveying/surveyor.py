@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Points for Examples/surveyor, and what became of them.
+"""Points for Examples/surveyor, and the evaluation of the results.
 
     surveyor.py points FILE.json POINTS.csv     a grid over the triangulation, random points, and a line
     surveyor.py compare FOLDER                  numbers, and the picture scale.png
@@ -20,8 +20,8 @@ LINE_POINTS = 6000
 
 
 def make_points(file_name, output):
-    """A grid over the source's box (kind 0), points that are evenly spread over the triangles (1), and a line from
-    west to east through the middle (2)."""
+    """A grid over the source's bounding box (kind 0), points that are distributed uniformly over the triangles (1), and
+    a line from west to east through the middle (2)."""
     with open(file_name, encoding="utf-8") as file:
         document = json.load(file)
     columns = document["vertices_columns"]
@@ -62,7 +62,7 @@ def largest(difference):
 
 
 def compare(folder):
-    """Prints the table, and draws how areas change."""
+    """Prints the table, and draws the change of areas."""
     os.chdir(folder)
     points, linear, smooth, back = (read(name + ".csv") for name in ("points", "linear", "smooth", "back"))
     scattered = points["kind"] == 1

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gives each filter meshes that are not isomorphic: refuse.py MESHES. Checks that the output is empty and that
-the filters recover; the caller checks the messages."""
+"""Sets meshes that are not isomorphic in each filter: refuse.py MESHES. Checks that the output is empty and that the
+filters recover; the caller checks the messages."""
 
 import os
 import sys

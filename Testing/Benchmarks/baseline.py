@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""The rows of this build beside those of another one, in turn, as ratios."""
+"""Times the rows of this build and of another one in turn, and prints the ratios."""
 
 import contextlib
 import os
@@ -12,7 +12,7 @@ from workloads import Workload, grid_in_scan_order, picture, random_points
 
 SYSTEMS = ("Linear", "Contour", "Smooth", "CubicLocal", "CubicLeast")
 PARTS = ("small", "large", "image", "construction")
-# A median may be so much slower, or as much as two runs of the other build differ.
+# The largest allowed ratio of medians, unless two runs of the other build differ by more.
 ALLOWED = 1.03
 
 

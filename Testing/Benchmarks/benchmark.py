@@ -7,8 +7,8 @@
     benchmark.py PROGRAM FOLDER [--quick] [--only PART ...] [--baseline DIR]
 
 PROGRAM is HomeomorphismBenchmark. Writes benchmark.md, benchmark.png and, with all times,
-benchmark.json to FOLDER. With --quick everything is smaller and repeated less often, to check the program;
-do not rely on its numbers. With --baseline, only the rows of this program are timed, in turn with those of the
+benchmark.json to FOLDER. With --quick, everything is smaller and repeated less often, to check the program;
+its numbers are not reliable. With --baseline, only the rows of this program are timed, in turn with those of the
 HomeomorphismBenchmark in another build folder, and their ratios are printed. Started by Testing/benchmark.
 """
 

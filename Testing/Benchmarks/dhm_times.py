@@ -5,7 +5,8 @@
 
     dhm_times.py [ROWS] [WIDTHxHEIGHT]        default: 1000000 rows, 10000x10000 pixels (RGB, GeoTIFF)
 
-Prints elapsed and processor time and the largest memory of each run, Python's start and all files included."""
+Prints the elapsed time, the processor time and the peak memory of each run, including the start of Python and the
+reading and writing of files."""
 
 import json
 import os

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Maps from landmarks by scikit-image's PiecewiseAffineTransform, which reuses the Delaunay triangulation of one side, and by
-this module, on the same landmarks and points in one run. Prints a table in Markdown. Started by Testing/stress peers."""
+"""Compares maps from landmarks: those of scikit-image's PiecewiseAffineTransform, which reuses the Delaunay
+triangulation of one domain, and those of this module, for the same landmarks and points in one run. Prints a table in Markdown.
+Started by Testing/stress peers."""
 
 import os
 import sys

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""The rows of the table, of the C++ program and of Python, and their timing."""
+"""The rows of the table, in the C++ program and in Python, and their timing."""
 
 import functools
 import statistics
@@ -12,7 +12,7 @@ import time
 import numpy
 
 DIRECTIONS = ("forward", "inverse")
-# Rows that would take more seconds than this for all points get few of them.
+# Rows that would take more seconds than this for all points are timed with fewer points.
 PATIENCE = 6.0
 
 

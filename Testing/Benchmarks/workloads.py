@@ -5,12 +5,12 @@
 
 import numpy
 
-# Interior points move by up to this share of a square. All triangles are then concordant, in any pair.
+# Interior points are displaced by up to this fraction of a square. Then all triangles of any pair are concordant.
 JITTER = 0.15
 
 
 def grid_points(n, seed):
-    """The points of n x n unit squares, row by row, with interior points moved at random."""
+    """The points of n x n unit squares, row by row, with interior points displaced at random."""
     points = numpy.stack(numpy.meshgrid(range(n + 1), range(n + 1)), -1).astype(float)
     offsets = numpy.random.default_rng(seed).uniform(-JITTER, JITTER, points.shape)
     points[1:-1, 1:-1] += offsets[1:-1, 1:-1]

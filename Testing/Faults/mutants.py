@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Plants faults in a copy of the sources and runs the tests that must find them: see Testing/mutants."""
+"""Inserts faults into a copy of the sources and runs the tests that must find them: see Testing/mutants."""
 
 import argparse
 import fnmatch

@@ -3,9 +3,9 @@
 
 // Makes meshes and data from arbitrary bytes and maps points through all classes or, in FuzzMaps,
 // from raw arrays to mapped points without VTK's pipeline, which is ten times faster. For all
-// bytes: nothing crashes or hangs, and every point reported as inside has an image and is the
-// inverse of that image. The environment variable FUZZ_SHOW prints the meshes encoded by the
-// bytes.
+// bytes: nothing crashes or hangs, and every point reported as inside has an image whose preimage
+// is the point. If the environment variable FUZZ_SHOW is set, the meshes encoded by the bytes are
+// printed.
 
 #include "FuzzInput.h"
 

@@ -4,7 +4,7 @@
 
 """Exact reference values of the cubic element, in rational numbers.
 
-The interpolant is found here from its definition: thirty unknown Bernstein ordinates of three
+The interpolant is computed here from its definition: thirty unknown Bernstein ordinates of three
 cubics, and one linear equation for each value and derivative at a corner, for each condition of
 continuous first derivatives inside, and for each edge's normal derivative to be linear. The
 determinant is multiplied out as a polynomial. Writes Testing/Data/cubic_element.csv; with --check,

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Finds lines that stand twice in C++ files: duplicates.py FOLDER [LENGTH]. Fails if LENGTH (12) or more
-consecutive lines are equal, blank lines, lines without a letter, includes and the license apart."""
+"""Finds duplicate lines in C++ files: duplicates.py FOLDER [LENGTH]. Fails if LENGTH (default: 12) or more consecutive
+lines are equal, not counting blank lines, lines without a letter, includes and the license."""
 
 import collections
 import pathlib
@@ -11,7 +11,7 @@ import sys
 
 
 def significant_lines(path):
-    """The stripped lines that say something, with their numbers."""
+    """The stripped lines that are compared, with their numbers."""
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         text = line.strip()
         if any(c.isalpha() for c in text) and not text.startswith(("#include", "// SPDX")):

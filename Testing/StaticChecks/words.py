@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Finds words that are not to be used, in names, code, and texts: words.py LIST FOLDER.
+"""Finds words that must not be used in names, code and texts: words.py LIST FOLDER.
 
-A line of the list is a file pattern (of names relative to the folder; `*` is all files), a tab, a regular
-expression, a tab, and what to write instead. Lines that begin with # are comments."""
+Each line of the list has a file pattern (for names relative to the folder; `*` stands for all files), a regular
+expression, and the replacement, separated by tabs. Lines that begin with # are comments."""
 
 import fnmatch
 import os

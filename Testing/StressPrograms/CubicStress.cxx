@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Builds Cubic maps of as many pairs as asked for and prints the tables of Documentation/cubic.md.
-// Fails if a map is not certified, folds at a sampled point, or does not come back.
+// Builds Cubic maps of random pairs and prints the tables of Documentation/cubic.md. Fails if a map
+// is not certified, folds at a sampled point, or if a point does not return in a round trip.
 //
 //   CubicStress [SHARE] [pairs|stars|needles|far|bending]...
 //
-// SHARE is how much of the full run is made, 1 by default. The results depend on it alone.
+// SHARE is the fraction of the full run, 1 by default. The results depend only on it.
 
 #include "Mesh/CubicPairs.h"
 
@@ -174,7 +174,8 @@ void RunStars()
     }
   }
   std::sort(rings.begin(), rings.end());
-  std::printf("| rays turn within | stars | derivative without rings | derivative inside rings | exceptional |\n"
+  std::printf("| rays turn within | stars | derivative without rings | derivative inside rings | "
+              "exceptional |\n"
               "|---|---|---|---|---|\n");
   for (int wide = 0; wide < 2; ++wide)
   {

@@ -3,12 +3,12 @@
 
 // Makes pairs of difficult figures, checks each, and prints a table in Markdown:
 //   StressPairs
-// or the row and the largest memory of a number of smoothly displaced landmarks:
+// or only the row of a number of smoothly displaced landmarks, and the peak memory:
 //   StressPairs --smooth NUMBER
-// or, as CSV, the smallest angle and the shares of obtuse and discordant triangles that are reached
-// with a number of added points:
+// or, as CSV, the smallest angle and the shares of obtuse and discordant triangles for numbers of
+// added points:
 //   StressPairs --curve NAME MAXIMUM [STEP]
-// The column seconds is the time of each search.
+// The column `seconds` is the time of each search.
 //
 // Times are those of the processor, in one thread.
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the curves that StressPairs --curve measures: plot_curves.py FOLDER IMAGE."""
+"""Draws the curves that StressPairs --curve prints: plot_curves.py FOLDER IMAGE."""
 
 import csv
 import os

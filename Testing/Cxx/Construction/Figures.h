@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Figures.h
-/// Figures drawn twice, for tests, and a check of pairs that shares no code with their construction
-/// but the exact orientation of three points.
+/// Figures in two domains for tests, and a check of pairs that shares no code with their
+/// construction except the exact orientation of three points.
 
 #ifndef Figures_h
 #define Figures_h

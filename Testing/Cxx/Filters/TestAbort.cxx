@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A filter that is aborted stops before its work is done, without an error; what it has not done is
-// marked, and the next update does it. Progress rises to one.
+// An aborted filter stops early, without an error; points that were not processed are marked, and
+// the next update processes them. Progress rises to one.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The map of whole meshes is bijective: the images of small triangles have one orientation, and
-// their areas add up to that of the other domain. And maps that are ill-conditioned.
+// The map of whole meshes is bijective: the images of small triangles have the same orientation,
+// and their areas add up to that of the other domain. This includes ill-conditioned maps.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The Cubic system through the VTK classes: both directions, mirrored targets and mixed winding,
-// tilted planes, its Jacobian, its arrays and statistics, and what it refuses.
+// tilted planes, its Jacobian, its arrays and statistics, and its refusals.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file TestHomeomorphismAlgorithm.cxx
-/// What the filters have in common: meshes shared by threads, and the warnings about blocks without
-/// points and points that miss a surface.
+/// Common properties of the filters: meshes shared by threads, and the warnings about blocks
+/// without points and about points slightly off a surface.
 
 #include "Fixtures/FilterRuns.h"
 

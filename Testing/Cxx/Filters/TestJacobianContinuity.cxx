@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The filter finds creases exactly where they are, at features of every type.
+// The filter finds all creases, and no others, at features of every type.
 
 #include "Fixtures/FilterRuns.h"
 #include "Fixtures/MeasuredMaps.h"

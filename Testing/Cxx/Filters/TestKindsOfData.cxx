@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Every kind of data and trees of them go through the filters: types, cells and arrays are kept,
-// and the results are those of the points alone.
+// The filters process every kind of data, and trees of data sets: types, cells and arrays are kept,
+// and the results are the same as for the points alone.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Data whose arrays and cells do not match: nothing is read out of bounds, and what can be mapped
-// is.
+// Data whose arrays and cells do not match: nothing is read out of bounds, and all valid parts are
+// mapped.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Pairs of planes anywhere in space keep heights, with normals that agree; points near a surface go
-// to the other surface.
+// For pairs of planes anywhere in space, the map preserves distances from the planes, with
+// consistent normals; points near a surface are mapped onto the other surface.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Finer pairs: the piecewise linear map keeps the tolerance between the samples, the meshes are
-// valid and conforming, and data is interpolated as in the original triangles.
+// Finer pairs: the piecewise linear map is within the maximum error between the samples, the meshes
+// are valid and conforming, and data is interpolated as in the original triangles.
 
 #include "Fixtures/FilterRuns.h"
 

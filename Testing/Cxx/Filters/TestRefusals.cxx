@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the VTK classes do with what they refuse: an error, an error code, a table of diagnostics,
-// and nothing in the outputs, not even that of the update before.
+// If meshes are refused, the VTK classes report an error, set an error code and a table of
+// diagnostics, and leave the outputs empty, without data of the previous update.
 
 #include "Fixtures/Defects.h"
 #include "Fixtures/FilterRuns.h"

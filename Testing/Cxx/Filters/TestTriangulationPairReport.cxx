@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The report's numbers agree with closed forms and with what the other filters find.
+// The numbers of the report agree with closed forms and with the results of the other filters.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file FilterRuns.h
-/// Runs of the VTK classes: coordinate systems, filters, messages, and comparisons of what came
-/// out.
+/// Runs of the VTK classes: coordinate systems, filters, messages, and comparisons of results.
 
 #ifndef fixtures_FilterRuns_h
 #define fixtures_FilterRuns_h

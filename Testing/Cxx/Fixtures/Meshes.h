@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Meshes.h
-/// Triangulations and pairs of them of every kind, changes to them, and random points of them.
+/// Triangulations and pairs of every kind, modifications of them, and random points in them.
 
 #ifndef fixtures_Meshes_h
 #define fixtures_Meshes_h

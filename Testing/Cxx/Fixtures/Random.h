@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Random.h
-/// Random numbers that follow from the seed on every platform, unlike the distributions of the
-/// standard library.
+/// Random numbers that are determined by the seed on every platform, unlike those of the
+/// distributions of the standard library.
 
 #ifndef fixtures_Random_h
 #define fixtures_Random_h

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file Triangles.h
-/// Triangles of the plane, their neighbors, points and charts, at random and as extreme as asked,
-/// for tests of properties. Nothing of VTK is needed.
+/// Random triangles in the plane, as extreme as requested, and their neighbors, points and charts,
+/// for tests of properties. Does not use VTK.
 
 #ifndef fixtures_Triangles_h
 #define fixtures_Triangles_h

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Charts of all systems: round trips from a point to its coordinates and back, for triangles from
-// fat ones to needles, on and within a few ulp of every line at which the formulas change; edges,
-// which have coordinates in proportion to lengths; and derivatives. See TestReferenceValues for
-// their values.
+// Charts of all systems: round trips from a point to its coordinates and back, for triangles of all
+// shapes, on and within a few ulp of every line at which the formulas change; edges, on which
+// coordinates are proportional to lengths; and derivatives. See TestReferenceValues for values.
 
 #include "Fixtures/Triangles.h"
 

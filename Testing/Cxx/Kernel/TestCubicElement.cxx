@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The cubic element and its certificate: against exact rational numbers computed from the element's
-// definition by Testing/Reference/cubic_element.py, and by what must hold of any element.
+// The cubic element and its certificate: agreement with exact rational numbers, computed from the
+// definition of the element by Testing/Reference/cubic_element.py, and properties of all elements.
 
 #include "Fixtures/Random.h"
 #include "Fixtures/Tables.h"

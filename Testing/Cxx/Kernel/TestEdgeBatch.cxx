@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Batches of edge views equal single edge views to the same bits, for any number of edges and any
-// size of triangles.
+// Batches of edge views equal single edge views, bit for bit, for any number of edges and any size
+// of triangles.
 
 #include "Fixtures/Random.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Edge views agree with integer arithmetic. Where differences of coordinates are exact, every
-// number of the view is accurate to a few ulp of itself, in needles too.
+// number of the view is accurate to a few ulp of itself, even in needles.
 
 #include "Fixtures/Triangles.h"
 

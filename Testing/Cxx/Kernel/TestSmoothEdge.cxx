@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// In the Smooth system, derivatives agree from both sides of an edge (the second ones, too: see
+// In the Smooth system, derivatives on both sides of an edge agree (for second derivatives, see
 // TestJacobianContinuity), and the determinant is positive.
 
 #include "Fixtures/Triangles.h"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The sweep over the boundary finds out whether triangles overlap. Here every triangle of many
-// small meshes is compared with every other, in integers. Overlaps within the rounding of the
-// coordinates do not count.
+// The sweep over the boundary decides whether triangles overlap. Its results are compared with
+// tests of all pairs of triangles of many small meshes, in integers. Overlaps within the rounding
+// of the coordinates are ignored.
 
 #include "Fixtures/Triangulations.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The Cubic map: certified, C1, one to one, within its deviation, with both kinds of bending, on
+// The Cubic map: certified, C1, one to one, within MaximumDeviation, with both kinds of bending, on
 // random pairs as uneven as convex combinations make them, needles, and boundaries of all kinds.
 
 #include "CubicPairs.h"

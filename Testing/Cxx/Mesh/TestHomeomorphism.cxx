@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Mapping points in blocks gives the same bits as mapping each point alone, for any order of
-// points.
+// Mapping points in blocks gives the same results, bit for bit, as mapping each point alone, for
+// any order of the points.
 
 #include "Fixtures/FilterRuns.h"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Every defect for which meshes are refused: its kind, the mesh and all cells that have it. And
-// valid meshes that resemble defective ones.
+// Every defect for which meshes are refused: its kind, its mesh, and all its cells; and valid
+// meshes that resemble defective ones.
 
 #include "Fixtures/Defects.h"
 #include "Fixtures/FilterRuns.h"

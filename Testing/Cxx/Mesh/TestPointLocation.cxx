@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Exactly the points of the closed domain are found, and the result depends on the point alone: not
-// on the hint, the order or the size of the coordinates.
+// Exactly the points of the closed domain are found, and the result depends only on the point: not
+// on the hint, the order, or the size of the coordinates.
 
 #include "Fixtures/FilterRuns.h"
 #include "Fixtures/Triangulations.h"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The map is made anew if the meshes or the options change, in place or not, and only then; and all
-// classes that keep a map notice.
+// The map is rebuilt if the meshes or the options change, in place or not, and only then, in all
+// classes that keep a map.
 
 #include "Fixtures/FilterRuns.h"
 
