@@ -195,7 +195,7 @@ public:
   explicit Residuals(const std::array<std::vector<Vector2>, 2>& landmarks)
     : Landmarks(landmarks)
     , Near(landmarks[0])
-    , Terms(landmarks[0].size() < 9 ? 3 : 6)
+    , Terms(landmarks[0].size() < 15 ? 3 : 6)
   {
   }
 
@@ -231,7 +231,8 @@ public:
   }
 
   /// @param nearest room for neighbors, which many calls can share
-  double Compute(int landmark, Distances& nearest) const
+  /// @param reduction what the distance is divided by, because the map is uncertain at the landmark
+  double Compute(int landmark, Distances& nearest, double* reduction = nullptr) const
   {
     this->Nearest(landmark, Neighbors, nearest);
     const std::size_t count = nearest.size();
@@ -285,8 +286,12 @@ public:
           influence.begin(), influence.begin() + this->Terms, n.Values.begin(), 0.0);
       variance += share * share;
     }
-    return std::hypot(coefficients[0].x, coefficients[0].y) /
-      std::sqrt(std::max(1.0, variance / UsualVariance));
+    const double divisor = std::sqrt(std::max(1.0, variance / UsualVariance));
+    if (reduction)
+    {
+      *reduction = divisor;
+    }
+    return std::hypot(coefficients[0].x, coefficients[0].y) / divisor;
   }
 
   std::vector<int> Rejected;
@@ -319,25 +324,93 @@ std::vector<int> FindWorst(
   return worst;
 }
 
-} // namespace
-
-std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>& landmarks)
+/// The residual that four fifths of the trusted landmarks do not exceed.
+double FourFifths(const std::vector<double>& residuals, const std::vector<int>& rejected)
 {
-  const int n = static_cast<int>(landmarks[0].size());
-  std::vector<double> residuals(n, 0.0);
-  if (n < 5)
+  std::vector<double> trusted;
+  for (int i = 0; i < static_cast<int>(residuals.size()); ++i)
   {
-    return residuals;
+    if (!std::count(rejected.begin(), rejected.end(), i))
+    {
+      trusted.push_back(residuals[i]);
+    }
   }
-  Residuals among(landmarks);
+  const auto usual = trusted.begin() + 4 * (static_cast<std::ptrdiff_t>(trusted.size()) - 1) / 5;
+  std::nth_element(trusted.begin(), usual, trusted.end());
+  return *usual;
+}
+
+std::vector<double> ComputeAll(const Residuals& among, int n)
+{
+  std::vector<double> residuals(n);
   Distances nearest;
   for (int i = 0; i < n; ++i)
   {
     residuals[i] = among.Compute(i, nearest);
   }
-  std::vector<double> sorted = residuals;
-  std::nth_element(sorted.begin(), sorted.begin() + 4 * n / 5, sorted.end());
-  const double limit = 4.0 * sorted[4 * n / 5];
+  return residuals;
+}
+
+/// Rejects one or two of few landmarks. A wrong one is a neighbor of most others, whose residuals
+/// it spoils, so that none stands out before it is left out. Returns the residuals.
+std::vector<double> RejectAmongFew(Residuals& among, int n)
+{
+  std::vector<double> residuals = ComputeAll(among, n);
+  constexpr int few = 30;
+  if (n > few)
+  {
+    return residuals;
+  }
+  const auto attempt = [&](const std::vector<std::vector<int>>& sets) {
+    const std::vector<int> before = among.Rejected;
+    double best = FourFifths(residuals, before) / 2.0;
+    std::vector<int> rejected = before;
+    std::vector<double> without;
+    for (const std::vector<int>& set : sets)
+    {
+      among.Rejected = set;
+      std::vector<double> changed = ComputeAll(among, n);
+      const double usual = FourFifths(changed, set);
+      if (usual < best &&
+        std::all_of(set.begin(), set.end(), [&](int i) { return changed[i] > 6.0 * usual; }))
+      {
+        best = usual;
+        rejected = set;
+        without = std::move(changed);
+      }
+    }
+    among.Rejected = rejected;
+    if (!without.empty())
+    {
+      residuals = std::move(without);
+    }
+    return rejected.size() > before.size();
+  };
+  std::vector<std::vector<int>> singles;
+  std::vector<std::vector<int>> pairs;
+  for (int i = 0; i < n; ++i)
+  {
+    singles.push_back({ i });
+    for (int k = 0; k < i; ++k)
+    {
+      pairs.push_back({ k, i });
+    }
+  }
+  // Two that have changed places are both wrong: without one of them, the other still spoils all.
+  constexpr int fewer = 16;
+  if (!attempt(singles) && n >= 8 && n <= fewer)
+  {
+    attempt(pairs);
+  }
+  return residuals;
+}
+
+/// Rejects landmarks that stand out. Returns the residuals.
+std::vector<double> Reject(Residuals& among, int n)
+{
+  Distances nearest;
+  std::vector<double> residuals = RejectAmongFew(among, n);
+  const double limit = 4.0 * FourFifths(residuals, among.Rejected);
   // Reject the landmark without which the others fit best, as long as one stands out. The worst one
   // may only be the neighbor of a wrong one.
   while (static_cast<int>(among.Rejected.size()) < std::min(10, n / 5))
@@ -377,6 +450,51 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
   for (const int rejected : among.Rejected)
   {
     residuals[rejected] = among.Compute(rejected, nearest);
+  }
+  return residuals;
+}
+
+} // namespace
+
+std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>& landmarks)
+{
+  const int n = static_cast<int>(landmarks[0].size());
+  if (n < 5)
+  {
+    return std::vector<double>(n, 0.0);
+  }
+  Residuals among(landmarks);
+  std::vector<double> residuals = Reject(among, n);
+  // A landmark that is wrong in the source lies far from its neighbors there, where a map through
+  // them is uncertain; but the inverse map is not.
+  const std::array<std::vector<Vector2>, 2> exchanged{ landmarks[1], landmarks[0] };
+  Residuals back(exchanged);
+  const std::vector<double> inverse = Reject(back, n);
+  const double usual = FourFifths(inverse, back.Rejected);
+  std::vector<int> added;
+  Distances nearest;
+  for (const int i : back.Rejected)
+  {
+    constexpr double uncertain = 3.0;
+    double reduction = 1.0;
+    among.Compute(i, nearest, &reduction);
+    if (inverse[i] > 6.0 * usual && reduction > uncertain)
+    {
+      added.push_back(i);
+      if (!std::count(among.Rejected.begin(), among.Rejected.end(), i))
+      {
+        among.Rejected.push_back(i);
+      }
+    }
+  }
+  if (!added.empty())
+  {
+    residuals = ComputeAll(among, n);
+    const double scale = usual > 0.0 ? FourFifths(residuals, among.Rejected) / usual : 0.0;
+    for (const int i : added)
+    {
+      residuals[i] = std::max(residuals[i], scale * inverse[i]);
+    }
   }
   return residuals;
 }

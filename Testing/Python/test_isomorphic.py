@@ -139,6 +139,38 @@ def test_the_frame_of_an_image_is_predicted():
     assert numpy.allclose(pair.target[80:], bend(rim), atol=1e-9)
 
 
+@pytest.mark.parametrize("count", [6, 10, 15, 40])
+def test_gross_errors_among_few_landmarks_are_found(count):
+    """Those of typing: a factor of ten, a sign, coordinates or landmarks exchanged, in the source or in the target."""
+    missed = false = trials = 0
+    for seed in range(5):
+        random = numpy.random.default_rng(100 * count + seed)
+        source = 1000 * random.random((count, 2))
+        turn = numpy.array([[0.8, 0.7], [-0.6, 0.9]])
+        target = source @ turn + [5000, 7000] + 10 * numpy.sin(source[:, ::-1] / 300)
+        target += random.normal(0, 0.5, target.shape)
+        false += len(isomorphic_triangulation(source, target).suspicious()) > 0
+        i, k = random.choice(count, 2, replace=False)
+        for error in ("ten", "sign", "coordinates", "landmarks"):
+            for side in (0, 1):
+                points = [source.copy(), target.copy()]
+                wrong = points[side]
+                if error == "ten":
+                    wrong[i, 0] *= 10
+                elif error == "sign":
+                    wrong[i, 1] *= -1
+                elif error == "coordinates":
+                    wrong[i] = wrong[i, ::-1]
+                else:
+                    wrong[[i, k]] = wrong[[k, i]]
+                if numpy.abs(points[side] - (source, target)[side]).max() < 150 or error == "landmarks" and count < 8:
+                    continue
+                trials += 1
+                missed += not {i, *([k] if error == "landmarks" else [])} <= set(
+                    isomorphic_triangulation(*points).suspicious().tolist())
+    assert missed <= 0.1 * trials and false <= 1
+
+
 def test_mistyped_landmarks_at_the_border_come_before_their_neighbors():
     """The fits of these are one-sided, and follow a wrong landmark."""
     for seed in range(80):
