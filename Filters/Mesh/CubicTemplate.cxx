@@ -61,6 +61,19 @@ double GetGauge(const FanSector& s, int part, const Vector2& point)
   return Cross(point - Vector2{}, b - a) / Cross(a, b - a);
 }
 
+// The coordinates of a point that rounding has taken out of an element, in it: beside the vertex of
+// endless rings, elements are smaller than rounding, and cubics grow without bound.
+Barycentric Inside(const Barycentric& l)
+{
+  if (*std::min_element(l.begin(), l.end()) >= 0.0)
+  {
+    return l;
+  }
+  const Barycentric inside{ std::max(l[0], 0.0), std::max(l[1], 0.0), std::max(l[2], 0.0) };
+  const double sum = inside[0] + inside[1] + inside[2];
+  return { inside[0] / sum, inside[1] / sum, inside[2] / sum };
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -791,7 +804,7 @@ void CubicTemplate::EvaluateRings(
   Vector2 value;
   Matrix2 gradient;
   homeomorphism::Evaluate(
-    element, GetOrdinates(element), ToBarycentric(element.Points, scaled), value, gradient);
+    element, GetOrdinates(element), Inside(ToBarycentric(element.Points, scaled)), value, gradient);
   image = scale * (element.Affine * scaled + value);
   derivative = element.Affine + gradient;
 }

@@ -428,6 +428,40 @@ TEST(CubicMap, StarsBeyondTheProgramHaveRings)
   EXPECT_GT(rings, 0);
 }
 
+TEST_P(CubicMaps, PointsWithinRoundingOfExceptionalVerticesKeepTheirSense)
+{
+  std::mt19937_64 random(38);
+  for (int n = 0; n < 40; ++n)
+  {
+    double range;
+    const PlanarPair pair = RandomStar(random, 4 + n % 7, 1.5, range);
+    const CubicMap map(pair, Options(GetParam()));
+    const std::vector<std::int32_t>& exceptional = map.GetStatistics().ExceptionalBoundaryPoints;
+    for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
+    {
+      for (int k = 0; k < 3 && map.IsCertified(t); ++k)
+      {
+        const int point = pair.Triangles[t][k];
+        if (std::count(exceptional.begin(), exceptional.end(), point) == 0)
+        {
+          continue;
+        }
+        for (int digits = 10; digits < 64; ++digits)
+        {
+          const double share = std::pow(10.0, -0.25 * digits);
+          for (const int other : { NextCorner(k), PreviousCorner(k) })
+          {
+            const Vector2 start = pair.Source[point];
+            const Vector2 end = pair.Source[pair.Triangles[t][other]];
+            EXPECT_GT(map.GetDerivative(t, start + share * (end - start)).Determinant(), 0.0)
+              << n << " " << t << " " << share;
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(CubicMap, RingsLeadToADerivativeWhereSectorsAreAlmostHalfTurns)
 {
   // At vertices of these, images of sectors are 177 to 180 degrees beside others of a hundredth.
