@@ -332,11 +332,12 @@ class Warp:
         if found is None:
             raise Failure("No pixel of the image is within the mesh.")
         low, high = found[0].min(axis=0), found[0].max(axis=0)
+        factor = self.scale if abs(self.scale - 1) >= 0.01 else 1.0
+        spacing = numpy.full(2, resolution or factor * raster.grid.pixel)
         if size:
-            spacing = (high - low) / numpy.maximum(numpy.array(size) - 1, 1)
+            # A single row or column has no height or width.
+            spacing = numpy.where(high > low, (high - low) / numpy.maximum(numpy.array(size) - 1, 1), spacing)
         else:
-            factor = self.scale if abs(self.scale - 1) >= 0.01 else 1.0
-            spacing = numpy.full(2, resolution or factor * raster.grid.pixel)
             numbers = [length / step for length, step in zip((high - low).tolist(), spacing.tolist())]
             if math.prod(numbers) > LARGEST:
                 raise Failure("The result would have {:.6g} x {:.6g} pixels, more than 2^32: use a larger "

@@ -481,6 +481,18 @@ def test_no_data_leaves_no_trace(dhm, shift):
             assert known.sum() > 4000 and (0 <= found[known]).all() and (found[known] <= 1).all()
 
 
+@pytest.mark.parametrize("shape", [(1, 1, 1), (1, 9, 1), (9, 1, 1)])
+def test_single_rows_and_columns(dhm, shift, shape):
+    write_geotiff(dhm.path("in.tif"), numpy.full(shape, 7, "u1"), 3384800, 6672900, 10)
+    for options in ((), ("--size", "8x6"), ("--size", "1x1"), ("--resolution", "3"), ("--resolution", "90")):
+        for more in ((), ("--nearest",)):
+            dhm("warp", "shift.json", "in.tif", "-o", "out.tif", "--force", *options, *more)
+            with rasterio.open(dhm.path("out.tif")) as file:
+                values, alpha = file.read()
+            assert (values[alpha > 0] == 7).all() and ((alpha > 0).any() or options[-1:] == ("1x1",))
+            assert options[:1] != ("--size",) or f"{file.width}x{file.height}" == options[1]
+
+
 def test_no_data_that_pixels_cannot_have(dhm, same):
     pixels = numpy.random.default_rng(3).integers(1, 256, (60, 80, 1)).astype("u1")
     tifffile = pytest.importorskip("tifffile")
