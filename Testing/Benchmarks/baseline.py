@@ -41,9 +41,11 @@ def make_workloads(part, settings, folder):
     side = settings["side"]
     orders = {"scan": grid_in_scan_order(workload.width, side, side),
               "random": random_points(workload.width, side * side)}
+    if part == "large":
+        orders["dense"] = grid_in_scan_order(workload.width, *settings["dense"])
     for order, points in orders.items():
         workload.add_points(order, points)
-    return workload, {f"{part}, {order}": (order, side * side) for order in orders}
+    return workload, {f"{part}, {order}": (order, len(points)) for order, points in orders.items()}
 
 
 def compare(program, other, settings, folder, parts):
