@@ -167,7 +167,8 @@ class Output:
             self.path = os.path.join(folder, "output." + self.format if self.special else os.path.basename(self.target))
             yield
             # Move files beside the output first, so that the output exists only if it is complete.
-            paths = sorted((entry.path for entry in os.scandir(folder)), key=self.path.__eq__)
+            paths = sorted((os.path.join(place, name) for place, _, names in os.walk(folder) for name in names),
+                           key=lambda path: (path == self.path, path))
             for path in paths:
                 # Some libraries do not report a full disk; writing more bytes then fails.
                 with open(path, "r+b") as file:
@@ -181,9 +182,11 @@ class Output:
                     shutil.copyfileobj(file, goal)
                     goal.flush()
                 return
-            for path in paths:
-                goal = os.path.join(self.folder, os.path.basename(path))
+            goals = [os.path.join(self.folder, os.path.relpath(path, folder)) for path in paths]
+            for goal in goals:
                 self._require_new(goal)
+            for path, goal in zip(paths, goals):
+                os.makedirs(os.path.dirname(goal), exist_ok=True)
                 os.replace(path, goal)
 
     def write_bytes(self, data):

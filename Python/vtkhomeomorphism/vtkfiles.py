@@ -16,7 +16,7 @@ import vtkmodules.vtkIOXML as xml
 from vtkmodules.numpy_interface.dataset_adapter import CompositeDataSet
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet, vtkMultiBlockDataSet
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 from .files import FILE, USAGE, Failure, quote
@@ -100,6 +100,8 @@ def write(data, output):
     """Writes a data object to a .vtk file, or to the XML file of its type. It is first written to memory, because on
     full disks some writers of VTK 9.1 crash and others do not report an error."""
     writer = xml.vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
+    if isinstance(data, vtkMultiBlockDataSet):
+        writer = xml.vtkXMLMultiBlockDataWriter()
     right = writer.GetDefaultFileExtension() if writer else "vtk"
     if output.format not in ("vtk", right):
         raise Failure(f"A .{output.format} file cannot contain a {data.GetClassName()}: use a .{right}.", USAGE)
@@ -117,12 +119,18 @@ def write(data, output):
                           "support (& < > \" '): rename the array, or write a .vtk.")
         # VTK before 9.4 cannot read appended data with every version of expat.
         writer.SetDataModeToBinary()
-    writer.WriteToOutputStringOn()
+    # The blocks are files in a folder beside a .vtm.
+    beside = output.format == "vtm"
+    if beside and output.special:
+        raise Failure(f"{output.name} cannot hold the files of a .vtm: use a .vtk.", USAGE)
+    writer.SetFileName(output.path) if beside else writer.WriteToOutputStringOn()
     writer.SetInputDataObject(data)
     writer.Write()
     errors = take_messages()
     if errors or writer.GetErrorCode() != 0:
         raise Failure(f"Cannot write {output.name}: {quote(errors, 300)}", FILE)
+    if beside:
+        return
     text = writer.GetOutputStdString() if output.format == "vtk" else writer.GetOutputString()
     output.write_bytes(text if isinstance(text, bytes) else text.encode())
 

@@ -8,7 +8,10 @@ import io
 import numpy
 import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
+from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader
+from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLMultiBlockDataWriter, vtkXMLPolyDataReader
+from vtkhomeomorphism.arrays import make_mesh
 from conftest import FILE, REFUSED, USAGE
 from pairs import MASK, Pair, barycentric, inside_points, interpolate, make_pair, map_points, read_csv, write_csv, \
     write_json, write_mesh, write_vtk, xy
@@ -311,6 +314,36 @@ def test_meshes_with_points_outside_are_not_written_where_they_cannot_be_marked(
     write_mesh(dhm.path("d.off"), [[0.5, 0.5], [0.6, 0.5], [1.5, 0.6]], [[0, 1, 2]])
     dhm.refuse(REFUSED, "map", *MESHES, "d.off", "-o", "new.obj", says=".vtp")
     dhm("map", *MESHES, "d.off", "-o", "new.vtp")
+
+
+def test_trees_of_data_stay_trees(dhm, pair):
+    tree, points = vtkMultiBlockDataSet(), [inside_points(pair, 9, seed) for seed in (1, 2)]
+    for block, name in ((0, "rock"), (2, "soil")):
+        tree.SetBlock(block, make_mesh(points[block // 2], [[0, 1, 2]]))
+        tree.GetMetaData(block).Set(vtkCompositeDataSet.NAME(), name)
+    writer = vtkXMLMultiBlockDataWriter()
+    writer.SetFileName(str(dhm.path("tree.vtm")))
+    writer.SetInputData(tree)
+    writer.Write()
+    words = ("map", "-s", "linear", *MESHES, "tree.vtm", "-o")
+    for name in ("out.vtm", "out.vtk"):
+        dhm(*words, name)
+        reader = vtkGenericDataObjectReader() if name == "out.vtk" else vtkXMLMultiBlockDataReader()
+        reader.SetFileName(str(dhm.path(name)))
+        reader.Update()
+        result = reader.GetOutputDataObject(0)
+        assert result.GetNumberOfBlocks() == 3 and result.GetBlock(1) is None
+        for block, called in ((0, "rock"), (2, "soil")):
+            found = vtk_to_numpy(result.GetBlock(block).GetPoints().GetData())[:, :2]
+            numpy.testing.assert_allclose(found, interpolate(points[block // 2], pair), rtol=0, atol=1e-6)
+            assert result.GetMetaData(block).Get(vtkCompositeDataSet.NAME()) == called
+    # Files of blocks are replaced on request only, and others in their folder stay.
+    dhm.path("out.vtm").unlink()
+    dhm.path("out/mine.txt").write_text("a note")
+    dhm.refuse(FILE, *words, "out.vtm", says=("out_0.vtp", "--force"))
+    dhm(*words, "out.vtm", "--force")
+    assert dhm.path("out/mine.txt").read_text() == "a note"
+    dhm.refuse(USAGE, *words, "-", "--output-format", "vtm", says=".vtk")
 
 
 def test_parts_of_meshes_that_are_lost_are_named(dhm, pair):
