@@ -63,7 +63,7 @@ public:
   vtkTypeMacro(vtkIsomorphicTriangulation, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// What is triangulated.
+  /// The domain that is triangulated.
   enum Domains
   {
     AUTOMATIC = 0,  ///< OUTLINE if there are loops, else FRAME

@@ -15,39 +15,40 @@
 namespace homeomorphism
 {
 
-/// What is triangulated.
+/// The domain that is triangulated.
 enum class FigureDomain
 {
-  /// The inside of the loops if there are any, else a frame.
+  /// The interior of the loops if there are any, otherwise a frame.
   Automatic,
-  /// The inside of the loops.
+  /// The interior of the loops.
   Outline,
   /// A frame around the points.
   Frame,
-  /// The convex hulls, if they have the same points in the same order.
+  /// The convex hulls, which must have the same points in the same order.
   ConvexHull
 };
 
 struct BoundaryOptions
 {
   FigureDomain Domain = FigureDomain::Automatic;
-  /// Corresponding corners of two convex polygons around the points; both empty: the source's
-  /// bounds, enlarged, and their image by the affine map that fits best, enlarged further until all
-  /// points are inside, or where that would have to be much larger the target's bounds.
+  /// Corresponding corners of two convex polygons around the points. If both are empty, frames are
+  /// automatic: in the source, the enlarged bounds of the points; in the target, their image under
+  /// the affine map that fits best, enlarged until all points are inside, or the bounds of the
+  /// points if that image would have to be much larger.
   std::array<std::vector<Vector2>, 2> Frames;
-  /// How far such a frame is from the points, in their spacings: the spacing of points is that of
-  /// as many points spread evenly over their bounds.
+  /// The distance of an automatic frame from the points, in spacings: the spacing is that of the
+  /// same number of points distributed evenly over their bounds.
   double FrameMargin = 0.5;
-  /// Whether such a frame gets points on its edges, about two spacings apart.
+  /// Whether an automatic frame has points on its edges, about two spacings apart.
   bool DividesFrame = true;
 };
 
 /// A figure with the boundary of its domain.
 struct BoundedFigure
 {
-  /// The figure's points, then the frame's.
+  /// The points of the figure, followed by those of the frame.
   std::array<std::vector<Vector2>, 2> Points;
-  /// Loops that bound the domain, and those that are constraints only.
+  /// Loops that bound the domain, and loops that are only constraints.
   std::vector<std::vector<int>> Loops;
   std::vector<std::vector<int>> ClosedLines;
   bool Mirrored = false;
@@ -55,18 +56,18 @@ struct BoundedFigure
   bool HasAutomaticFrame = false;
   /// Whether the automatic frame has points on its edges.
   bool FrameIsDivided = false;
-  /// Empty, or why the figure is refused.
+  /// The reasons why the figure is refused; empty if it is accepted.
   FigureProblems Problems;
 };
 
 BoundedFigure FindBoundary(const FigurePair& figure, const BoundaryOptions& options);
 
-/// Whether @a p, on the line of @a a and @a b, lies strictly between them.
+/// Whether a point @a p on the line through @a a and @a b lies strictly between them.
 bool IsBetween(const Vector2& p, const Vector2& a, const Vector2& b);
 
-/// Corners of two rectangles, given as the lower and the upper corner, so that corners of the same
-/// number correspond under the affine map that fits the points best. The target's run the other way
-/// round if that map is a reflection.
+/// The corners of two rectangles, each given by its lower and upper corners, in an order such that
+/// corners with the same number correspond under the affine map that fits the points best. If that
+/// map is a reflection, the order in the target is clockwise.
 std::array<std::vector<Vector2>, 2> MatchRectangles(const FigurePair& figure,
   const std::array<Vector2, 2>& source, const std::array<Vector2, 2>& target);
 

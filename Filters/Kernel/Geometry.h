@@ -283,7 +283,7 @@ HOMEOMORPHISM_ALWAYS_INLINE EdgeView ViewFromEdge(
     scale * std::abs(DifferenceOfProducts(edge.x, other.y, edge.y, other.x)) / length };
 }
 
-/// The Length of ViewFromEdge, to the same bits.
+/// The Length of ViewFromEdge; the same, bit for bit.
 HOMEOMORPHISM_ALWAYS_INLINE double EdgeLength(const Vector2& start, const Vector2& end)
 {
   const double scale = PowerOfTwoNear(end - start);

@@ -154,9 +154,10 @@ void SetSmoothBatch(SmoothBatch& batch, int begin, int end, const double* const 
 /// Fills elements with a point that the map does not move.
 void FillSmoothBatch(SmoothBatch& batch, int begin, int end);
 
-/// Maps the first @a count points from the source's chart to the target's, to the same bits as
-/// SmoothChart::ToReference and ToPoint. Fills elements up to the next multiple of 32. Copies the
-/// references to @a references, in the order of L, unless it is null.
+/// Maps the first @a count points from the source's chart to the target's. The results are the
+/// same, bit for bit, as those of SmoothChart::ToReference and ToPoint. Fills elements up to the
+/// next multiple of 32. Copies the references to @a references, in the order of L, unless it is
+/// null.
 void MapSmoothBatch(SmoothBatch& batch, int count, double (*references)[SmoothBatch::Size]);
 
 /// A point in the affine charts of both triangles, and its reference.

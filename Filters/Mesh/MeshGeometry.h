@@ -86,7 +86,7 @@ public:
   /// Whether all points lie in one plane, up to the rounding of their coordinates.
   bool IsPlanar() const { return this->Planar; }
   /// Whether the plane is parallel to the x and y axes and has the normal z, so that points are
-  /// converted by a scale and the plane's distance from the origin alone.
+  /// converted only by a scale and the plane's distance from the origin.
   bool IsHorizontal() const
   {
     return this->AxisParallel && this->AxisOrder[0] == 0 && this->AxisOrder[1] == 1;

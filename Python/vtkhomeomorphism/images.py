@@ -76,8 +76,8 @@ class Grid:
         return replace(self, width=width, height=height, first=self.at(numpy.array([column, row])))
 
     def to_vtk(self, values=None, as_cells=False):
-        """An image, with values of shape (height, width, components), whose first row is the lowest, at its points or
-        in its cells."""
+        """A vtkImageData whose first row is the lowest, with values of shape (height, width, components) as point or
+        cell data."""
         if as_cells:
             image = self.part(-0.5, -0.5, self.width + 1, self.height + 1).to_vtk()
             add_array(image, "Pixels", values[::-1].reshape(-1, values.shape[2]), True)
@@ -100,9 +100,9 @@ class Raster:
     """An image in memory, an array of shape (rows, columns, bands)."""
 
     nodata = None
-    source = None  # the file whose metadata the result gets
+    source = None  # the file whose metadata is copied to the result
     profile = None  # the ICC profile of the colors
-    is_classes = False  # whether the values are numbers of a palette's colors
+    is_classes = False  # whether the values are indices of the colors of a palette
 
     def __init__(self, pixels, mask=None):
         self.pixels, self.mask = numpy.atleast_3d(pixels), mask
@@ -178,7 +178,7 @@ class GdalRaster(Raster):
         if not (self.nodata is None or can_hold(self.dtype, self.nodata)):
             self.nodata = None
         self.palette, kinds = None, [kind.name for kind in self.file.colorinterp]
-        # An extra band without a meaning is transparency, as a rule, if it is beside colors.
+        # An additional band of unknown meaning is usually transparency if the other bands are colors.
         self.has_alpha = kinds[-1] == "alpha" or (
             not self.file.crs and kinds[:-1] in (["gray"], ["red", "green", "blue"]) and self.dtype.kind == "u")
         self.source = self.file
@@ -193,7 +193,7 @@ class GdalRaster(Raster):
             self.grid = Grid(*self.grid.size, numpy.array([t.c, t.f]) + steps @ [0.5, 0.5], steps, self.file.crs, True)
 
     def _read_palette(self):
-        """The colors of values; transparent for the value of no data."""
+        """The colors of values. The color of the value for no data is transparent."""
         colors = numpy.zeros((2 ** (8 * self.dtype.itemsize), 4), numpy.uint8)
         for value, color in self.file.colormap(1).items():
             colors[value] = color
@@ -213,8 +213,8 @@ class GdalRaster(Raster):
 
 
 def read(name, standard_format="png", keep_palette=False):
-    """The image in a file. The colors of a GeoTIFF's palette become its values unless they are to be kept. Raises
-    Failure."""
+    """The image in a file. The values of a GeoTIFF with a palette are replaced by its colors unless the palette is
+    kept. Raises Failure."""
     input = Input(name, standard_format)
     if input.format not in PICTURES:
         raise Failure(f"Cannot read {input.name} as an image: the formats are {dotted(PICTURES)}.", USAGE)
@@ -241,7 +241,7 @@ def _read_picture(input):
         if "16B" in str(image.tile) and image.mode not in ("I", "I;16"):
             # Pillow would reduce 16 bits to 8.
             return Raster(GdalRaster(input).all())
-        # That of inks does not fit the colors that they become.
+        # The profile of CMYK colors does not apply to the RGB colors to which they are converted.
         profile = image.info.get("icc_profile") if image.mode != "CMYK" else None
         if image.mode not in ("L", "LA", "RGB", "RGBA", "I", "I;16", "F"):
             kinds = {"P": "RGBA" if "transparency" in image.info else "RGB", "1": "L", "PA": "RGBA"}
@@ -317,7 +317,7 @@ class Warp:
         line = self._map(grid.outline(), forward)
         here, there = self.rims if forward else self.rims[::-1]
         pixels = grid.pixels(here)
-        # Beyond the centers of the pixels at the border, where a domain may end with the image, is no place for more.
+        # The domain may end at the border of the image, so points beyond the centers of pixels there are not available.
         inside = ((pixels >= -1e-6) & (pixels <= numpy.array(grid.size) - 1 + 1e-6)).all(axis=2)
         points = numpy.vstack((line, there[inside]))
         if numpy.isnan(points).all():
@@ -414,14 +414,14 @@ class Warp:
 
 
 def can_hold(dtype, value):
-    """Whether a type of pixels has a value."""
+    """Whether a type of pixels can represent a value."""
     if dtype.kind in "iu":
         return numpy.iinfo(dtype).min <= value <= numpy.iinfo(dtype).max and value == int(value)
     return not abs(value) > numpy.finfo(dtype).max or math.isinf(value)
 
 
 def unusual_value(raster):
-    """A value for no data that pixels hardly have."""
+    """A value for no data that pixels are unlikely to have."""
     if raster.dtype.kind not in "iu":
         return numpy.nan
     limits = numpy.iinfo(raster.dtype)
@@ -433,15 +433,15 @@ def round_to(dtype, values):
 
 
 def weigh(pixels):
-    """Pixels whose last band is transparency, with colors multiplied by it: they are mixed in that form, in which what
-    is transparent has no color."""
+    """Pixels whose colors are multiplied by the alpha values in their last band (premultiplied alpha). Pixels are mixed
+    in this form, so that the color of transparent ones has no effect."""
     weighted = pixels.astype(numpy.float32 if pixels.dtype.itemsize < 4 else float)
     weighted[..., :-1] *= weighted[..., -1:]
     return weighted
 
 
 def put_colors(pixels, weighted):
-    """Sets the colors to those of mixed weighted pixels, except where all is transparent."""
+    """Sets the colors to those of mixed premultiplied pixels, except where the result is transparent."""
     opaque = weighted[..., -1] > 0
     pixels[opaque, :-1] = round_to(pixels.dtype, weighted[opaque, :-1] / weighted[opaque, -1:])
 

@@ -28,7 +28,7 @@ def lists_of(cells):
 
 
 def _read_obj(input):
-    """Points, polygons, and what else there is."""
+    """Points, polygons, and the names of other contents."""
     points, polygons, others = [], [], {}
     with open(input.path, encoding="utf-8-sig", errors="replace") as file:
         for number, line in enumerate(file, 1):
@@ -66,7 +66,7 @@ def _quiet_meshio():
 
 
 def _read_meshio(input):
-    """Points, polygons, and what else there is."""
+    """Points, polygons, and the names of other contents."""
     try:
         with _quiet_meshio() as meshio, open(input.path, "rb") as file:
             if input.format != "ply":

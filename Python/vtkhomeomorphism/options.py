@@ -125,7 +125,7 @@ def read_pair(inputs):
     except Failure as failure:
         if failure.exit_code != USAGE or not inputs.other:
             raise
-        hint = f"(The files are {inputs.names}: {inputs.other} was taken for {inputs.names.split()[-1]}.)"
+        hint = f"(The files are {inputs.names}: {inputs.other} was used as {inputs.names.split()[-1]}.)"
         raise Failure(f"{failure} {hint}", USAGE) from None
 
 

@@ -45,11 +45,11 @@ class Pair:
         return both[::-1] if inverse else both
 
     def compare_crs(self, crs, inverse):
-        """Says if the coordinate reference system that a result is to have is not that of the domain mapped to."""
+        """Prints a warning if the coordinate reference system of --crs is not that of the images."""
         known = self.crs(inverse)[1]
         if crs and known and not are_same_crs(crs, known):
-            inform(f"{self.name} maps to {quote(known)}: the result is marked as {crs} (--crs), but its coordinates "
-                   "are not converted.")
+            inform(f"{self.name} maps to {quote(known)}. The result gets {crs} (--crs), but its coordinates are not "
+                   "converted.")
 
     def require_flat(self):
         for mesh, name in zip(self.meshes, self.names):

@@ -286,7 +286,7 @@ def test_command_line(dhm, pair):
     dhm.refuse(USAGE, "map", "pair.json", "points.csv", says="--output")
     dhm.refuse(USAGE, "map", "pair.json", "-o", "new.csv", says="SOURCE [TARGET] DATA")
     write_mesh(dhm.path("a.off"), pair.source, pair.triangles)
-    dhm.refuse(USAGE, "map", "points.csv", "pair.json", "-o", "new.vtp", says="pair.json was taken for DATA")
+    dhm.refuse(USAGE, "map", "points.csv", "pair.json", "-o", "new.vtp", says="pair.json was used as DATA")
     dhm.refuse(USAGE, "check", "pair.json", "pair.json", says="no other mesh")
     arguments = ("map", "pair.json", "points.csv", "-o", "new.csv")
     dhm.refuse(USAGE, *arguments, "--system=bicubic", says=("--system", "smooth", "bicubic"))

@@ -139,7 +139,7 @@ def test_landmarks_of_images_have_y_down(dhm, form):
         pytest.importorskip("rasterio")
         dhm.path("marks.points").write_text('#CRS: PROJCRS["x\n' + text)
         refusal = dhm.refuse(USAGE, "warp", "marks.points", "image.png", "-o", "out.tif", says="PROJCRS")
-        assert "was taken for" not in refusal.err
+        assert "was used as" not in refusal.err
         said = dhm("warp", "marks.points", "image.png", "-o", "out.tif", "--crs", "EPSG:3857").err
         assert "#CRS: PROJCRS" in said and "EPSG:3857 (--crs) is used" in said
         return
