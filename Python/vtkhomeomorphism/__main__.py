@@ -11,7 +11,7 @@ import click
 
 from . import __version__, options
 from .commands import check, convert, coordinates, figure, map, morph, refine, triangulate, warp
-from .files import FILE, USAGE, discard_standard_output, quote
+from .files import FILE, USAGE, discard_standard_output, forget_messages, quote
 from .vtkfiles import capture_messages
 
 
@@ -52,6 +52,7 @@ def main():
     # Interrupts end long computations immediately.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     capture_messages()
+    forget_messages()
     # GDAL's errors are raised as exceptions; do not print them as well.
     os.environ.setdefault("CPL_LOG", os.devnull)
     # In megabytes; GDAL's default is a twentieth of the memory.

@@ -20,6 +20,7 @@ TABLES = ("csv", "txt", "xyz", "tsv")
 VECTORS = ("gpkg", "geojson", "shp", "fgb")
 
 _quiet = False
+_printed = set()
 
 
 class Failure(click.ClickException):
@@ -39,6 +40,18 @@ def inform(message):
     """Prints information or a warning to standard error."""
     if not _quiet:
         print("dhm: " + message, file=sys.stderr)
+
+
+def inform_once(message):
+    """The same, unless it was printed before by this command."""
+    if message not in _printed:
+        _printed.add(message)
+        inform(message)
+
+
+def forget_messages():
+    """Prepares for another command in this process."""
+    _printed.clear()
 
 
 def progress(items, text):

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkPointSet
 
 from . import report
 from .arrays import MASK, add_array, arrays_of, as_points, configure, make_mesh, points_of, update
-from .files import Failure, inform
+from .files import Failure, inform, inform_once
 from .vtkfiles import leaves_of, take_messages
 from .vtkFiltersHomeomorphism import vtkDifferentiableHomeomorphism
 
@@ -44,7 +44,8 @@ def run(algorithm, name):
     except ValueError as error:
         raise Failure(f"{name}: {error}") from None
     for text in filter(None, (*warned, take_messages())):
-        inform(f"{name}: {text}")
+        # Tiles and frames are mapped by the same map, or by similar ones.
+        inform_once(f"{name}: {text}")
     return result
 
 

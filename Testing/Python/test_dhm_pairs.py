@@ -119,6 +119,12 @@ def test_maps_that_are_not_certified_are_named(dhm):
     assert number > 1
     words = f"mixed.json: a valid pair, but its Cubic map is not certified in {number} triangles\n"
     assert dhm("check", "mixed.json").out.decode().startswith(words)
+    # Once, however many filters and tiles there are.
+    Image = pytest.importorskip("PIL.Image")
+    Image.fromarray(numpy.zeros((9, 9), "u1")).save(dhm.path("i.png"))
+    for _ in range(2):
+        said = dhm("warp", "mixed.json", "i.png", "--system", "cubic", "-o", "w.png", "--force").err
+        assert said.count("not certified") == 1
 
 
 def test_reports_and_plots(dhm):
