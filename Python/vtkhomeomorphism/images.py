@@ -376,7 +376,8 @@ class Warp:
             # In each direction, 1 inside and 0 at added pixels. After rounding, the area ends halfway between them.
             x, y = (numpy.pad(numpy.ones(n - sum(pad), numpy.uint8), pad) for n, pad in zip((columns, rows), added.T))
             add_array(data, "Inside", numpy.stack(numpy.meshgrid(x, y[::-1]), axis=2).reshape(-1, 2))
-        mixes_colors = raster.has_alpha and not self.nearest
+        # Colors of equal transparency are mixed as they are.
+        mixes_colors = raster.has_alpha and not self.nearest and numpy.ptp(window[:, :, -1]) > 0
         if mixes_colors:
             add_array(data, "Weighted", weigh(window)[::-1].reshape(-1, raster.bands))
         if known is not None:
