@@ -340,6 +340,17 @@ double FourFifths(const std::vector<double>& residuals, const std::vector<int>& 
   return *usual;
 }
 
+/// The sum of the residuals of trusted landmarks.
+double Sum(const std::vector<double>& residuals, const std::vector<int>& rejected)
+{
+  double sum = 0.0;
+  for (int i = 0; i < static_cast<int>(residuals.size()); ++i)
+  {
+    sum += std::count(rejected.begin(), rejected.end(), i) ? 0.0 : residuals[i];
+  }
+  return sum;
+}
+
 std::vector<double> ComputeAll(const Residuals& among, int n)
 {
   std::vector<double> residuals(n);
@@ -362,19 +373,19 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
     return residuals;
   }
   const auto attempt = [&](const std::vector<std::vector<int>>& sets) {
-    const std::vector<int> before = among.Rejected;
-    double best = FourFifths(residuals, before) / 2.0;
-    std::vector<int> rejected = before;
+    std::vector<int> rejected = among.Rejected;
+    double least = Sum(residuals, rejected) / 2.0;
     std::vector<double> without;
     for (const std::vector<int>& set : sets)
     {
       among.Rejected = set;
       std::vector<double> changed = ComputeAll(among, n);
       const double usual = FourFifths(changed, set);
-      if (usual < best &&
+      const double sum = Sum(changed, set);
+      if (sum < least &&
         std::all_of(set.begin(), set.end(), [&](int i) { return changed[i] > 6.0 * usual; }))
       {
-        best = usual;
+        least = sum;
         rejected = set;
         without = std::move(changed);
       }
@@ -384,7 +395,6 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
     {
       residuals = std::move(without);
     }
-    return rejected.size() > before.size();
   };
   std::vector<std::vector<int>> singles;
   std::vector<std::vector<int>> pairs;
@@ -398,7 +408,8 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
   }
   // Two that have changed places are both wrong: without one of them, the other still spoils all.
   constexpr int fewer = 16;
-  if (!attempt(singles) && n >= 8 && n <= fewer)
+  attempt(singles);
+  if (n >= 8 && n <= fewer)
   {
     attempt(pairs);
   }

@@ -32,8 +32,8 @@ namespace homeomorphism
 ///
 /// Among few landmarks, a wrong one is a neighbor of most others and increases their residuals.
 /// Therefore, among at most 30 landmarks, the exclusion of each one is tried first, and among 8 to
-/// 16 also that of each two. They are excluded if that halves the 80 % quantile of the others'
-/// residuals, and if their own are more than six times as large.
+/// 16 also that of each two. They are excluded if that halves the sum of the others' residuals, and
+/// if their own are more than six times the 80 % quantile.
 ///
 /// A landmark that is wrong in the source may be far from all others there, where its prediction is
 /// uncertain (a ratio above three). If it has a large residual under the inverse map, its residual

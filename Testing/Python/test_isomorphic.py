@@ -139,7 +139,7 @@ def test_the_frame_of_an_image_is_predicted():
     assert numpy.allclose(pair.target[80:], bend(rim), atol=1e-9)
 
 
-@pytest.mark.parametrize("count", [6, 10, 15, 40])
+@pytest.mark.parametrize("count", [6, 9, 15, 40])
 def test_gross_errors_among_few_landmarks_are_found(count):
     """Those of typing: a factor of ten, a sign, coordinates or landmarks exchanged, in the source or in the target."""
     missed = false = trials = 0
@@ -168,7 +168,7 @@ def test_gross_errors_among_few_landmarks_are_found(count):
                 trials += 1
                 missed += not {i, *([k] if error == "landmarks" else [])} <= set(
                     isomorphic_triangulation(*points).suspicious().tolist())
-    assert missed <= 0.1 * trials and false <= 1
+    assert missed <= 0.05 * trials and false <= 1
 
 
 def test_mistyped_landmarks_at_the_border_come_before_their_neighbors():
