@@ -396,22 +396,25 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
       residuals = std::move(without);
     }
   };
-  std::vector<std::vector<int>> singles;
-  std::vector<std::vector<int>> pairs;
+  std::vector<std::vector<int>> sets;
   for (int i = 0; i < n; ++i)
   {
-    singles.push_back({ i });
-    for (int k = 0; k < i; ++k)
-    {
-      pairs.push_back({ k, i });
-    }
+    sets.push_back({ i });
   }
+  attempt(sets);
   // Two that have changed places are both wrong: without one of them, the other still spoils all.
   constexpr int fewer = 16;
-  attempt(singles);
   if (n >= 8 && n <= fewer)
   {
-    attempt(pairs);
+    sets.clear();
+    for (int i = 0; i < n; ++i)
+    {
+      for (int k = 0; k < i; ++k)
+      {
+        sets.push_back({ k, i });
+      }
+    }
+    attempt(sets);
   }
   return residuals;
 }
