@@ -43,24 +43,28 @@ bool DrawOutline(CommonMap& map, int m)
   return true;
 }
 
-/// The only face of a map whose only edges are those of an outline, and its polygons.
-bool OnlyFace(const FigurePair& figure, CommonMap::Face& face, PolygonPair& polygons)
+/// The only face of a map whose only edges are those of an outline.
+struct OnlyFace
 {
-  CommonMap map(figure.Points);
-  if (!DrawOutline(map, static_cast<int>(figure.Points[0].size())) || FacesOf(map).size() != 1)
+  std::array<CornerTriangles, 2> Triangles;
+  PolygonPair Polygons;
+
+  explicit OnlyFace(const FigurePair& figure)
   {
-    return false;
-  }
-  face = FacesOf(map)[0];
-  for (int d = 0; d < 2; ++d)
-  {
-    for (const int v : face.Walks[0])
+    CommonMap map(figure.Points);
+    EXPECT_TRUE(DrawOutline(map, static_cast<int>(figure.Points[0].size())));
+    const std::vector<CommonMap::Face> faces = FacesOf(map);
+    EXPECT_EQ(1u, faces.size());
+    this->Triangles = faces.at(0).Triangles;
+    for (int d = 0; d < 2; ++d)
     {
-      polygons[d].push_back(map.GetPoints(d)[v]);
+      for (const int v : faces[0].Walks[0])
+      {
+        this->Polygons[d].push_back(map.GetPoints(d)[v]);
+      }
     }
   }
-  return true;
-}
+};
 
 double Quality(const PolygonPair& polygons, int i, int k, int j)
 {
@@ -79,8 +83,8 @@ double WorstQuality(const PolygonPair& polygons, const CornerTriangles& triangle
 }
 
 /// Checks triangles that fill two polygons, numbered as CornerTriangles are.
-std::string CheckFilling(const PolygonPair& polygons,
-  const std::array<std::vector<Vector2>, 2>& points, const CornerTriangles& triangles)
+std::string CheckFilling(
+  const PolygonPair& polygons, const PolygonPair& points, const CornerTriangles& triangles)
 {
   const int m = static_cast<int>(polygons[0].size());
   FigurePair walked;
@@ -102,25 +106,22 @@ std::string CheckFilling(const PolygonPair& polygons,
   return Check(walked, result);
 }
 
-/// Fills two polygons by their overlay alone and checks the pair.
-std::string Overlay(const FigurePair& figure)
+/// Two polygons that are filled by their overlay alone.
+struct Overlay : OnlyFace
 {
-  CommonMap::Face face;
-  PolygonPair polygons;
-  if (!OnlyFace(figure, face, polygons))
+  PolygonPair AddedPoints;
+  CornerTriangles Filling;
+
+  explicit Overlay(const FigurePair& figure)
+    : OnlyFace(figure)
   {
-    return "the polygons are not simple";
+    EXPECT_TRUE(FillByOverlay(this->Polygons, this->Triangles, PairQuality::MinimumAngle,
+      this->AddedPoints, this->Filling));
+    EXPECT_LE(static_cast<int>(this->AddedPoints[0].size()),
+      CountCrossings(this->Triangles, static_cast<int>(this->Polygons[0].size())));
+    EXPECT_EQ("", CheckFilling(this->Polygons, this->AddedPoints, this->Filling));
   }
-  std::array<std::vector<Vector2>, 2> points;
-  CornerTriangles triangles;
-  if (!FillByOverlay(polygons, face.Triangles, PairQuality::MinimumAngle, points, triangles))
-  {
-    return "double precision does not suffice";
-  }
-  EXPECT_LE(static_cast<int>(points[0].size()),
-    CountCrossings(face.Triangles, static_cast<int>(polygons[0].size())));
-  return CheckFilling(polygons, points, triangles);
-}
+};
 
 TEST(FaceFilling, OverlaysOfRandomPolygonsAndSnakes)
 {
@@ -128,11 +129,13 @@ TEST(FaceFilling, OverlaysOfRandomPolygonsAndSnakes)
   for (int i = 0; i < 200; ++i)
   {
     const int corners = 5 + i % 40;
-    ASSERT_EQ("", Overlay(Outline(RandomStar(corners, random), RandomStar(corners, random)))) << i;
+    SCOPED_TRACE(i);
+    Overlay(Outline(RandomStar(corners, random), RandomStar(corners, random)));
   }
   for (const int corners : { 16, 32, 64, 128 })
   {
-    ASSERT_EQ("", Overlay(Outline(Snake(corners, false), Snake(corners, true)))) << corners;
+    SCOPED_TRACE(corners);
+    Overlay(Outline(Snake(corners, false), Snake(corners, true)));
   }
 }
 
@@ -190,106 +193,39 @@ TEST(FaceFilling, DiagonalsAreTheBestOfAll)
   EXPECT_DOUBLE_EQ(best(0, 5), WorstQuality(polygons, triangles));
 }
 
-/// A quadrangle whose reflex corner differs, so that it has no common diagonal.
-PolygonPair Dart()
+/// The number of points with which two polygons are filled; -1 if @a most do not suffice.
+int FewPoints(const PolygonPair& polygons, int most)
 {
-  return { { { { 0, 0 }, { 4, 0 }, { 1, 1 }, { 0, 4 } },
-    { { 4, 0 }, { 1, 1 }, { 0, 4 }, { 0, 0 } } } };
+  PolygonPair points;
+  CornerTriangles triangles;
+  if (!FillWithFewPoints(polygons, PairQuality::MinimumAngle, most, points, triangles))
+  {
+    return -1;
+  }
+  EXPECT_EQ("", CheckFilling(polygons, points, triangles));
+  return static_cast<int>(points[0].size());
 }
 
 TEST(FaceFilling, FewPointsAreNoMoreThanNecessary)
 {
-  std::array<std::vector<Vector2>, 2> points;
-  CornerTriangles triangles;
-  // Two convex polygons need none, a quadrangle without a common diagonal needs one.
-  const PolygonPair convex{ { Circle(9), Circle(9, 3.0, { 1, 2 }) } };
-  ASSERT_TRUE(FillWithFewPoints(convex, PairQuality::MinimumAngle, 3, points, triangles));
-  EXPECT_EQ(0u, points[0].size());
-  EXPECT_EQ("", CheckFilling(convex, points, triangles));
-  triangles.clear();
-  EXPECT_FALSE(FillWithFewPoints(Dart(), PairQuality::MinimumAngle, 0, points, triangles));
-  triangles.clear();
-  ASSERT_TRUE(FillWithFewPoints(Dart(), PairQuality::MinimumAngle, 3, points, triangles));
-  EXPECT_EQ(1u, points[0].size());
-  EXPECT_EQ("", CheckFilling(Dart(), points, triangles));
+  EXPECT_EQ(0, FewPoints({ { Circle(9), Circle(9, 3.0, { 1, 2 }) } }, 3));
+  // Quadrangles without a common diagonal, because their reflex corners differ.
+  const PolygonPair darts{ { { { 0, 0 }, { 4, 0 }, { 1, 1 }, { 0, 4 } },
+    { { 4, 0 }, { 1, 1 }, { 0, 4 }, { 0, 0 } } } };
+  EXPECT_EQ(-1, FewPoints(darts, 0));
+  EXPECT_EQ(1, FewPoints(darts, 3));
   // Stars need one point at most.
   Random random(4);
   int needed = 0;
   for (int i = 0; i < 60; ++i)
   {
     const PolygonPair polygons{ { RandomStar(12, random), RandomStar(12, random) } };
-    points = {};
-    triangles.clear();
-    ASSERT_TRUE(FillWithFewPoints(polygons, PairQuality::MinimumAngle, 4, points, triangles)) << i;
-    ASSERT_EQ("", CheckFilling(polygons, points, triangles)) << i;
     CornerTriangles diagonals;
     const bool none = FillByDiagonals(polygons, PairQuality::MinimumAngle, diagonals);
-    EXPECT_EQ(none ? 0u : 1u, points[0].size());
+    EXPECT_EQ(none ? 0 : 1, FewPoints(polygons, 4)) << i;
     needed += none ? 0 : 1;
   }
   EXPECT_LT(10, needed);
-}
-
-TEST(FaceFilling, DissectionsAreCompleteWherePossible)
-{
-  // As many diagonals, and as good triangles, as FillByDiagonals finds; else fewer.
-  Random random(5);
-  int complete = 0;
-  for (int number = 0; number < 100; ++number)
-  {
-    const int corners = 4 + number % 9;
-    CommonMap::Face face;
-    PolygonPair polygons;
-    ASSERT_TRUE(
-      OnlyFace(Outline(RandomStar(corners, random), RandomStar(corners, random)), face, polygons));
-    std::set<std::pair<int, int>> chords;
-    for (const auto& chord : Dissect(polygons, face.Triangles, PairQuality::MinimumAngle))
-    {
-      chords.emplace(chord[0], chord[1]);
-      for (const auto& other : chords)
-      {
-        EXPECT_FALSE(other.first < chord[0] && chord[0] < other.second && other.second < chord[1]);
-      }
-      for (int side = 0; side < 2 * corners; ++side)
-      {
-        const auto& p = polygons[side % 2];
-        const int a = side / 2;
-        const int b = (a + 1) % corners;
-        const auto [i, j] = chord;
-        EXPECT_FALSE(Orientation(p[i], p[j], p[a]) * Orientation(p[i], p[j], p[b]) < 0 &&
-          Orientation(p[a], p[b], p[i]) * Orientation(p[a], p[b], p[j]) < 0);
-      }
-    }
-    chords.erase({ 0, corners - 1 });
-    CornerTriangles best;
-    if (!FillByDiagonals(polygons, PairQuality::MinimumAngle, best))
-    {
-      EXPECT_GT(static_cast<std::size_t>(corners - 3), chords.size());
-      continue;
-    }
-    ++complete;
-    EXPECT_EQ(static_cast<std::size_t>(corners - 3), chords.size());
-    const auto has = [&](int a, int b) {
-      return b == a + 1 || (a == 0 && b == corners - 1) || chords.count({ a, b }) != 0;
-    };
-    CornerTriangles made;
-    for (int a = 0; a < corners; ++a)
-    {
-      for (int b = a + 1; b < corners; ++b)
-      {
-        for (int c = b + 1; c < corners; ++c)
-        {
-          if (has(a, b) && has(b, c) && has(a, c))
-          {
-            made.push_back({ a, b, c });
-          }
-        }
-      }
-    }
-    EXPECT_EQ(best.size(), made.size());
-    EXPECT_NEAR(WorstQuality(polygons, best), WorstQuality(polygons, made), 1e-4);
-  }
-  EXPECT_LT(20, complete);
 }
 
 /// Whether a segment between corners leads through the inside of a polygon and meets no other
@@ -386,28 +322,62 @@ double LeastCost(const PolygonPair& polygons)
   return cheapest[0][m - 1];
 }
 
-TEST(FaceFilling, DissectionsLeaveTheLeast)
+TEST(FaceFilling, DissectionsLeaveTheLeastAndAreAsGoodAsDiagonals)
 {
   Random random(6);
-  int open = 0;
-  for (int number = 0; number < 200; ++number)
+  int complete = 0;
+  for (int number = 0; number < 300; ++number)
   {
-    const int corners = 6 + 2 * (number % 6);
-    CommonMap::Face face;
-    PolygonPair polygons;
-    ASSERT_TRUE(OnlyFace(Outline(RandomStar(corners, random),
-                           number % 3 == 0 ? Comb(corners, number) : RandomStar(corners, random)),
-      face, polygons));
+    SCOPED_TRACE(number);
+    const bool isComb = number % 3 == 0;
+    const int corners = isComb ? 6 + number % 12 / 3 * 2 : 4 + number % 13;
+    const OnlyFace face(Outline(
+      RandomStar(corners, random), isComb ? Comb(corners, number) : RandomStar(corners, random)));
+    const PolygonPair& polygons = face.Polygons;
     std::set<std::pair<int, int>> chords;
     for (const auto& chord : Dissect(polygons, face.Triangles, PairQuality::MinimumAngle))
     {
       chords.emplace(chord[0], chord[1]);
     }
-    const double least = LeastCost(polygons);
-    EXPECT_EQ(least, CostOfChords(chords, 0, static_cast<int>(polygons[0].size()) - 1)) << number;
-    open += least > 0.0 ? 1 : 0;
+    chords.erase({ 0, corners - 1 });
+    for (const auto& [i, j] : chords)
+    {
+      EXPECT_TRUE(IsDiagonal(polygons[0], i, j) && IsDiagonal(polygons[1], i, j));
+      for (const auto& [a, b] : chords)
+      {
+        EXPECT_FALSE(a < i && i < b && b < j);
+      }
+    }
+    EXPECT_EQ(LeastCost(polygons), CostOfChords(chords, 0, corners - 1));
+    CornerTriangles best;
+    if (!FillByDiagonals(polygons, PairQuality::MinimumAngle, best))
+    {
+      EXPECT_GT(static_cast<std::size_t>(corners - 3), chords.size());
+      continue;
+    }
+    ++complete;
+    const auto has = [&](int a, int b) {
+      return b == a + 1 || (a == 0 && b == corners - 1) || chords.count({ a, b }) != 0;
+    };
+    CornerTriangles made;
+    for (int a = 0; a < corners; ++a)
+    {
+      for (int b = a + 1; b < corners; ++b)
+      {
+        for (int c = b + 1; c < corners; ++c)
+        {
+          if (has(a, b) && has(b, c) && has(a, c))
+          {
+            made.push_back({ a, b, c });
+          }
+        }
+      }
+    }
+    EXPECT_EQ(best.size(), made.size());
+    EXPECT_NEAR(WorstQuality(polygons, best), WorstQuality(polygons, made), 1e-4);
   }
-  EXPECT_LT(50, open);
+  EXPECT_LT(50, complete);
+  EXPECT_LT(50, 300 - complete);
 }
 
 /// A hexagon, its center, and six points between them, which may be displaced; points from a number
@@ -415,7 +385,7 @@ TEST(FaceFilling, DissectionsLeaveTheLeast)
 PairMesh Rings(int firstAdded, const std::vector<std::array<int, 2>>& fixed, double displacement)
 {
   Random random(8);
-  std::array<std::vector<Vector2>, 2> points{ { Circle(6, 4.0), Circle(6, 4.0) } };
+  PolygonPair points{ { Circle(6, 4.0), Circle(6, 4.0) } };
   for (auto& p : points)
   {
     std::vector<Vector2> inner = Circle(6, 2.0);
@@ -529,21 +499,16 @@ TEST(JointOptimization, MergingLeavesFewerPoints)
   std::array<int, 2> left{ { 0, 0 } };
   for (int i = 0; i < 20; ++i)
   {
-    const FigurePair figure = Outline(RandomStar(12, random), RandomStar(12, random));
-    CommonMap::Face face;
-    PolygonPair polygons;
-    ASSERT_TRUE(OnlyFace(figure, face, polygons));
-    std::array<std::vector<Vector2>, 2> points;
-    CornerTriangles triangles;
-    ASSERT_TRUE(
-      FillByOverlay(polygons, face.Triangles, PairQuality::MinimumAngle, points, triangles));
+    const Overlay overlay(Outline(RandomStar(12, random), RandomStar(12, random)));
+    PolygonPair points = overlay.Polygons;
     for (int d = 0; d < 2; ++d)
     {
-      points[d].insert(points[d].begin(), polygons[d].begin(), polygons[d].end());
+      const std::vector<Vector2>& added = overlay.AddedPoints[d];
+      points[d].insert(points[d].end(), added.begin(), added.end());
     }
     for (const bool merge : { false, true })
     {
-      PairMesh mesh(points, triangles, {}, 12, PairQuality::MinimumAngle);
+      PairMesh mesh(points, overlay.Filling, {}, 12, PairQuality::MinimumAngle);
       JointOptimization(mesh, []() { return true; }).RemovePoints(merge);
       EXPECT_LT(0.0, mesh.WorstQuality());
       left[merge] += mesh.CountAdded();

@@ -15,13 +15,13 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
-#include "vtkCellLocator.h"
 #include "vtkCommand.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkImplicitPolyDataDistance.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkMath.h"
@@ -47,16 +47,15 @@ namespace fixtures
 
 inline Point VectorOf(vtkDataArray* array, vtkIdType i)
 {
-  Point p;
+  Point p{};
   array->GetTuple(i, p.data());
   return p;
 }
 inline Matrix MatrixOf(vtkDataArray* array, vtkIdType i)
 {
-  double tuple[9];
-  array->GetTuple(i, tuple);
-  return { { { tuple[0], tuple[1], tuple[2] }, { tuple[3], tuple[4], tuple[5] },
-    { tuple[6], tuple[7], tuple[8] } } };
+  Matrix m;
+  array->GetTuple(i, m[0].data());
+  return m;
 }
 inline vtkDataArray* PointArray(vtkDataSet* data, const char* name)
 {
@@ -101,12 +100,8 @@ inline Matrix JacobianOf(vtkDataSet* data, vtkIdType i)
 
 inline double LargestCoordinate(vtkDataSet* mesh)
 {
-  double largest = 0.0;
-  for (int i = 0; i < 6; ++i)
-  {
-    largest = std::max(largest, std::abs(mesh->GetBounds()[i]));
-  }
-  return largest;
+  const double* b = mesh->GetBounds();
+  return std::max({ -b[0], b[1], -b[2], b[3], -b[4], b[5] });
 }
 
 /// The number rounded to float. It is stored in between, because GCC 12 optimizes vectorized
@@ -183,18 +178,12 @@ inline double LargestDistance(vtkDataSet* a, vtkDataSet* b)
 /// The largest distance of a point from a mesh, by VTK.
 inline double LargestDistanceFrom(vtkPolyData* mesh, const std::vector<Point>& points)
 {
-  vtkNew<vtkCellLocator> locator;
-  locator->SetDataSet(mesh);
-  locator->BuildLocator();
+  vtkNew<vtkImplicitPolyDataDistance> distance;
+  distance->SetInput(mesh);
   double largest = 0.0;
-  for (const Point& point : points)
+  for (Point point : points)
   {
-    Point nearest;
-    vtkIdType cell;
-    int subId;
-    double squared;
-    locator->FindClosestPoint(point.data(), nearest.data(), cell, subId, squared);
-    largest = std::max(largest, std::sqrt(squared));
+    largest = std::max(largest, std::abs(distance->EvaluateFunction(point.data())));
   }
   return largest;
 }
@@ -297,10 +286,7 @@ inline vtkSmartPointer<vtkDifferentiableHomeomorphism> MakeFilter(
 {
   auto filter = MakeAlgorithm<vtkDifferentiableHomeomorphism>(pair);
   SetSystem(filter.Get(), system);
-  if (data)
-  {
-    filter->SetDataObject(data);
-  }
+  filter->SetDataObject(data);
   return filter;
 }
 
@@ -336,10 +322,7 @@ inline vtkSmartPointer<vtkTriangularCoordinates> MakeCoordinates(
   auto filter = vtkSmartPointer<vtkTriangularCoordinates>::New();
   SetSystem(filter.Get(), system);
   filter->SetSourceData(triangulation);
-  if (data)
-  {
-    filter->SetDataObject(data);
-  }
+  filter->SetDataObject(data);
   filter->GenerateLinesOff();
   return filter;
 }
@@ -429,12 +412,8 @@ inline MappedPoints MapPoints(
   filter->SetTolerance(options.Tolerance);
   filter->ComputeTriangleIdOn();
   vtkPointSet* output = Output(filter);
-  MappedPoints result{ PointsOf(output), {}, messages.Error(), messages.Warning() };
-  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
-  {
-    result.Triangles.push_back(static_cast<vtkIdType>(PointValue(output, "TriangleId", i)));
-  }
-  return result;
+  const std::vector<double> ids = ValuesOf(PointArray(output, "TriangleId"));
+  return { PointsOf(output), { ids.begin(), ids.end() }, messages.Error(), messages.Warning() };
 }
 
 } // namespace fixtures

@@ -80,17 +80,13 @@ inline vtkStandardNewMacro(PiecewiseMap);
 inline vtkSmartPointer<vtkThinPlateSplineTransform> MakeThinPlateSpline(
   const MeshPair& pair, vtkIdType stride)
 {
+  constexpr Point aside{ 0.31, 0.0, 0.0 };
   vtkNew<vtkPoints> from;
   vtkNew<vtkPoints> to;
   for (vtkIdType i = 0; i < pair.Source->GetNumberOfPoints(); i += stride)
   {
-    double point[3];
-    pair.Source->GetPoint(i, point);
-    point[0] += 0.31;
-    from->InsertNextPoint(point);
-    pair.Target->GetPoint(i, point);
-    point[0] += 0.31;
-    to->InsertNextPoint(point);
+    from->InsertNextPoint((PointOf(pair.Source, i) + aside).data());
+    to->InsertNextPoint((PointOf(pair.Target, i) + aside).data());
   }
   auto spline = vtkSmartPointer<vtkThinPlateSplineTransform>::New();
   spline->SetSourceLandmarks(from);

@@ -37,23 +37,38 @@ struct MeshPair
   vtkSmartPointer<vtkPolyData> Target;
 };
 
+/// Points without cells.
+inline vtkSmartPointer<vtkPolyData> MakeCloud(
+  const std::vector<Point>& positions, int dataType = VTK_DOUBLE)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(dataType);
+  for (const Point& position : positions)
+  {
+    points->InsertNextPoint(position.data());
+  }
+  auto cloud = vtkSmartPointer<vtkPolyData>::New();
+  cloud->SetPoints(points);
+  return cloud;
+}
+
+/// Cells of any number of points.
+template <typename Polygon = std::vector<vtkIdType>>
+vtkSmartPointer<vtkCellArray> MakePolygons(const std::vector<Polygon>& polygons)
+{
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  for (const Polygon& polygon : polygons)
+  {
+    cells->InsertNextCell(static_cast<vtkIdType>(polygon.size()), polygon.data());
+  }
+  return cells;
+}
+
 inline vtkSmartPointer<vtkPolyData> MakeMesh(
   const std::vector<Point>& points, const std::vector<Triangle>& triangles)
 {
-  vtkNew<vtkPoints> meshPoints;
-  meshPoints->SetDataTypeToDouble();
-  for (const Point& point : points)
-  {
-    meshPoints->InsertNextPoint(point.data());
-  }
-  vtkNew<vtkCellArray> cells;
-  for (const Triangle& triangle : triangles)
-  {
-    cells->InsertNextCell(3, triangle.data());
-  }
-  auto mesh = vtkSmartPointer<vtkPolyData>::New();
-  mesh->SetPoints(meshPoints);
-  mesh->SetPolys(cells);
+  const auto mesh = MakeCloud(points);
+  mesh->SetPolys(MakePolygons(triangles));
   return mesh;
 }
 
@@ -190,7 +205,7 @@ inline void MovePoint(vtkPolyData* mesh, vtkIdType id, const Point& to)
 
 inline void SetTriangles(vtkPolyData* mesh, const std::vector<Triangle>& triangles)
 {
-  mesh->SetPolys(MakeMesh({}, triangles)->GetPolys());
+  mesh->SetPolys(MakePolygons(triangles));
 }
 
 /// The mesh or the pair with other triangles and copies of its points.
@@ -202,18 +217,6 @@ inline vtkSmartPointer<vtkPolyData> WithTriangles(
 inline MeshPair WithTriangles(const MeshPair& pair, const std::vector<Triangle>& triangles)
 {
   return { WithTriangles(pair.Source, triangles), WithTriangles(pair.Target, triangles) };
-}
-
-/// Cells of any number of points.
-inline vtkSmartPointer<vtkCellArray> MakePolygons(
-  const std::vector<std::vector<vtkIdType>>& polygons)
-{
-  auto cells = vtkSmartPointer<vtkCellArray>::New();
-  for (const auto& polygon : polygons)
-  {
-    cells->InsertNextCell(static_cast<vtkIdType>(polygon.size()), polygon.data());
-  }
-  return cells;
 }
 
 /// Puts vertex and line cells before the triangles of a mesh, which shifts their cell ids.
@@ -379,9 +382,9 @@ inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
 
 inline Point PositionOf(vtkPolyData* mesh, const MeshPoint& surfacePoint)
 {
-  const std::array<Point, 3> corners = CornersOf(mesh, surfacePoint.Triangle);
-  return surfacePoint.Weights[0] * corners[0] + surfacePoint.Weights[1] * corners[1] +
-    surfacePoint.Weights[2] * corners[2];
+  const auto& [triangle, w] = surfacePoint;
+  const auto [a, b, c] = CornersOf(mesh, triangle);
+  return w[0] * a + w[1] * b + w[2] * c;
 }
 
 /// The point with these barycentric weights in a triangle.
@@ -407,27 +410,10 @@ inline std::vector<Point> SamplePoints(
   return points;
 }
 
-/// Points without cells.
-inline vtkSmartPointer<vtkPolyData> MakeCloud(
-  const std::vector<Point>& positions, int dataType = VTK_DOUBLE)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataType(dataType);
-  points->SetNumberOfPoints(static_cast<vtkIdType>(positions.size()));
-  for (std::size_t i = 0; i < positions.size(); ++i)
-  {
-    points->SetPoint(static_cast<vtkIdType>(i), positions[i].data());
-  }
-  auto cloud = vtkSmartPointer<vtkPolyData>::New();
-  cloud->SetPoints(points);
-  return cloud;
-}
-
 inline vtkSmartPointer<vtkPolyData> MakeCloud(
   vtkPolyData* mesh, const std::vector<MeshPoint>& samples)
 {
   std::vector<Point> positions;
-  positions.reserve(samples.size());
   for (const MeshPoint& surfacePoint : samples)
   {
     positions.push_back(PositionOf(mesh, surfacePoint));

@@ -37,8 +37,7 @@ TEST(ImageSampling, InterpolatesLinearly)
   vtkNew<vtkPointData> output;
   const ImageSampling sampling(image, output, count);
   Random random(41);
-  double bounds[6];
-  image->GetBounds(bounds);
+  const double* bounds = image->GetBounds();
   double points[count][3];
   bool wanted[count];
   std::vector<Point> positions;
@@ -70,11 +69,8 @@ TEST(ImageSampling, InterpolatesLinearly)
       EXPECT_NEAR(value, exact, 1e-13 * std::abs(exact));
       for (const char* name : { "Float", "Integer", "Cell" })
       {
-        Point expected{};
-        Point found{};
-        PointArray(probe->GetOutput(), name)->GetTuple(i, expected.data());
-        output->GetArray(name)->GetTuple(i, found.data());
-        EXPECT_LT(Distance(found, expected), 1e-5) << name;
+        const Point expected = VectorOf(PointArray(probe->GetOutput(), name), i);
+        EXPECT_LT(Distance(VectorOf(output->GetArray(name), i), expected), 1e-5) << name;
       }
     }
   }
