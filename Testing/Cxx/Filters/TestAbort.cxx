@@ -6,7 +6,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkJacobianContinuity.h"
 #include "vtkResampleThroughHomeomorphism.h"
 
 namespace

@@ -6,8 +6,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkJacobianContinuity.h"
-
 namespace
 {
 
@@ -67,9 +65,7 @@ TEST(Differentiability, OneSidedDerivativesOfContourDifferByTheJump)
   EXPECT_NEAR(
     ContourLength(2.0, 2.0, 2.0 - 1e-9) / ContourLength(1.0, 2.0, 2.0 - 1e-9), 1.26491, 5e-6);
   // The five samples of the filter are at sixths of the edge, whose direction does not matter.
-  const auto filter = MakeAlgorithm<vtkJacobianContinuity>(MakeCounterexample());
-  filter->SetCoordinateSystem(vtkJacobianContinuity::CONTOUR);
-  filter->Update();
+  const auto filter = Measure(MakeCounterexample(), Contour);
   for (const char* name : { "JacobianJump", "JacobianJumpExact" })
   {
     const std::vector<double> jumps{ 0.27313, 0.43188, 0.55470, 0.43188, 0.27313 };
@@ -115,17 +111,9 @@ TEST(Differentiability, DirectionsTurnAtDifferentRatesBesideASpoke)
 
 TEST(Differentiability, CreasesOfContourAreAsDocumented)
 {
-  const MeshPair pair = MakeCounterexample();
-  for (const int center : { vtkJacobianContinuity::CENTROID, vtkJacobianContinuity::INCENTER })
+  for (const System& system : { Contour, Incenter })
   {
-    const auto filter = MakeAlgorithm<vtkJacobianContinuity>(pair);
-    filter->SetCoordinateSystem(vtkJacobianContinuity::CONTOUR);
-    filter->SetCenterPoint(center);
-    filter->SpokesOn();
-    filter->WingSegmentsOn();
-    filter->CenterSegmentsOn();
-    filter->CentroidsOn();
-    filter->Update();
+    const auto filter = Measure(MakeCounterexample(), system, ListEverything);
     // The upper triangle is stretched, the lower one is not. On both sides of the spoke to the
     // upper corner directions turn alike, but distances grow on both sides.
     const auto count = [&filter](int type, int verdict) {

@@ -6,7 +6,6 @@
 #include "Fixtures/FilterRuns.h"
 #include "Fixtures/MeasuredMaps.h"
 
-#include "vtkJacobianContinuity.h"
 #include "vtkSMPTools.h"
 
 namespace
@@ -14,31 +13,6 @@ namespace
 
 using namespace fixtures;
 using Continuity = vtkJacobianContinuity;
-
-void ListEverything(Continuity* filter)
-{
-  filter->BoundaryEdgesOn();
-  filter->SpokesOn();
-  filter->WingSegmentsOn();
-  filter->CenterSegmentsOn();
-  filter->StripBordersOn();
-  filter->CentroidsOn();
-  filter->VerticesOn();
-}
-
-/// Measures the edges, unless something else is changed before.
-vtkSmartPointer<Continuity> Measure(
-  const MeshPair& pair, const System& system, const std::function<void(Continuity*)>& change = {})
-{
-  auto filter = MakeAlgorithm<Continuity>(pair);
-  SetSystem(filter.Get(), system);
-  if (change)
-  {
-    change(filter);
-  }
-  filter->Update();
-  return filter;
-}
 
 vtkSmartPointer<Continuity> Measure(
   vtkPolyData* source, vtkAbstractTransform* transform, bool secondDerivatives = false)

@@ -299,11 +299,7 @@ TEST_P(KindsOfData, EmptyInputsGiveEmptyOutputs)
     for (const System& system : AllSystems())
     {
       SetSystem(this->Filter.Get(), system);
-      this->Filter->SetSourceData(empty);
-      if (this->Filter->GetNumberOfInputPorts() > 2)
-      {
-        this->Filter->SetTargetData(empty);
-      }
+      SetMeshes(this->Filter, { empty, empty });
       auto* output = vtkDataSet::SafeDownCast(this->Run(ThePair().Source));
       EXPECT_EQ(CountDifferentPoints(output, ThePair().Source), 0);
       EXPECT_EQ(this->Filter->GetNumberOfOutsidePoints(), output->GetNumberOfPoints());

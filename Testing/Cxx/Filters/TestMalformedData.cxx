@@ -205,8 +205,7 @@ TEST_F(MalformedData, IsRefusedWhereValuesAreLookedFor)
     resample->SetDataObject(changed);
     resample->Update();
     EXPECT_TRUE(messages.HasError());
-    EXPECT_EQ(resample->GetErrorCode(),
-      static_cast<unsigned long>(vtkResampleThroughHomeomorphism::DATA_REFUSED));
+    EXPECT_EQ(resample->GetErrorCode(), vtkResampleThroughHomeomorphism::DATA_REFUSED);
     EXPECT_EQ(resample->GetOutput()->GetNumberOfPoints(), 0);
   }
 }
@@ -230,8 +229,7 @@ TEST_F(MalformedData, CorruptMeshesAreRefusedBeforeTheyAreUsed)
     resample->SetSamplingDimensions(5, 5);
     resample->Update();
     EXPECT_TRUE(messages.HasError());
-    EXPECT_EQ(resample->GetErrorCode(),
-      static_cast<unsigned long>(vtkResampleThroughHomeomorphism::MESHES_REFUSED));
+    EXPECT_EQ(resample->GetErrorCode(), vtkResampleThroughHomeomorphism::MESHES_REFUSED);
     // It counts points of refused meshes, too.
     const auto report = MakeAlgorithm<vtkTriangulationPairReport>({ mesh, mesh });
     report->Update();

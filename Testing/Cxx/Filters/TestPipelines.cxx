@@ -5,7 +5,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkJacobianContinuity.h"
 #include "vtkResampleThroughHomeomorphism.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -233,9 +232,7 @@ TEST(Pipelines, DataMadeFromAMeshIsPartOfTheFirstPiece)
 TEST(Pipelines, MeasurementsArePartOfTheFirstPiece)
 {
   const MeshPair pair = MakeWidePair(918);
-  const auto continuity = MakeAlgorithm<vtkJacobianContinuity>(pair);
-  continuity->SetCoordinateSystem(vtkJacobianContinuity::LINEAR);
-  continuity->Update();
+  const auto continuity = Measure(pair, Linear);
   const vtkIdType edges = continuity->GetOutput()->GetNumberOfCells();
   ASSERT_GT(edges, 0);
   const auto map = MakeFilter(Linear, pair);

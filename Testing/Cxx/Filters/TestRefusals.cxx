@@ -5,10 +5,8 @@
 // diagnostics, and leave the outputs empty, without data of the previous update.
 
 #include "Fixtures/Defects.h"
-#include "Fixtures/FilterRuns.h"
 
 #include "vtkInBetweenTriangulation.h"
-#include "vtkJacobianContinuity.h"
 #include "vtkRefinedTriangulationPair.h"
 #include "vtkResampleThroughHomeomorphism.h"
 
@@ -30,17 +28,6 @@ MeshPair MakeDegeneratePair()
   const MeshPair pair = MakePlanarPair(4, 3, 0.0);
   MovePoint(pair.Source, 0, { 1.0, 1.0, 0.0 });
   return pair;
-}
-
-template <typename Algorithm>
-void SetMeshes(Algorithm* algorithm, const MeshPair& pair)
-{
-  algorithm->SetSourceData(pair.Source);
-  algorithm->SetTargetData(pair.Target);
-}
-void SetMeshes(vtkTriangularCoordinates* algorithm, const MeshPair& pair)
-{
-  algorithm->SetSourceData(pair.Source);
 }
 
 vtkIdType CountElements(vtkAlgorithm* algorithm)
@@ -67,9 +54,8 @@ TYPED_TEST_SUITE(Refusals, Algorithms);
 
 TYPED_TEST(Refusals, OfMeshes)
 {
-  vtkNew<TypeParam> filter;
+  const auto filter = MakeAlgorithm<TypeParam>(MakePlanarPair(4, 1));
   Messages messages(filter);
-  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
   filter->Update();
   EXPECT_EQ(messages.Error() + messages.Warning(), "");
   EXPECT_GT(CountElements(filter), 0);
@@ -78,11 +64,11 @@ TYPED_TEST(Refusals, OfMeshes)
   for (int update = 0; update < 2; ++update)
   {
     messages.Clear();
-    SetMeshes(filter.Get(), MakeDegeneratePair());
+    SetMeshes(filter, MakeDegeneratePair());
     filter->Update();
     EXPECT_TRUE(messages.HasError());
     EXPECT_FALSE(messages.HasWarning());
-    EXPECT_EQ(filter->GetErrorCode(), static_cast<unsigned long>(TypeParam::MESHES_REFUSED));
+    EXPECT_EQ(filter->GetErrorCode(), TypeParam::MESHES_REFUSED);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), -1);
     EXPECT_EQ(CountElements(filter), 0);
     vtkTable* table = filter->GetDiagnostics();
@@ -100,7 +86,7 @@ TYPED_TEST(Refusals, OfMeshes)
   EXPECT_EQ(filter->GetErrorCode(), 0u);
   EXPECT_GT(CountElements(filter), 0);
   EXPECT_EQ(filter->GetDiagnostics()->GetValueByName(0, "Outcome").ToString(), "masked");
-  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
+  SetMeshes(filter, MakePlanarPair(4, 1));
   filter->Update();
   EXPECT_EQ(filter->GetDiagnostics()->GetNumberOfRows(), 0);
 }
@@ -112,7 +98,7 @@ TYPED_TEST(Refusals, OfMissingOrWrongInputs)
   filter->Update();
   EXPECT_TRUE(messages.HasError());
   messages.Clear();
-  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
+  SetMeshes(filter, MakePlanarPair(4, 1));
   filter->SetInputDataObject(0, vtkNew<vtkImageData>());
   filter->Update();
   EXPECT_TRUE(messages.HasError());
@@ -123,9 +109,8 @@ TEST(Refusals, AreATable)
 {
   const MeshPair pair = MakeDegeneratePair();
   MovePoint(pair.Target, 24, { 3.0, 3.5, NotANumber });
-  vtkNew<vtkDifferentiableHomeomorphism> filter;
+  const auto filter = MakeAlgorithm<vtkDifferentiableHomeomorphism>(pair);
   Messages messages(filter);
-  SetMeshes(filter.Get(), pair);
   filter->MaskInvalidTrianglesOn();
   filter->Update();
   vtkTable* table = filter->GetDiagnostics();
@@ -232,9 +217,9 @@ TEST(Refusals, OfMapsThatCannotBeMeasuredOrResampled)
     continuity->SetTransform(vtkNew<vtkTransform>());
   }
   // An image over a surface.
-  vtkNew<vtkResampleThroughHomeomorphism> resample;
+  const auto resample =
+    MakeAlgorithm<vtkResampleThroughHomeomorphism>({ MakeSheet(4, 2, 0.5), MakeSheet(4, 3, 0.5) });
   Messages ofResample(resample);
-  SetMeshes(resample.Get(), { MakeSheet(4, 2, 0.5), MakeSheet(4, 3, 0.5) });
   resample->Update();
   EXPECT_TRUE(ofResample.HasError());
   EXPECT_EQ(resample->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
@@ -251,12 +236,11 @@ TEST(Refusals, OfWrongArgumentsAndData)
   EXPECT_TRUE(messages.HasError());
   EXPECT_EQ(filter->GetAttributeTransformation("Velocity"), -1);
   messages.Clear();
-  SetMeshes(filter.Get(), MakePlanarPair(4, 1));
+  SetMeshes(filter, MakePlanarPair(4, 1));
   filter->SetDataObject(vtkNew<vtkTable>());
   filter->Update();
   EXPECT_TRUE(messages.HasError());
-  EXPECT_EQ(filter->GetErrorCode(),
-    static_cast<unsigned long>(vtkDifferentiableHomeomorphism::DATA_REFUSED));
+  EXPECT_EQ(filter->GetErrorCode(), vtkDifferentiableHomeomorphism::DATA_REFUSED);
 }
 
 TEST(Refusals, ValuesOutOfRangeAreClamped)

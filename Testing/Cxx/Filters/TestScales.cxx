@@ -4,7 +4,6 @@
 // The map does not depend on the sizes of the meshes, up to the ends of the range of doubles.
 
 #include "Fixtures/Defects.h"
-#include "Fixtures/FilterRuns.h"
 
 namespace
 {

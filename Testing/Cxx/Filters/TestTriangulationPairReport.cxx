@@ -5,7 +5,6 @@
 
 #include "Fixtures/FilterRuns.h"
 
-#include "vtkJacobianContinuity.h"
 #include "vtkTriangulationPairReport.h"
 
 #include "vtkSMPTools.h"
@@ -198,9 +197,7 @@ TEST(TriangulationPairReport, ContinuityIsThatOfJacobianContinuity)
   const auto report = Report(pair, true);
   for (const System& system : { Linear, Contour, Smooth })
   {
-    const auto continuity = MakeAlgorithm<vtkJacobianContinuity>(pair);
-    SetSystem(continuity.Get(), system);
-    continuity->Update();
+    const auto continuity = Measure(pair, system);
     const std::string name = system.Name;
     EXPECT_EQ(report->GetStatistic((name + "Creases").c_str()), continuity->GetNumberOfCreases());
     EXPECT_EQ(report->GetStatistic((name + "DifferentiableEdges").c_str()),

@@ -11,6 +11,7 @@
 
 #include "vtkDifferentiableHomeomorphism.h"
 #include "vtkHomeomorphismTransform.h"
+#include "vtkJacobianContinuity.h"
 #include "vtkTriangularCoordinates.h"
 
 #include "vtkAlgorithm.h"
@@ -271,13 +272,22 @@ void SetSystem(Algorithm* algorithm, const System& system)
   algorithm->SetDiscordantTriangles(Algorithm::USE_LINEAR);
 }
 
+/// Sets the meshes of an algorithm. Coordinates have no target.
+inline void SetMeshes(vtkHomeomorphismAlgorithm* algorithm, const MeshPair& pair)
+{
+  algorithm->SetSourceData(pair.Source);
+  if (!vtkTriangularCoordinates::SafeDownCast(algorithm))
+  {
+    algorithm->SetTargetData(pair.Target);
+  }
+}
+
 /// An algorithm of two meshes, with its default options.
 template <typename Algorithm>
 vtkSmartPointer<Algorithm> MakeAlgorithm(const MeshPair& pair)
 {
   auto algorithm = vtkSmartPointer<Algorithm>::New();
-  algorithm->SetSourceData(pair.Source);
-  algorithm->SetTargetData(pair.Target);
+  SetMeshes(algorithm, pair);
   return algorithm;
 }
 
@@ -337,6 +347,32 @@ inline vtkPointSet* Output(vtkDifferentiableHomeomorphism* filter)
 {
   filter->Update();
   return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+/// Lists the features of every type.
+inline void ListEverything(vtkJacobianContinuity* filter)
+{
+  filter->BoundaryEdgesOn();
+  filter->SpokesOn();
+  filter->WingSegmentsOn();
+  filter->CenterSegmentsOn();
+  filter->StripBordersOn();
+  filter->CentroidsOn();
+  filter->VerticesOn();
+}
+
+/// Measures the edges, unless something else is changed before.
+inline vtkSmartPointer<vtkJacobianContinuity> Measure(const MeshPair& pair, const System& system,
+  const std::function<void(vtkJacobianContinuity*)>& change = {})
+{
+  auto filter = MakeAlgorithm<vtkJacobianContinuity>(pair);
+  SetSystem(filter.Get(), system);
+  if (change)
+  {
+    change(filter);
+  }
+  filter->Update();
+  return filter;
 }
 
 // --- Messages and pieces -------------------------------------------------------------------------

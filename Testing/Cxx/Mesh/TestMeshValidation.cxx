@@ -5,7 +5,6 @@
 // meshes that resemble defective ones.
 
 #include "Fixtures/Defects.h"
-#include "Fixtures/FilterRuns.h"
 
 #include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
@@ -167,8 +166,7 @@ vtkSmartPointer<vtkPolyData> WithCellsOfThree(vtkPolyData* mesh)
   {
     return nullptr;
   }
-  auto copy = vtkSmartPointer<vtkPolyData>::New();
-  copy->SetPoints(mesh->GetPoints());
+  auto copy = CopyOf(mesh);
   copy->SetPolys(cells);
   return copy;
 }
@@ -256,22 +254,19 @@ TEST(MeshValidation, NotFinite)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      const auto spoil = [&](vtkPolyData* mesh, vtkIdType id) {
-        Point p = PointOf(mesh, id);
-        p[axis] = bad;
-        MovePoint(mesh, id, p);
-      };
       // Point 0 has two triangles, point 1 three, point 24 two.
+      const auto spoil = [&](vtkPolyData* mesh) {
+        for (const vtkIdType id : { 0, 1, 24 })
+        {
+          Point p = PointOf(mesh, id);
+          p[axis] = bad;
+          MovePoint(mesh, id, p);
+        }
+      };
       for (const MeshPair& pair :
         { MakePlanarPair(4, 20), MeshPair{ MakeSheet(4, 21, 0.3), MakeSheet(4, 22, 0.4) } })
       {
-        ExpectFoundInEachMesh(pair,
-          [&](vtkPolyData* mesh) {
-            spoil(mesh, 0);
-            spoil(mesh, 1);
-            spoil(mesh, 24);
-          },
-          Kind::NotFinite, { 0, 1, 2, 3, 30, 31 });
+        ExpectFoundInEachMesh(pair, spoil, Kind::NotFinite, { 0, 1, 2, 3, 30, 31 });
       }
     }
   }
@@ -404,9 +399,7 @@ TEST(MeshValidation, NonOrientable)
   ExpectRefused(reading, { { Kind::NonOrientable, Where::Source, reading.Diagnostics[0].Ids } },
     Remedy::CutOpen);
   // Masking is no remedy.
-  homeomorphism::HomeomorphismOptions masking;
-  masking.MaskInvalidTriangles = true;
-  EXPECT_FALSE(Read(strip, strip, masking).Map);
+  EXPECT_FALSE(ReadMasked({ strip, strip }).Map);
   std::vector<Triangle> open = TrianglesOf(strip);
   open.pop_back();
   const auto opened = WithTriangles(strip, open);
@@ -541,16 +534,7 @@ void ExpectHoles(const MeshPair& pair, const Ids& holes)
 {
   const Reading reading = Read(pair);
   ExpectAccepted(reading);
-  Ids masked;
-  const auto& topology = reading.Map->GetPair().GetTriangulation();
-  for (homeomorphism::TriangleIndex t = 0; t < topology.GetNumberOfTriangles(); ++t)
-  {
-    if (topology.IsMasked(t))
-    {
-      masked.push_back(t);
-    }
-  }
-  EXPECT_EQ(masked, holes);
+  EXPECT_EQ(reading.Masked(), holes);
 }
 
 TEST(MeshValidation, HiddenCellsAndPointsAreHoles)

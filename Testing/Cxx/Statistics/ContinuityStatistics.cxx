@@ -7,11 +7,8 @@
 // Fails if a verdict is wrong, if an estimate is farther from the closed form than its own bound,
 // or if more than one verdict in a hundred is undecided (one in twenty at wing segments).
 
+#include "Fixtures/FilterRuns.h"
 #include "Fixtures/MeasuredMaps.h"
-
-#include "vtkCellData.h"
-#include "vtkJacobianContinuity.h"
-#include "vtkPointData.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -36,11 +33,6 @@ struct Tally
   std::vector<double> BoundOverJump;
 };
 
-double Value(vtkDataSetAttributes* attributes, const char* name, vtkIdType i)
-{
-  return attributes->GetArray(name)->GetTuple1(i);
-}
-
 /// Runs the filter, adds a row to the table for each kind of feature, and returns whether all
 /// values are acceptable.
 bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
@@ -50,16 +42,16 @@ bool Evaluate(const char* name, Continuity* filter, const Expectation& expected)
   std::array<Tally, featureNames.size()> tallies;
   for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
   {
-    const auto type = static_cast<int>(Value(output->GetCellData(), "FeatureType", cell));
-    const auto verdict = static_cast<int>(Value(output->GetCellData(), "Verdict", cell));
+    const auto type = static_cast<int>(CellValue(output, "FeatureType", cell));
+    const auto verdict = static_cast<int>(CellValue(output, "Verdict", cell));
     Tally& tally = tallies[static_cast<std::size_t>(type)];
     ++tally.Verdicts[verdict];
     tally.Wrong += verdict != Continuity::UNDECIDED && verdict != expected(filter, cell, type);
     for (const vtkIdType point : IdsOf(output, cell))
     {
-      const double jump = Value(output->GetPointData(), "JacobianJump", point);
-      const double exact = Value(output->GetPointData(), "JacobianJumpExact", point);
-      const double bound = Value(output->GetPointData(), "JacobianJumpError", point);
+      const double jump = PointValue(output, "JacobianJump", point);
+      const double exact = PointValue(output, "JacobianJumpExact", point);
+      const double bound = PointValue(output, "JacobianJumpError", point);
       tally.BeyondBound += std::isfinite(jump - exact) && !(std::abs(jump - exact) <= bound);
       if (std::isfinite(jump) && exact > 1e-3)
       {
@@ -110,7 +102,7 @@ int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int featureType, vtkPol
   else if (featureType == Continuity::EDGE || featureType == Continuity::SPOKE ||
     featureType == Continuity::TRIANGLE_CENTER)
   {
-    crease = Value(output->GetCellData(), "JacobianJumpExact", cell) > filter->GetResolution();
+    crease = CellValue(output, "JacobianJumpExact", cell) > filter->GetResolution();
   }
   crease = crease && filter->GetCoordinateSystem() != Continuity::CUBIC;
   return crease ? Continuity::CREASE : Continuity::DIFFERENTIABLE;
@@ -119,23 +111,19 @@ int ExpectedOfSystem(Continuity* filter, vtkIdType cell, int featureType, vtkPol
 bool EvaluateSystems(const MeshPair& pair, bool allFeatures)
 {
   bool good = true;
-  const std::array<const char*, 4> names{ "Linear", "Contour", "Smooth", "Cubic" };
-  for (int system = Continuity::LINEAR; system <= Continuity::CUBIC; ++system)
+  for (const System& system : { Linear, Contour, Smooth, Cubic })
   {
-    vtkNew<Continuity> filter;
-    filter->SetSourceData(pair.Source);
-    filter->SetTargetData(pair.Target);
-    filter->SetCoordinateSystem(system);
-    filter->SetSpokes(allFeatures);
-    filter->SetWingSegments(allFeatures);
-    filter->SetCenterSegments(allFeatures);
-    filter->SetStripBorders(allFeatures);
-    filter->SetCentroids(allFeatures);
-    filter->SetVertices(allFeatures);
+    const auto filter = MakeAlgorithm<Continuity>(pair);
+    SetSystem(filter.Get(), system);
+    if (allFeatures)
+    {
+      ListEverything(filter);
+      filter->BoundaryEdgesOff();
+    }
     const auto expected = [&pair](Continuity* f, vtkIdType cell, int type) {
       return ExpectedOfSystem(f, cell, type, pair.Source);
     };
-    good = Evaluate(names[system], filter, expected) && good;
+    good = Evaluate(system.Name, filter, expected) && good;
   }
   return good;
 }
@@ -171,11 +159,10 @@ int main()
   // With displacements this small, every triangle of a grid is concordant.
   const MeshPair large = MakePlanarPair(60, 3, 0.15);
   bool good = EvaluateSystems(large, false);
-  vtkNew<Continuity> similar;
-  similar->SetSourceData(large.Source);
-  similar->SetTargetData(Moved(large.Source, [](const Point& p) {
-    return Point{ 3.0 * p[0] - 4.0 * p[1] + 1.0, 4.0 * p[0] + 3.0 * p[1], 0.0 };
-  }));
+  const auto similar = MakeAlgorithm<Continuity>(
+    { large.Source, Moved(large.Source, [](const Point& p) {
+       return Point{ 3.0 * p[0] - 4.0 * p[1] + 1.0, 4.0 * p[0] + 3.0 * p[1], 0.0 };
+     }) });
   similar->SetCoordinateSystem(Continuity::CONTOUR);
   good = Evaluate("Contour, similar pair", similar, AlwaysDifferentiable) && good;
 
