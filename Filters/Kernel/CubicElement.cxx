@@ -486,20 +486,38 @@ CubicNet::CubicNet(const CubicElement& element)
 }
 
 //------------------------------------------------------------------------------
-Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
-  const Vector2& image, Vector2& step) const
+Matrix2 CubicNet::GetEdgeDerivatives(const Barycentric& l) const
 {
-  const Vector2 residual = image - (*this)(l);
   double x[3];
   double y[3];
   Derive(this->X, l[0], l[1], l[2], x[0], x[1], x[2]);
   Derive(this->Y, l[0], l[1], l[2], y[0], y[1], y[2]);
-  const Vector2 first{ x[1] - x[0], y[1] - y[0] };
-  const Vector2 second{ x[2] - x[0], y[2] - y[0] };
-  const double scale = 1.0 / Cross(first, second);
-  step = (scale * Cross(residual, second)) * (points[1] - points[0]) +
-    (scale * Cross(first, residual)) * (points[2] - points[0]);
+  return { { x[1] - x[0], y[1] - y[0] }, { x[2] - x[0], y[2] - y[0] } };
+}
+
+//------------------------------------------------------------------------------
+Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
+  const Vector2& image, Vector2& step) const
+{
+  const Vector2 residual = image - (*this)(l);
+  const Matrix2 along = this->GetEdgeDerivatives(l);
+  const double scale = 1.0 / along.Determinant();
+  step = (scale * Cross(residual, along.ImageOfY)) * (points[1] - points[0]) +
+    (scale * Cross(along.ImageOfX, residual)) * (points[2] - points[0]);
   return residual;
+}
+
+//------------------------------------------------------------------------------
+Matrix2 CubicNet::GetDerivative(
+  const Barycentric& l, const std::array<Vector2, 3>& points, double area) const
+{
+  const Matrix2 along = this->GetEdgeDerivatives(l);
+  const double scale = 1.0 / area;
+  const Vector2 first = scale * (points[1] - points[0]);
+  const Vector2 second = scale * (points[2] - points[0]);
+  // The rows of the inverse of the matrix of both edges.
+  return OuterProduct(along.ImageOfX, { second.y, -second.x }) +
+    OuterProduct(along.ImageOfY, { -first.y, first.x });
 }
 
 //------------------------------------------------------------------------------

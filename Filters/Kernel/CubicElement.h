@@ -192,6 +192,11 @@ public:
   Vector2 GetResidual(const Barycentric& l, const std::array<Vector2, 3>& points,
     const Vector2& image, Vector2& step) const;
 
+  /// The derivative of f at a point with barycentric coordinates @a l, with an error of a few ulp
+  /// times the aspect ratio of the triangle. @a area is twice its area.
+  Matrix2 GetDerivative(
+    const Barycentric& l, const std::array<Vector2, 3>& points, double area) const;
+
   /// The ordinates of one component of f. Element i belongs to corner i: the ordinate at the
   /// corner, those beside it on the edges to the next and to the previous corner, and those on the
   /// segment to the centroid; in Middle, it belongs to the piece opposite the corner.
@@ -280,6 +285,9 @@ public:
   }
 
 private:
+  /// The derivatives along the edges from corner 0 to corners 1 and 2.
+  Matrix2 GetEdgeDerivatives(const Barycentric& l) const;
+
   Component X;
   Component Y;
 };

@@ -175,6 +175,26 @@ void CubicHomeomorphism::GetSourcePoints(Domain from, const TriangleIndex* trian
 bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
   const Vector2& inFrame, Vector2& image, Matrix2* derivative) const
 {
+  CubicTriangle prepared = this->Map->Prepare();
+  if (from == Domain::Source)
+  {
+    const std::int32_t number = this->Numbers[triangle];
+    const bool exists = this->Map->IsCertified(number);
+    const Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
+    image = {};
+    if (exists)
+    {
+      const bool isReversed = this->Reversed[number] != 0;
+      image = this->Map->MapPoint(
+        number, { l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] }, point, prepared);
+      image.x = this->IsMirrored ? -image.x : image.x;
+    }
+    if (derivative)
+    {
+      *derivative = this->Derive(from, exists ? number : -1, point, prepared);
+    }
+    return exists;
+  }
   CubicBatch batch;
   batch.Count = 1;
   double coordinates[5][WidestVector];
@@ -190,7 +210,6 @@ bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Bar
   const double* const arrays[3] = { coordinates[0], coordinates[1], coordinates[2] };
   const double* const frames[2] = { coordinates[3], coordinates[4] };
   this->SetPoints(from, triangle, 0, 1, arrays, frames, batch);
-  CubicTriangle prepared = this->Map->Prepare();
   this->MapPoints(from, batch, prepared);
   image = { batch.ImageX[0], batch.ImageY[0] };
   if (derivative)
@@ -198,20 +217,20 @@ bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Bar
     Vector2 point;
     int number;
     this->GetSourcePoints(from, &triangle, batch, &point.x, &point.y, &number);
-    *derivative = this->Derive(from, triangle, number, point);
+    *derivative = this->Derive(from, number, point, prepared);
   }
   return batch.Triangles[0] >= 0;
 }
 
 Matrix2 CubicHomeomorphism::Derive(
-  Domain from, TriangleIndex triangle, int number, const Vector2& point) const
+  Domain from, int number, const Vector2& point, CubicTriangle& prepared) const
 {
   if (number < 0)
   {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     return { { none, none }, { none, none } };
   }
-  Matrix2 forward = this->Map->GetDerivative(number, point);
+  Matrix2 forward = this->Map->GetDerivative(number, point, prepared);
   if (this->IsMirrored)
   {
     forward.ImageOfX.x = -forward.ImageOfX.x;
@@ -224,14 +243,7 @@ Matrix2 CubicHomeomorphism::Derive(
       Matrix2{ { forward.ImageOfY.y, -forward.ImageOfX.y },
         { -forward.ImageOfY.x, forward.ImageOfX.x } };
   }
-  // From the planes' axes to those of the frames.
-  const PlaneFrame& here = this->Pair.GetGeometry(from).GetPlaneFrame(triangle);
-  const PlaneFrame& there = this->Pair.GetGeometry(Opposite(from)).GetPlaneFrame(triangle);
-  const auto toFrame = [](const PlaneFrame& frame, const Vector2& v) {
-    return Vector2{ Dot(frame.Tangent, v), frame.Orientation * Cross(frame.Tangent, v) };
-  };
-  const Vector2 inward{ -here.Orientation * here.Tangent.y, here.Orientation * here.Tangent.x };
-  return { toFrame(there, forward * here.Tangent), toFrame(there, forward * inward) };
+  return forward;
 }
 
 std::vector<std::int32_t> CubicHomeomorphism::GetExceptionalPoints(bool interior) const

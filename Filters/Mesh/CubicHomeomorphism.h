@@ -60,13 +60,13 @@ public:
 
   /// The image of one point in the plane of the other mesh; the same, bit for bit, as that of
   /// MapPoints. Returns false if there is none. Unless @a derivative is null, sets it to the
-  /// derivative from frame to frame, or to NaN if there is no image.
+  /// derivative from plane to plane, or to NaN if there is no image.
   bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,
     Vector2& image, Matrix2* derivative = nullptr) const;
 
-  /// The derivative, from frame to frame of a mesh's triangle, at a point of the source of the
-  /// CubicMap.
-  Matrix2 Derive(Domain from, TriangleIndex triangle, int number, const Vector2& point) const;
+  /// The derivative, from plane to plane, at a point of triangle @a number of the source of the
+  /// CubicMap; NaN if @a number is negative.
+  Matrix2 Derive(Domain from, int number, const Vector2& point, CubicTriangle& prepared) const;
 
   /// The smallest Bernstein coefficient of the determinant, divided by the determinant of the
   /// piecewise linear map; 0 for a masked triangle.

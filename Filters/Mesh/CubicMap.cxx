@@ -19,6 +19,9 @@ namespace
 constexpr int NewtonSteps = 300;
 // Half the second derivatives times the length of a triangle, over the least stretch: seldom more.
 constexpr double MostBending = 10.0;
+// Of twice the area to the sum of the squares of the edges. Nets of thinner triangles have
+// inaccurate derivatives.
+constexpr double LeastThickness = 1.0 / 16.0;
 // Residuals of this many ulp of the target's coordinates are rounding.
 constexpr double ResidualUlps = 4.0;
 
@@ -468,6 +471,40 @@ void CubicMap::MapFine(
 }
 
 //------------------------------------------------------------------------------
+bool CubicMap::IsInMiddle(int fineTriangle, const Barycentric& l) const
+{
+  const CubicTemplate::MiddleBounds& bounds = this->Template->GetMiddle(fineTriangle);
+  bool isMiddle = true;
+  for (int k = 0; k < 3; ++k)
+  {
+    isMiddle = isMiddle && l[k] > bounds.Least[k] && l[k] < bounds.Greatest[k];
+  }
+  return isMiddle;
+}
+
+//------------------------------------------------------------------------------
+Vector2 CubicMap::MapPoint(
+  int triangle, Barycentric l, const Vector2& point, CubicTriangle& prepared) const
+{
+  const int child = this->Levels > 0 ? this->FindChild(triangle, l) : triangle;
+  const PlanarPair& pair = this->GetFine();
+  const Vector2 origin = pair.Target[pair.Triangles[child][0]];
+  if (this->IsWhole(child))
+  {
+    return origin + this->Bending->Nets[child](l);
+  }
+  if (!this->Bending && this->IsInMiddle(child, l))
+  {
+    const std::array<Vector2, 3> corners = pair.GetTargetCorners(child);
+    // As MapMiddle does.
+    return { origin.x + l[1] * corners[1].x + l[2] * corners[2].x,
+      origin.y + l[1] * corners[1].y + l[2] * corners[2].y };
+  }
+  prepared.Set(child);
+  return origin + prepared.Map(point - pair.Source[pair.Triangles[child][0]]);
+}
+
+//------------------------------------------------------------------------------
 Vector2 CubicMap::MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const
 {
   const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
@@ -478,16 +515,38 @@ Vector2 CubicMap::MapPoint(int triangle, const Vector2& point, CubicTriangle& pr
 }
 
 //------------------------------------------------------------------------------
-Matrix2 CubicMap::GetDerivative(int triangle, const Vector2& point) const
+Matrix2 CubicMap::GetDerivative(int triangle, const Vector2& point, CubicTriangle& prepared) const
 {
   const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
   const PlanarPair& pair = this->GetFine();
   const Vector2 local = point - pair.Source[pair.Triangles[child][0]];
+  const std::array<Vector2, 3> corners = pair.GetSourceCorners(child);
+  const double area = Cross(corners[1], corners[2]);
+  const double first = Cross(local, corners[2]) / area;
+  const double second = Cross(corners[1], local) / area;
+  const Barycentric l{ 1.0 - first - second, first, second };
   if (this->IsWhole(child))
   {
+    // The net's ordinates are rounded on the scale of the longest edge.
+    const Vector2 edge = corners[2] - corners[1];
+    const double squares =
+      Dot(corners[1], corners[1]) + Dot(corners[2], corners[2]) + Dot(edge, edge);
+    if (LeastThickness * squares <= area)
+    {
+      return this->Bending->Nets[child].GetDerivative(l, corners, area);
+    }
     const Matrix2& affine = this->Template->GetAffine(child);
     const CubicElement element = this->Bending->GetWhole(pair, affine, child);
     return affine + Derive(element, ToBarycentric(element.Points, local));
+  }
+  if (!this->Bending)
+  {
+    if (this->IsInMiddle(child, l))
+    {
+      return this->Template->GetAffine(child);
+    }
+    prepared.Set(child);
+    return prepared.GetTemplateDerivative(local);
   }
   Vector2 image;
   Matrix2 derivative;

@@ -95,6 +95,11 @@ public:
   /// Sets the images of a batch. The image of a point does not depend on the other points.
   void MapPoints(CubicBatch& batch, CubicTriangle& prepared) const;
 
+  /// The image of one point; the same, bit for bit, as that of MapPoints. @a l are its barycentric
+  /// coordinates.
+  Vector2 MapPoint(
+    int triangle, Barycentric l, const Vector2& point, CubicTriangle& prepared) const;
+
   /// Sets the preimages of a batch, and the triangles in which they lie, -1 if no preimage is
   /// found, which happens only outside the target's domain. The preimage of a point does not depend
   /// on the other points.
@@ -104,7 +109,7 @@ public:
   Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const;
 
   /// The derivative at a point of a triangle.
-  Matrix2 GetDerivative(int triangle, const Vector2& point) const;
+  Matrix2 GetDerivative(int triangle, const Vector2& point, CubicTriangle& prepared) const;
 
   /// The point that is mapped to @a image, and its triangle. On input, @a triangle is that of the
   /// preimage under the piecewise linear map. Returns false if no preimage is found, which happens
@@ -131,6 +136,8 @@ private:
   {
     return this->Bending && this->Bending->Cuts[fineTriangle] < 0;
   }
+  /// Whether a point is in the middle of a triangle, where the template is affine.
+  bool IsInMiddle(int fineTriangle, const Barycentric& l) const;
   int FindChild(int triangle, const Vector2& point) const;
   /// The triangle of the refined pair that contains a point of a triangle; @a l becomes the
   /// coordinates there.

@@ -83,8 +83,9 @@ void CubicTriangle::Set(int triangle)
   {
     return;
   }
+  this->Triangles.resize(this->Kept);
   std::unique_ptr<Triangle>& kept =
-    this->Triangles[static_cast<std::size_t>(triangle) % this->Triangles.size()];
+    this->Triangles[static_cast<std::size_t>(triangle) % this->Kept];
   if (!kept)
   {
     kept = std::make_unique<Triangle>();
@@ -172,6 +173,15 @@ Vector2 CubicTriangle::Map(const Vector2& point)
     return element->TargetOrigin + element->Net(element->Frame(point - element->SourceOrigin));
   }
   return this->MapInClosedForm(point, nullptr);
+}
+
+//------------------------------------------------------------------------------
+Matrix2 CubicTriangle::GetTemplateDerivative(const Vector2& point)
+{
+  this->LastElement = this->Now->Cut.FindBesideEdges(point);
+  Matrix2 derivative;
+  this->MapInClosedForm(point, &derivative);
+  return derivative;
 }
 
 //------------------------------------------------------------------------------

@@ -38,7 +38,7 @@ public:
     const CubicTemplate& cubicTemplate, const BendingSolution* bending, std::size_t kept)
     : Template(cubicTemplate)
     , Bending(bending)
-    , Triangles(kept)
+    , Kept(kept)
   {
   }
 
@@ -56,6 +56,9 @@ public:
 
   /// The image of a point. Point and image are relative to corner 0 and its image.
   Vector2 Map(const Vector2& point);
+
+  /// The derivative of the template at a point relative to corner 0.
+  Matrix2 GetTemplateDerivative(const Vector2& point);
 
   /// The difference of @a image and the image of a point, and Newton's step towards the preimage of
   /// @a image. If the last point in this triangle @a isNear, its element is tried first.
@@ -152,7 +155,9 @@ private:
   /// form there.
   double LeastCoordinate = 0.0;
   /// The last triangles that were set, at the index that is the remainder of the triangle's number.
+  /// Allocated when the first triangle is set: whole triangles are mapped without it.
   std::vector<std::unique_ptr<Triangle>> Triangles;
+  std::size_t Kept;
   Triangle* Now = nullptr;
 };
 

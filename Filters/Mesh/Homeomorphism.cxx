@@ -667,7 +667,7 @@ bool Homeomorphism::MapByCubic(
     this->ToCubic(from), triangle, l, point, inPlane, jacobian ? &derivative : nullptr);
   if (jacobian)
   {
-    *jacobian = this->FromFrames(from, triangle, derivative, derivative.Determinant());
+    *jacobian = this->FromPlanes(from, triangle, derivative);
   }
   // Heights are measured as in the triangle's frame.
   const double orientation = target.IsColumnar() ? 1.0 : target.GetPlaneFrame(triangle).Orientation;
@@ -696,9 +696,10 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const PointBlock& block, int i)
   }
   if (this->Cubic)
   {
-    const Matrix2 derivative = this->Cubic->Derive(this->ToCubic(from), triangle,
-      block.ReferencePlaces[i], { block.References[0][i], block.References[1][i] });
-    return this->FromFrames(from, triangle, derivative, derivative.Determinant());
+    const Vector2 point{ block.References[0][i], block.References[1][i] };
+    return this->FromPlanes(from, triangle,
+      this->Cubic->Derive(
+        this->ToCubic(from), block.ReferencePlaces[i], point, *block.PreparedCubics));
   }
   return this->DeriveByStrip(from, triangle, block.ReferencePlaces[i],
     { block.References[0][i], block.References[1][i], block.References[2][i] });
@@ -718,6 +719,35 @@ Jacobian Homeomorphism::GetJacobian(
       return this->Derive(
         from, triangle, chart.DifferentialAt(reference), other.DifferentialAt(reference));
     });
+}
+
+Jacobian Homeomorphism::FromPlanes(
+  Domain from, TriangleIndex triangle, const Matrix2& inPlanes) const
+{
+  const MeshGeometry& source = this->Pair->GetGeometry(from);
+  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
+  const PlaneFrame& frame = source.GetPlaneFrame(triangle);
+  const PlaneFrame& other = target.GetPlaneFrame(triangle);
+  if (!source.IsHorizontal() || !target.IsHorizontal())
+  {
+    const auto toFrame = [&other](const Vector2& v) {
+      return Vector2{ Dot(other.Tangent, v), other.Orientation * Cross(other.Tangent, v) };
+    };
+    const Vector2 inward{ -frame.Orientation * frame.Tangent.y,
+      frame.Orientation * frame.Tangent.x };
+    const Matrix2 inFrames{ toFrame(inPlanes * frame.Tangent), toFrame(inPlanes * inward) };
+    return this->FromFrames(from, triangle, inFrames, inFrames.Determinant());
+  }
+  // Powers of two: nothing is rounded.
+  const double rescale = source.GetScale() * target.GetInverseScale();
+  const double sense = source.IsColumnar() ? 1.0 : frame.Orientation;
+  const double otherSense = target.IsColumnar() ? 1.0 : other.Orientation;
+  const Matrix2 m = rescale * inPlanes;
+  Jacobian jacobian;
+  jacobian.Determinant = sense * otherSense * m.Determinant();
+  jacobian.Matrix = { m.ImageOfX.x, m.ImageOfY.x, 0.0, m.ImageOfX.y, m.ImageOfY.y, 0.0, 0.0, 0.0,
+    sense * otherSense };
+  return jacobian;
 }
 
 Jacobian Homeomorphism::FromFrames(

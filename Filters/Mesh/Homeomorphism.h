@@ -185,6 +185,9 @@ private:
   Jacobian FromFrames(
     Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
 
+  /// Converts a derivative from the planes of planar meshes to the input's coordinates.
+  Jacobian FromPlanes(Domain from, TriangleIndex triangle, const Matrix2& inPlanes) const;
+
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::shared_ptr<const ChartedTriangulation>, 2> Charts;
   std::shared_ptr<const CubicHomeomorphism> Cubic;

@@ -81,7 +81,7 @@ void Measure(const CubicMap& map, int points, std::mt19937_64& random, Result& r
     const int t = sample.Triangle;
     const Vector2 point = sample.In(pair, pair.Source);
     const Vector2 image = map.MapPoint(t, point, prepared);
-    const double determinant = map.GetDerivative(t, point).Determinant();
+    const double determinant = map.GetDerivative(t, point, prepared).Determinant();
     result.Folds += determinant > 0.0 ? 0 : 1;
     result.LeastRatio = std::min(result.LeastRatio, determinant / pair.GetAffine(t).Determinant());
     int at = LocateImage(pair, image, t);

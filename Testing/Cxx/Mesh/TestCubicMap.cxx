@@ -62,7 +62,7 @@ struct Value
   {
     CubicTriangle prepared = map.Prepare();
     this->Image = map.MapPoint(triangle, point, prepared);
-    this->Derivative = map.GetDerivative(triangle, point);
+    this->Derivative = map.GetDerivative(triangle, point, prepared);
   }
 };
 
@@ -255,6 +255,20 @@ TEST_P(CubicMaps, AffinePairsAreReproduced)
   }
 }
 
+TEST_P(CubicMaps, DerivativesInNeedlesAreAccurate)
+{
+  PlanarPair pair = Moved(RandomPair(31, 0.0, 6), [](const Vector2& p) {
+    return Vector2{ p.x, std::ldexp(p.y, -20) };
+  });
+  pair.Target = pair.Source;
+  const CubicMap map(pair, Options(GetParam()));
+  for (const Sample& sample : RandomSamples(pair, 1, 1000))
+  {
+    const Value value(map, sample.Triangle, sample.In(pair, pair.Source));
+    EXPECT_LT(Norm(value.Derivative - Matrix2{ { 1.0, 0.0 }, { 0.0, 1.0 } }), 1e-12);
+  }
+}
+
 TEST_P(CubicMaps, KeepsItsDeviation)
 {
   const PlanarPair pair = RandomPair(41, 1.0, 6);
@@ -436,6 +450,7 @@ TEST_P(CubicMaps, PointsWithinRoundingOfExceptionalVerticesKeepTheirSense)
     double range;
     const PlanarPair pair = RandomStar(random, 4 + n % 7, 1.5, range);
     const CubicMap map(pair, Options(GetParam()));
+    CubicTriangle prepared = map.Prepare();
     const std::vector<std::int32_t>& exceptional = map.GetStatistics().ExceptionalBoundaryPoints;
     for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
     {
@@ -453,7 +468,8 @@ TEST_P(CubicMaps, PointsWithinRoundingOfExceptionalVerticesKeepTheirSense)
           {
             const Vector2 start = pair.Source[point];
             const Vector2 end = pair.Source[pair.Triangles[t][other]];
-            EXPECT_GT(map.GetDerivative(t, start + share * (end - start)).Determinant(), 0.0)
+            EXPECT_GT(
+              map.GetDerivative(t, start + share * (end - start), prepared).Determinant(), 0.0)
               << n << " " << t << " " << share;
           }
         }
