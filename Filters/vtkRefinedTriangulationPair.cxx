@@ -151,6 +151,19 @@ int vtkRefinedTriangulationPair::Execute(
     this->Result = REFINED;
     return 1;
   }
+  const Triangulation& triangulation = map->GetPair().GetTriangulation();
+  vtkIdType triangles = 0;
+  for (TriangleIndex t = 0; t < triangulation.GetNumberOfTriangles(); ++t)
+  {
+    triangles += triangulation.IsMasked(t) ? 0 : 1;
+  }
+  if (triangles > this->MaximumNumberOfTriangles)
+  {
+    this->Result = TOO_MANY_TRIANGLES;
+    vtkErrorMacro(<< "The pair has " << triangles << " triangles, more than "
+                  << this->MaximumNumberOfTriangles << ". Increase MaximumNumberOfTriangles.");
+    return this->Fail(MESHES_REFUSED);
+  }
   const MeshGeometry& targetGeometry = map->GetPair().GetGeometry(Domain::Target);
   const double maximumError = this->MaximumError > 0.0
     ? this->MaximumError
@@ -181,7 +194,6 @@ int vtkRefinedTriangulationPair::Execute(
       return 1;
   }
 
-  const Triangulation& triangulation = map->GetPair().GetTriangulation();
   std::array<vtkNew<vtkPolyData>, 2> meshes;
   MakeMesh(source, triangulation, refined, Domain::Source, meshes[0]);
   MakeMesh(target, triangulation, refined, Domain::Target, meshes[1]);

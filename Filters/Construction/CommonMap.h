@@ -106,7 +106,6 @@ public:
   int GetNumberOfComponents() const { return this->NumberOfComponents; }
   int Component(int vertex) const;
   const std::vector<Vector2>& GetPoints(int domain) const { return this->Points[domain]; }
-  const ConstrainedTriangulation& GetDrawing(int domain) const { return this->Drawings[domain]; }
 
 private:
   using Triangulation = ConstrainedTriangulation;

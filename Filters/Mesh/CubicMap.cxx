@@ -1000,6 +1000,7 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
             Subdivide(patch, local, tolerance, 0, [&](const Vector2& start, bool smallest) {
               // Newton's method from here, as long as it gains and stays in the element.
               Vector2 x = start;
+              point = sourceOrigin + factor * x;
               double last = std::numeric_limits<double>::infinity();
               for (int step = 0; step < 12; ++step)
               {

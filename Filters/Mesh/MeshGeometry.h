@@ -112,9 +112,6 @@ public:
   double GetThickness() const { return this->Thickness; }
   /// Length of the diagonal of the bounding box of the points, in normalized coordinates.
   double GetDiagonal() const { return this->Diagonal; }
-  /// Relative rounding error of the stored coordinates: half an ulp of float or double.
-  double GetCoordinatePrecision() const { return this->CoordinatePrecision; }
-
   /// The largest distance, in normalized coordinates, of a point that should lie on an edge from
   /// that edge, due to the rounding of coordinates: 8 u L + 16 v L, with L the largest coordinate,
   /// u the precision of the stored coordinates, and v that of double.
@@ -343,6 +340,7 @@ private:
   double LargestCoordinate = 0.0;
   double Diagonal = 0.0;
   double Thickness = 0.0;
+  /// Relative rounding error of the stored coordinates: half an ulp of float or double.
   double CoordinatePrecision = 0.0;
 
   // The plane: axes U, V within it and the normal N, right-handed, and its distance from the

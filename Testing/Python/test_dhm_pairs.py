@@ -279,6 +279,8 @@ def test_refine_refusals(dhm):
     write_json(dhm.path("pair.json"), make_pair(3, 3))
     dhm.refuse(REFUSED, "refine", "pair.json", "--max-error", "1e-6", "--max-triangles", "500", "-o", "new.json",
                says=("500", "--max-triangles"))
+    dhm.refuse(REFUSED, "refine", "pair.json", "--max-error", "1e9", "--max-triangles", "5", "-o", "new.json",
+               says=("has 18 triangles", "5 (--max-triangles)"))
     for value in ("0", "-1", "nan", "inf", "x"):
         dhm.refuse(USAGE, "refine", "pair.json", "--max-error=" + value, "-o", "new.json", says=("--max-error", value))
     dhm.refuse(USAGE, "refine", "pair.json", "--max-error", "1", "-o", "new.obj", says=(".obj", ".json"))

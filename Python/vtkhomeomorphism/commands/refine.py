@@ -45,6 +45,9 @@ def command(inputs, output, max_error, max_triangles, **settings):
     except Failure:
         if refining.GetResult() != refining.TOO_MANY_TRIANGLES:
             raise
+        if both.source.GetNumberOfPolys() > max_triangles:
+            raise Failure(f"{both.name} has {both.source.GetNumberOfPolys()} triangles, more than {max_triangles} "
+                          "(--max-triangles).") from None
         raise Failure(f"{both.name}: an error of {max_error:g} requires more than {max_triangles} triangles "
                       f"(--max-triangles); with that number, the error is {refining.GetLargestError():.3g}: allow a "
                       "larger --max-error.") from None

@@ -218,6 +218,12 @@ TEST(RefinedTriangulationPair, ReportsFailures)
   EXPECT_EQ(few->GetResult(), vtkRefinedTriangulationPair::TOO_MANY_TRIANGLES);
   EXPECT_EQ(few->GetOutput()->GetNumberOfCells(), 0);
   EXPECT_GT(few->GetLargestError(), 1e-4);
+  // Fewer than the pair itself has.
+  few->SetMaximumError(1e9);
+  few->SetMaximumNumberOfTriangles(5);
+  few->Update();
+  EXPECT_EQ(few->GetResult(), vtkRefinedTriangulationPair::TOO_MANY_TRIANGLES);
+  EXPECT_EQ(few->GetLargestError(), 0.0);
 
   const MeshPair near = MakePlanarPair(2, 67);
   const auto farAway = [](const Point& p) { return p + Point{ 0x1p44, 0x1p44, 0.0 }; };
