@@ -100,15 +100,16 @@ std::vector<Vector2> Sample(int pieces, PointAt&& pointAt)
 }
 
 /// Center and wing segments. @a construction is the chart on whose triangle they are straight, @a
-/// carry maps that triangle to the triangle shown.
-template <typename Carry>
+/// toShown maps that triangle to the triangle shown.
+template <typename ToShown>
 void AddGuides(LineCollector& lines, TriangleIndex triangle, const ContourChart& construction,
-  const TriangleShape& shape, int pieces, Carry&& carry)
+  const TriangleShape& shape, int pieces, ToShown&& toShown)
 {
   const Vector2 center = construction.Center();
   const auto addSegment = [&](const Vector2& from, const Vector2& to, int type, int edge) {
-    lines.Add(triangle, Sample(pieces, [&](double t) { return carry((1.0 - t) * from + t * to); }),
-      type, edge, none, none);
+    lines.Add(triangle,
+      Sample(pieces, [&](double t) { return toShown((1.0 - t) * from + t * to); }), type, edge,
+      none, none);
   };
   for (int edge = 1; edge <= 3; ++edge)
   {
