@@ -167,17 +167,17 @@ set(pipeline_headers
   Pipeline/Requests.h
   Pipeline/VTKVersions.h)
 
-# Which products and sums are fused into one rounding must not be the compiler's choice: results
-# would change from one machine to another. Nobody asks for floating-point exceptions or errno: without
-# them, loops over several points become vector instructions.
+# Products and sums are not fused into one rounding where the compiler prefers it, because results
+# would differ between machines. Floating-point exceptions and errno are not used; without them,
+# loops over several points are vectorized.
 set(floating_point_options
   $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off;-fno-trapping-math;-fno-math-errno>)
 
-# Only in a build of our own: inside VTK, VTK decides.
+# Only if this project is built alone: inside VTK, VTK sets the warnings.
 set(warning_options)
 if (CMAKE_PROJECT_NAME STREQUAL "DifferentiableHomeomorphism")
   set(warning_options
     $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wshadow;-Wconversion>
-    # To Clang a part of -Wconversion, to GCC not.
+    # Clang includes it in -Wconversion, GCC does not.
     $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-sign-conversion>)
 endif ()

@@ -115,13 +115,13 @@ void FillGaps(vtkPointSet* found, vtkDataObject* data, Move&& move)
 }
 
 /// Collects ids for a message: their number, and the first of them.
-class Offenders
+class DefectiveIds
 {
 public:
   void Add(vtkIdType id) { this->Ids.push_back(id); }
   bool IsEmpty() const { return this->Ids.empty(); }
   /// "2 points of the data (points 3, 5) have".
-  std::string Tell(const std::string& what) const
+  std::string Describe(const std::string& what) const
   {
     const bool one = this->Ids.size() == 1;
     return std::to_string(this->Ids.size()) + " " + what + (one ? "" : "s") + " of the data (" +
@@ -167,8 +167,8 @@ std::string DescribeDefects(vtkDataSet* data)
     arrays = { { unstructured->GetCells(), 0 } };
   }
   const vtkIdType numberOfPoints = data->GetNumberOfPoints();
-  Offenders cells;
-  Offenders small;
+  DefectiveIds cells;
+  DefectiveIds small;
   vtkIdType first = 0;
   for (const auto& [array, least] : arrays)
   {
@@ -195,15 +195,15 @@ std::string DescribeDefects(vtkDataSet* data)
   }
   if (!cells.IsEmpty())
   {
-    return cells.Tell("cell") +
+    return cells.Describe("cell") +
       " points that do not exist. The data is corrupt: read or build it again.";
   }
   if (!small.IsEmpty())
   {
-    return small.Tell("cell") +
+    return small.Describe("cell") +
       " fewer points than a line or polygon needs. Remove them (vtkCleanPolyData).";
   }
-  Offenders points;
+  DefectiveIds points;
   auto* pointSet = vtkPointSet::SafeDownCast(data);
   for (vtkIdType i = 0; pointSet && i < numberOfPoints; ++i)
   {
@@ -216,7 +216,7 @@ std::string DescribeDefects(vtkDataSet* data)
   }
   if (!points.IsEmpty())
   {
-    return points.Tell("point") +
+    return points.Describe("point") +
       " coordinates that are not finite, so that the data cannot be probed. Remove them.";
   }
   const std::string text = DescribeArrays(data->GetPointData(), "point", numberOfPoints);

@@ -24,12 +24,12 @@ constexpr int MaximumRounds = 120;
 constexpr int MaximumProximalRounds = 20;
 /// Proximal rounds end when the energy falls to no less than this share.
 constexpr double EnoughProgress = 0.998;
-/// By what the pull on an element is divided when a solution is certified: on one that had to be
-/// pulled harder for that, and on others.
+/// The divisors of the penalty's weights when a solution is certified: of elements whose weight had
+/// to be increased for that, and of others.
 constexpr double CautiousRelaxation = 4.0;
 constexpr double Relaxation = 64.0;
 /// Coefficients of the determinant that are less than this share of the template's above the
-/// least one allowed are constraints that may hold an element back, and sweeps to find how hard.
+/// least one allowed are constraints, whose multipliers are computed in this number of sweeps.
 constexpr double NearShare = 0.4;
 constexpr int MultiplierSweeps = 30;
 /// Above this share of failing triangles everything is cut from the start, which bends less.
@@ -151,14 +151,14 @@ double GetThickness(const CubicElement& element)
     longest;
 }
 
-/// The distance of an element's data from its aim whose square the pull punishes.
-BendingMatrix GetPullMatrix(const std::array<Vector2, 3>& points)
+/// The matrix of the penalty: that of the squared distance of an element's data from its aim.
+BendingMatrix GetPenaltyMatrix(const std::array<Vector2, 3>& points)
 {
-  BendingMatrix pull{};
+  BendingMatrix penalty{};
   for (int i = 0; i < 3; ++i)
   {
-    pull[3 * i + 1][3 * i + 1] = 1.0;
-    pull[3 * i + 2][3 * i + 2] = 1.0;
+    penalty[3 * i + 1][3 * i + 1] = 1.0;
+    penalty[3 * i + 2][3 * i + 2] = 1.0;
   }
   for (int k = 0; k < 3; ++k)
   {
@@ -166,12 +166,12 @@ BendingMatrix GetPullMatrix(const std::array<Vector2, 3>& points)
     const int j = 3 * PreviousCorner(k);
     const Vector2 edge = points[j / 3] - points[i / 3];
     const double weight = 1.0 / Dot(edge, edge);
-    pull[i][i] += weight;
-    pull[j][j] += weight;
-    pull[i][j] -= weight;
-    pull[j][i] -= weight;
+    penalty[i][i] += weight;
+    penalty[j][j] += weight;
+    penalty[i][j] -= weight;
+    penalty[j][i] -= weight;
   }
-  return pull;
+  return penalty;
 }
 
 class Solver
@@ -209,10 +209,10 @@ private:
     int Number;
     /// On an edge beside a whole triangle.
     bool Slave = false;
-    /// The map to which the solution is pulled, and the last solution.
+    /// The map towards which the penalty pulls the solution, and the last solution.
     BendingNode Aim;
     BendingNode Now;
-    /// How hard the node is pulled, at most, by an element.
+    /// The largest weight of the penalty in an element of the node.
     double Omega = 0.0;
   };
 
@@ -570,7 +570,7 @@ NodeForms Solver::MakeEdgeForms(int number)
     forms.SetGradient(along, tangential, normal);
     return forms;
   }
-  // On the boundary the cubic is prescribed; the harder the node is pulled, the closer to its aim.
+  // On the boundary the cubic is prescribed: the larger the weight, the closer to the node's aim.
   const double share = 1.0 / (1.0 + node.Omega);
   forms.Value = Constant(node.Aim.Value + share * (forms.Value.Constant - node.Aim.Value));
   const Vector2 aim = node.Aim.Gradient * along;
@@ -587,7 +587,7 @@ void Solver::MakeForms()
   }
   for (const Element& element : this->Elements)
   {
-    // A whole triangle is pulled to its affine map, which is no aim for the boundary.
+    // The aim of a whole triangle is its affine map, which is no aim for the boundary.
     if (element.Number >= 0 || this->Proximal)
     {
       for (int node : element.Nodes)
@@ -669,7 +669,8 @@ void Solver::GetVector(const Element& element, bool aim, std::array<Vector2, 9>&
 }
 
 //------------------------------------------------------------------------------
-// What an element is pulled to: at first, a whole triangle to its affine map.
+// The data towards which the penalty pulls an element: at first, that of a whole triangle's affine
+// map.
 std::array<Vector2, 9> Solver::GetAim(const Element& element) const
 {
   std::array<Vector2, 9> aim{};
@@ -708,8 +709,8 @@ void Solver::Assemble()
       constants[3 * i + 1] = node.ByX.Constant - affine.ImageOfX;
       constants[3 * i + 2] = node.ByY.Constant - affine.ImageOfY;
     }
-    // Bending times the constants, then the pull times their distance from the aim, less what the
-    // constraints exert.
+    // Bending times the constants, then the penalty times their distance from the aim, less the
+    // forces of the constraints.
     std::array<Vector2, 9> force{};
     for (int m = 0; m < 9; ++m)
     {
@@ -721,13 +722,13 @@ void Solver::Assemble()
     if (element.Omega > 0.0)
     {
       const std::array<Vector2, 9> aim = this->GetAim(element);
-      const BendingMatrix pull = GetPullMatrix(this->GetElement(element, true).Points);
+      const BendingMatrix penalty = GetPenaltyMatrix(this->GetElement(element, true).Points);
       for (int m = 0; m < 9; ++m)
       {
         force[m] = force[m] - element.Force[m];
         for (int n = 0; n < 9; ++n)
         {
-          const double weight = element.Omega * pull[m][n];
+          const double weight = element.Omega * penalty[m][n];
           matrix[m][n] += weight;
           force[m] = force[m] + weight * (constants[n] - aim[n]);
         }
@@ -889,8 +890,8 @@ int Solver::Check(bool rigorous)
 }
 
 //------------------------------------------------------------------------------
-// The pull exerts a force on an element. The part of it that keeps small coefficients of the
-// determinant from falling is kept as a constant force when the pull is relaxed: then the element
+// The penalty exerts a force on an element. The part of it that keeps small coefficients of the
+// determinant from falling is kept as a constant force when the weight is reduced: then the element
 // may move along the border of what is certified, but is not pressed against it. It is the sum of
 // the coefficients' gradients times multipliers of at least zero that is nearest to the force
 // (augmented Lagrangian: Hestenes 1969, Powell 1969).
@@ -901,11 +902,11 @@ void Solver::KeepForce(Element& element) const
     return;
   }
   const CubicElement cubic = this->GetElement(element, false);
-  const BendingMatrix pull = GetPullMatrix(cubic.Points);
+  const BendingMatrix penalty = GetPenaltyMatrix(cubic.Points);
   const std::array<Vector2, 9> aim = this->GetAim(element);
   std::array<Vector2, 9> now;
   this->GetVector(element, false, now);
-  // By component, in units in which the pull's diagonal is 1.
+  // By component, in units in which the penalty's diagonal is 1.
   std::array<double, 18> residual;
   std::array<double, 18> unit;
   for (int m = 0; m < 9; ++m)
@@ -913,9 +914,9 @@ void Solver::KeepForce(Element& element) const
     Vector2 force = element.Force[m];
     for (int n = 0; n < 9; ++n)
     {
-      force = force - (element.Omega * pull[m][n]) * (now[n] - aim[n]);
+      force = force - (element.Omega * penalty[m][n]) * (now[n] - aim[n]);
     }
-    const double scale = 1.0 / std::sqrt(pull[m][m]);
+    const double scale = 1.0 / std::sqrt(penalty[m][m]);
     unit[2 * m] = scale;
     unit[2 * m + 1] = scale;
     residual[2 * m] = scale * force.x;
@@ -1159,9 +1160,9 @@ BendingSolution Solver::Run()
         best = this->Extract();
         this->Statistics.MinimizedEnergies.push_back(energy);
       }
-      const bool pulled = std::any_of(this->Elements.begin(), this->Elements.end(),
+      const bool hasPenalty = std::any_of(this->Elements.begin(), this->Elements.end(),
         [](const Element& element) { return element.Omega > 0.0; });
-      if (isLittle || !pulled || this->Statistics.ProximalRounds == MaximumProximalRounds)
+      if (isLittle || !hasPenalty || this->Statistics.ProximalRounds == MaximumProximalRounds)
       {
         break;
       }
