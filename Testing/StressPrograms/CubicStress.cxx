@@ -159,7 +159,7 @@ void RunStars()
   for (int n = 0; n < Count(10000); ++n)
   {
     double turn;
-    PlanarPair pair = RandomStar(random, 3 + n % 7, 2.8, turn);
+    PlanarPair pair = RandomStar(random, 3 + n % 7, 2.8, &turn);
     const CubicMap map(std::move(pair), Options(CubicBending::Local));
     const CubicMapStatistics& statistics = map.GetStatistics();
     uncertified += statistics.UncertifiedTriangles;

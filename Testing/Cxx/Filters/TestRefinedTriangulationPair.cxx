@@ -16,10 +16,11 @@ namespace
 
 using namespace fixtures;
 
-vtkSmartPointer<vtkRefinedTriangulationPair> MakeFilter(const MeshPair& pair, double maximumError)
+vtkSmartPointer<vtkRefinedTriangulationPair> Refined(const MeshPair& pair, double maximumError)
 {
   auto filter = MakeAlgorithm<vtkRefinedTriangulationPair>(pair);
   filter->SetMaximumError(maximumError);
+  filter->Update();
   return filter;
 }
 
@@ -30,10 +31,9 @@ double LargestError(const MeshPair& pair, vtkRefinedTriangulationPair* filter)
 {
   const auto cloud = MakeCloud(pair.Source, RandomSamples(pair.Source, 20000, 5));
   const System system{ "", filter->GetCoordinateSystem() };
-  const auto exact = fixtures::MakeFilter(system, pair, cloud);
+  const auto exact = MakeFilter(system, pair, cloud);
   exact->SetMaximumDeviation(filter->GetMaximumDeviation());
-  const auto linear =
-    fixtures::MakeFilter(Linear, { filter->GetOutput(), filter->GetTargetOutput() }, cloud);
+  const auto linear = MakeFilter(Linear, { filter->GetOutput(), filter->GetTargetOutput() }, cloud);
   for (const auto& map : { exact, linear })
   {
     // On surfaces, and on the boundary, points between corners are off the mesh by rounding.
@@ -51,9 +51,9 @@ void ExpectConforming(vtkPolyData* mesh, double size)
   double twice = 0.0;
   for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c)
   {
-    const auto p = CornersOf(mesh, c);
-    EXPECT_GT(Cross(p[1] - p[0], p[2] - p[0])[2], 0.0);
-    twice += Cross(p[1] - p[0], p[2] - p[0])[2];
+    const double area = NormalOf(mesh, c)[2];
+    EXPECT_GT(area, 0.0);
+    twice += area;
   }
   EXPECT_NEAR(twice, 2.0 * size * size, 1e-11);
   // Those of one triangle, or of three.
@@ -104,7 +104,8 @@ TEST(RefinedTriangulationPair, KeepsTheMaximumErrorPointsAndAreas)
   for (const Case& one : cases)
   {
     const MeshPair& pair = one.Pair;
-    const auto filter = MakeFilter(pair, one.MaximumError);
+    const auto filter = MakeAlgorithm<Filter>(pair);
+    filter->SetMaximumError(one.MaximumError);
     filter->SetCoordinateSystem(one.System);
     filter->SetDiscordantTriangles(Filter::REFUSE);
     filter->SetMaximumDeviation(one.MaximumDeviation);
@@ -143,21 +144,18 @@ TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
   pair.Source->GetPointData()->AddArray(heights);
   const auto cellNumbers = RandomArray("Region", 1, pair.Source->GetNumberOfCells(), 53);
   pair.Target->GetCellData()->AddArray(cellNumbers);
-  const auto filter = MakeFilter(pair, 0.004);
-  filter->Update();
+  const auto filter = Refined(pair, 0.004);
   vtkPolyData* refined = filter->GetOutput();
   vtkDataArray* interpolated = PointArray(refined, "Height");
   ASSERT_NE(interpolated, nullptr);
   EXPECT_EQ(PointArray(filter->GetTargetOutput(), "Height"), nullptr);
-  vtkDataArray* ids = refined->GetCellData()->GetArray("OriginalCellIds");
-  vtkDataArray* regions = filter->GetTargetOutput()->GetCellData()->GetArray("Region");
   for (vtkIdType c = 0; c < refined->GetNumberOfCells(); ++c)
   {
-    const auto original = static_cast<vtkIdType>(ids->GetTuple1(c));
-    EXPECT_EQ(regions->GetTuple1(c), cellNumbers->GetValue(original));
+    const auto original = static_cast<vtkIdType>(CellValue(refined, "OriginalCellIds", c));
+    EXPECT_EQ(CellValue(filter->GetTargetOutput(), "Region", c), cellNumbers->GetValue(original));
     const auto corners = CornersOf(pair.Source, original);
     const std::vector<vtkIdType> cornerIds = IdsOf(pair.Source, original);
-    const double area = Cross(corners[1] - corners[0], corners[2] - corners[0])[2];
+    const double area = NormalOf(pair.Source, original)[2];
     for (const vtkIdType id : IdsOf(refined, c))
     {
       const Point p = PointOf(refined, id);
@@ -179,8 +177,7 @@ TEST(RefinedTriangulationPair, ArraysOfWrongLengthAreLeftOut)
   {
     pair.Source->GetPointData()->AddArray(RandomArray("Values", 3, tuples, 1));
     pair.Source->GetCellData()->AddArray(RandomArray("Values", 3, tuples, 2));
-    const auto filter = MakeFilter(pair, 0.01);
-    filter->Update();
+    const auto filter = Refined(pair, 0.01);
     vtkPolyData* refined = filter->GetOutput();
     EXPECT_GT(refined->GetNumberOfCells(), 18);
     EXPECT_FALSE(PointArray(refined, "Values"));
@@ -192,8 +189,7 @@ TEST(RefinedTriangulationPair, ArraysOfWrongLengthAreLeftOut)
 TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
 {
   const MeshPair pair = MakePlanarPair(3, 59);
-  const auto filter = MakeFilter(pair, 0.004);
-  filter->Update();
+  const auto filter = Refined(pair, 0.004);
   const auto first = CopyOf(filter->GetTargetOutput());
   vtkSMPTools::Initialize(1);
   filter->Modified();
@@ -202,43 +198,43 @@ TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
   EXPECT_EQ(CountDifferentPoints(filter->GetTargetOutput(), first), 0);
   const double unit = 0x1p-40;
   const auto other =
-    MakeFilter({ Resized(pair.Source, unit), Resized(pair.Target, unit) }, 0.004 * unit);
-  other->Update();
+    Refined({ Resized(pair.Source, unit), Resized(pair.Target, unit) }, 0.004 * unit);
   EXPECT_EQ(CountDifferentPoints(other->GetTargetOutput(), Resized(first, unit)), 0);
 }
 
 TEST(RefinedTriangulationPair, ReportsFailures)
 {
-  const MeshPair pair = MakePlanarPair(3, 61);
-  const auto few = MakeFilter(pair, 1e-4);
-  few->SetMaximumNumberOfTriangles(100);
-  Messages fewMessages(few);
-  few->Update();
-  EXPECT_TRUE(fewMessages.HasError());
-  EXPECT_EQ(few->GetResult(), vtkRefinedTriangulationPair::TOO_MANY_TRIANGLES);
-  EXPECT_EQ(few->GetOutput()->GetNumberOfCells(), 0);
-  EXPECT_GT(few->GetLargestError(), 1e-4);
-  // Fewer than the pair itself has.
-  few->SetMaximumError(1e9);
-  few->SetMaximumNumberOfTriangles(5);
-  few->Update();
-  EXPECT_EQ(few->GetResult(), vtkRefinedTriangulationPair::TOO_MANY_TRIANGLES);
-  EXPECT_EQ(few->GetLargestError(), 0.0);
-
-  const MeshPair near = MakePlanarPair(2, 67);
+  using Filter = vtkRefinedTriangulationPair;
+  const MeshPair near = MakePlanarPair(3, 61);
   const auto farAway = [](const Point& p) { return p + Point{ 0x1p44, 0x1p44, 0.0 }; };
   const MeshPair far{ Moved(near.Source, farAway), Moved(near.Target, farAway) };
-  const auto below = MakeFilter(far, 1e-6);
-  below->SetMaximumNumberOfTriangles(100000);
-  Messages belowMessages(below);
-  below->Update();
-  EXPECT_TRUE(belowMessages.HasError());
-  EXPECT_EQ(below->GetResult(), vtkRefinedTriangulationPair::BELOW_ROUNDING);
-
-  const auto invalid = MakeFilter({ pair.Source, MakePlanarPair(4, 1).Target }, 0.01);
-  Messages invalidMessages(invalid);
-  invalid->Update();
-  EXPECT_EQ(invalid->GetResult(), vtkRefinedTriangulationPair::INVALID);
+  struct Case
+  {
+    MeshPair Pair;
+    double MaximumError;
+    vtkIdType MaximumNumber;
+    int Result;
+    bool IsMeasured;
+  };
+  vtkNew<Filter> filter;
+  Messages messages(filter);
+  for (const Case& one : { Case{ near, 1e-4, 100, Filter::TOO_MANY_TRIANGLES, true },
+         // Fewer than the pair itself has.
+         { near, 1e9, 5, Filter::TOO_MANY_TRIANGLES, false },
+         { far, 1e-6, 100000, Filter::BELOW_ROUNDING, true },
+         { { near.Source, MakePlanarPair(4, 1).Target }, 0.01, 100, Filter::INVALID, false } })
+  {
+    messages.Clear();
+    SetMeshes(filter, one.Pair);
+    filter->SetMaximumError(one.MaximumError);
+    filter->SetMaximumNumberOfTriangles(one.MaximumNumber);
+    filter->Update();
+    EXPECT_TRUE(messages.HasError());
+    EXPECT_EQ(filter->GetResult(), one.Result);
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), 0);
+    EXPECT_EQ(
+      filter->GetLargestError() > (one.IsMeasured ? one.MaximumError : 0.0), one.IsMeasured);
+  }
 }
 
 } // namespace

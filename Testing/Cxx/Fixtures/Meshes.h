@@ -380,6 +380,13 @@ inline std::array<Point, 3> CornersOf(vtkPolyData* mesh, vtkIdType triangle)
   return { PointOf(mesh, ids[0]), PointOf(mesh, ids[1]), PointOf(mesh, ids[2]) };
 }
 
+/// Perpendicular to a triangle, and as long as twice its area.
+inline Point NormalOf(vtkPolyData* mesh, vtkIdType triangle)
+{
+  const auto [a, b, c] = CornersOf(mesh, triangle);
+  return Cross(b - a, c - a);
+}
+
 inline Point PositionOf(vtkPolyData* mesh, const MeshPoint& surfacePoint)
 {
   const auto& [triangle, w] = surfacePoint;

@@ -12,6 +12,7 @@
 
 #include "Kernel/ContourChart.h"
 #include "Kernel/CoordinateSystem.h"
+#include "Kernel/CubicElement.h"
 #include "Kernel/ExactSign.h"
 #include "Kernel/Geometry.h"
 #include "Kernel/LinearChart.h"
@@ -91,8 +92,7 @@ struct PlaneTriangle
 inline Matrix2 InPlane(const PlaneTriangle& from, const PlaneTriangle& to, const Matrix2& matrix)
 {
   const auto image = [&](const Vector2& v) {
-    const Vector2 w{ Dot(v, from.Tangent), Cross(from.Tangent, v) };
-    return to.VectorFromFrame(w.x * matrix.ImageOfX + w.y * matrix.ImageOfY);
+    return to.VectorFromFrame(matrix * Vector2{ Dot(v, from.Tangent), Cross(from.Tangent, v) });
   };
   return { image({ 1.0, 0.0 }), image({ 0.0, 1.0 }) };
 }
@@ -105,11 +105,6 @@ inline double Norm(const Vector2& v)
 inline double Norm(const Matrix2& m)
 {
   return std::hypot(Norm(m.ImageOfX), Norm(m.ImageOfY));
-}
-
-inline Matrix2 operator-(const Matrix2& a, const Matrix2& b)
-{
-  return { a.ImageOfX - b.ImageOfX, a.ImageOfY - b.ImageOfY };
 }
 
 using Corners = std::array<Vector2, 3>;

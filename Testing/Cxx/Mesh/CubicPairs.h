@@ -263,30 +263,31 @@ inline std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
 
 /// A star whose rays turn by different angles, the greatest minus the least being @a range. The
 /// logarithms of the target's radii are up to @a spread.
-inline PlanarPair RandomStar(std::mt19937_64& random, int valence, double spread, double& range)
+inline PlanarPair RandomStar(
+  std::mt19937_64& random, int valence, double spread, double* range = nullptr)
 {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   constexpr double turn = 2.0 * 3.141592653589793;
   const std::vector<double> from = RandomAngles(random, valence);
   const std::vector<double> to = RandomAngles(random, valence);
   PlanarPair pair;
-  double least = 1e300;
-  double greatest = -1e300;
-  double before = to[0] - from[0];
+  std::vector<double> turns;
   for (std::size_t k = 0; k < from.size(); ++k)
   {
     const double radius = std::exp(uniform(random));
     const double image = std::exp(spread * uniform(random));
     pair.Source.push_back({ radius * std::cos(from[k]), radius * std::sin(from[k]) });
     pair.Target.push_back({ image * std::cos(to[k]), image * std::sin(to[k]) });
-    double angle = to[k] - from[k];
-    angle -= turn * std::round((angle - before) / turn);
-    before = angle;
-    least = std::min(least, angle);
-    greatest = std::max(greatest, angle);
+    const double angle = to[k] - from[k];
+    const double before = turns.empty() ? angle : turns.back();
+    turns.push_back(angle - turn * std::round((angle - before) / turn));
   }
   AddHub(pair, {}, {});
-  range = greatest - least;
+  if (range)
+  {
+    const auto [least, greatest] = std::minmax_element(turns.begin(), turns.end());
+    *range = *greatest - *least;
+  }
   return pair;
 }
 

@@ -409,7 +409,7 @@ TEST(PointLocation, PointsOfSurfaces)
     for (TriangleIndex t = 0; t < static_cast<TriangleIndex>(triangles.size()); ++t)
     {
       const std::array<Point, 3> c = CornersOf(mesh, t);
-      const Point normal = Unit(Cross(c[1] - c[0], c[2] - c[0]));
+      const Point normal = Unit(NormalOf(mesh, t));
       for (const Point& w : { Point{ 0.3, 0.3, 0.4 }, { 0.9, 0.06, 0.04 }, { 0.002, 0.498, 0.5 },
              { 1e-7, 0.7, 0.3 - 1e-7 } })
       {
