@@ -257,17 +257,12 @@ bool IsDiagonal(const std::vector<Vector2>& p, int i, int j)
   return inside;
 }
 
-double CostOfFace(int corners)
-{
-  return 0.5 * (corners - 3);
-}
-
-/// What the faces of a dissection cost between the ends of a chord.
+/// What the faces of a dissection cost between the ends of a chord: half as much as they have
+/// corners beyond three.
 double CostOfChords(const std::set<std::pair<int, int>>& chords, int i, int j)
 {
-  double cost = 0.0;
-  int corners = 1;
-  for (int at = i; at != j; ++corners)
+  double cost = -1.0;
+  for (int at = i; at != j; cost += 0.5)
   {
     int next = at == i ? j - 1 : j;
     while (next > at + 1 && chords.count({ at, next }) == 0)
@@ -277,7 +272,7 @@ double CostOfChords(const std::set<std::pair<int, int>>& chords, int i, int j)
     cost += next > at + 1 ? CostOfChords(chords, at, next) : 0.0;
     at = next;
   }
-  return cost + CostOfFace(corners);
+  return cost;
 }
 
 /// The least that any dissection costs.
@@ -300,23 +295,17 @@ double LeastCost(const PolygonPair& polygons)
       {
         continue;
       }
-      // By the number of chords from i to a corner.
-      std::vector<std::vector<double>> walks(length + 1, std::vector<double>(m, none));
-      walks[0][i] = 0.0;
-      for (int step = 0; step < length; ++step)
+      // Walks of chords from i to the other corners. The chord from i to j still costs too much.
+      std::vector<double> walks(m, none);
+      walks[i] = -1.0;
+      for (int b = i + 1; b <= j; ++b)
       {
-        for (int a = i; a < j; ++a)
+        for (int a = i; a < b; ++a)
         {
-          for (int b = a + 1; b <= j; ++b)
-          {
-            walks[step + 1][b] = std::min(walks[step + 1][b], walks[step][a] + cheapest[a][b]);
-          }
+          walks[b] = std::min(walks[b], walks[a] + cheapest[a][b] + 0.5);
         }
       }
-      for (int steps = 2; steps <= length; ++steps)
-      {
-        cheapest[i][j] = std::min(cheapest[i][j], walks[steps][j] + CostOfFace(steps + 1));
-      }
+      cheapest[i][j] = walks[j];
     }
   }
   return cheapest[0][m - 1];

@@ -52,10 +52,8 @@ std::vector<double> UpdateAndAbort(vtkHomeomorphismAlgorithm* algorithm, double 
 /// An image inside the square of the pairs below, with more points than one block.
 vtkSmartPointer<vtkImageData> MakeLargeImage()
 {
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(420, 420, 1);
-  image->SetOrigin(0.1, 0.1, 0.0);
-  image->SetSpacing(7.8 / 419.0, 7.8 / 419.0, 1.0);
+  auto image =
+    MakeImage({ 0, 419, 0, 419, 0, 0 }, { 0.1, 0.1, 0.0 }, { 7.8 / 419.0, 7.8 / 419.0, 1.0 });
   image->GetPointData()->SetScalars(RandomArray("Brightness", 1, image->GetNumberOfPoints(), 3));
   image->GetPointData()->SetVectors(RandomArray("Vectors", 3, image->GetNumberOfPoints(), 61));
   image->GetCellData()->SetVectors(RandomArray("Flux", 3, image->GetNumberOfCells(), 62));

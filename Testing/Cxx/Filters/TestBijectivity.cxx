@@ -65,8 +65,7 @@ MeshPair MakeConcordantPair(int n, std::uint64_t seed)
   // The diagonals of the grid run from the lower left to the upper right, so they must be the short
   // ones.
   const Matrix slant{ { { 1.0, -0.5, 0.0 }, { 0.0, 0.866, 0.0 }, { 0.0, 0.0, 1.0 } } };
-  const MeshPair square = MakePlanarPair(n, seed, 0.1);
-  return { Tilted(square.Source, slant, {}), Tilted(square.Target, slant, {}) };
+  return Moved(MakePlanarPair(n, seed, 0.1), [&](const Point& p) { return slant * p; });
 }
 
 void ExpectBijective(const System& system, const MeshPair& pair)

@@ -291,10 +291,7 @@ TEST_P(FilterInEverySystem, OutsidePointsAreMarkedAndBlanked)
   const MeshPair pair = MakePlanarPair(8, 310);
   for (const bool hasGhosts : { false, true })
   {
-    vtkNew<vtkImageData> image;
-    image->SetDimensions(41, 31, 1);
-    image->SetOrigin(-1.0, 0.1, 0.0);
-    image->SetSpacing(0.26, 0.3, 1.0);
+    const auto image = MakeImage({ 0, 40, 0, 30, 0, 0 }, { -1.0, 0.1, 0.0 }, { 0.26, 0.3, 1.0 });
     const vtkIdType points = image->GetNumberOfPoints();
     const vtkIdType cells = image->GetNumberOfCells();
     image->GetPointData()->SetVectors(RandomArray("Velocity", 3, points, 31));

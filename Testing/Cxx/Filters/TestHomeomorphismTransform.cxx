@@ -229,11 +229,9 @@ TEST_P(TransformInEverySystem, Outside)
   EXPECT_EQ(Transformed(transform, { -0.5, 3.0, 0.0 })[0], outside);
 
   // Larger than any coordinate of the meshes.
-  const auto galaxy = [](const Point& p) { return 1e40 * p; };
-  const auto large =
-    MakeTransform(GetParam(), { Moved(pair.Source, galaxy), Moved(pair.Target, galaxy) });
+  const auto large = MakeTransform(GetParam(), Resized(pair, 1e40));
   EXPECT_GT(large->GetOutsideCoordinate(), 100.0 * 6e40);
-  EXPECT_TRUE(large->IsInside(galaxy(inside).data()));
+  EXPECT_TRUE(large->IsInside((1e40 * inside).data()));
 }
 
 TEST_P(TransformInEverySystem, AnyNumberOfThreadsGivesTheSameBits)
@@ -322,19 +320,12 @@ TEST_P(TransformInEverySystem, ImagesAreResampled)
   // pixels, exceeds the range of float.
   for (const double size : { 1.0, 1e-12 })
   {
-    MeshPair pair = MakePlanarPair(8, 600);
-    pair = { Resized(pair.Source, size), Resized(Sheared(pair.Target), size) };
-    vtkNew<vtkImageData> image;
-    image->SetDimensions(60, 60, 1);
-    image->SetSpacing(0.2 * size, 0.2 * size, 1.0);
-    image->SetOrigin(-size, -size, 0.0);
+    MeshPair pair = Resized(MakePlanarPair(8, 600), size);
+    pair.Target = Sheared(pair.Target);
+    const auto image =
+      MakeImage({ 0, 59, 0, 59, 0, 0 }, { -size, -size, 0.0 }, { 0.2 * size, 0.2 * size, 1.0 });
     const auto grayAt = [size](const Point& p) { return (3.0 * p[0] + p[1]) / size; };
-    vtkNew<vtkDoubleArray> gray;
-    for (const Point& p : PointsOf(image))
-    {
-      gray->InsertNextValue(grayAt(p));
-    }
-    image->GetPointData()->SetScalars(gray);
+    image->GetPointData()->SetScalars(ValuesAt(image, "Gray", grayAt));
     // From the grid of the output to the input.
     const auto transform = MakeTransform(GetParam(), pair);
     vtkNew<vtkImageReslice> reslice;

@@ -168,8 +168,7 @@ TEST(InBetweenTriangulation, DoesNotDependOnUnits)
   const auto filter = Between(pair, Filter::STRAIGHT);
   for (const double unit : { 0x1p-600, 0x1p600 })
   {
-    const auto other =
-      Between({ Resized(pair.Source, unit), Resized(pair.Target, unit) }, Filter::STRAIGHT);
+    const auto other = Between(Resized(pair, unit), Filter::STRAIGHT);
     EXPECT_EQ(other->GetNumberOfFoldingTriangles(), filter->GetNumberOfFoldingTriangles());
     EXPECT_EQ(other->GetFirstFoldTime(), filter->GetFirstFoldTime());
   }

@@ -54,10 +54,7 @@ vtkSmartPointer<vtkDataSet> WithArrays(const vtkSmartPointer<vtkDataSet>& data)
 std::vector<vtkSmartPointer<vtkDataSet>> AllKinds()
 {
   const vtkSmartPointer<vtkPolyData> mesh = ThePair().Source;
-  vtkNew<vtkImageData> image;
-  image->SetExtent(-3, 17, 5, 30, 2, 4);
-  image->SetOrigin(1.0, -0.25, 0.5);
-  image->SetSpacing(0.37, 0.28, 0.125);
+  const auto image = MakeImage({ -3, 17, 5, 30, 2, 4 }, { 1.0, -0.25, 0.5 }, { 0.37, 0.28, 0.125 });
   // Rotated in the plane by an angle of the triangle with the sides 3, 4, 5.
   image->SetDirectionMatrix(0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0);
 

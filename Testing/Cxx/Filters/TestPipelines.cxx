@@ -30,11 +30,9 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 /// Two triangulations of the square with corners (-12, -12) and (12, 12).
 MeshPair MakeWidePair(std::uint64_t seed)
 {
-  MeshPair pair = MakePlanarPair(6, seed);
-  const auto widen = [](const Point& p) -> Point {
-    return { 4.0 * (p[0] - 3.0), 4.0 * (p[1] - 3.0), 0.0 };
-  };
-  return { Moved(pair.Source, widen), Moved(pair.Target, widen) };
+  return Moved(MakePlanarPair(6, seed), [](const Point& p) {
+    return 4.0 * (p - Point{ 3.0, 3.0, 0.0 });
+  });
 }
 
 vtkDataSet* DataOf(vtkAlgorithm* filter)

@@ -88,7 +88,7 @@ TEST(RefinedTriangulationPair, KeepsTheMaximumErrorPointsAndAreas)
   const auto turn = [](const Point& p) {
     return Point{ 100.0 + 0.8 * p[0] - 0.7 * p[1], 0.6 * p[0] + 0.9 * p[1], 0.0 };
   };
-  const MeshPair oblique{ Moved(upright.Source, turn), Moved(upright.Target, turn) };
+  const MeshPair oblique = Moved(upright, turn);
   struct Case
   {
     MeshPair Pair;
@@ -154,7 +154,6 @@ TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
     const auto original = static_cast<vtkIdType>(CellValue(refined, "OriginalCellIds", c));
     EXPECT_EQ(CellValue(filter->GetTargetOutput(), "Region", c), cellNumbers->GetValue(original));
     const auto corners = CornersOf(pair.Source, original);
-    const std::vector<vtkIdType> cornerIds = IdsOf(pair.Source, original);
     const double area = NormalOf(pair.Source, original)[2];
     for (const vtkIdType id : IdsOf(refined, c))
     {
@@ -163,7 +162,7 @@ TEST(RefinedTriangulationPair, InterpolatesPointDataInTheOriginalTriangle)
       for (std::size_t k = 0; k < 3; ++k)
       {
         const Point share = Cross(corners[(k + 1) % 3] - p, corners[(k + 2) % 3] - p);
-        height += share[2] / area * heights->GetValue(cornerIds[k]);
+        height += share[2] / area * heights->GetValue(IdsOf(pair.Source, original)[k]);
       }
       EXPECT_NEAR(interpolated->GetTuple1(id), height, 1e-10);
     }
@@ -197,8 +196,7 @@ TEST(RefinedTriangulationPair, DoesNotDependOnThreadsOrUnits)
   vtkSMPTools::Initialize();
   EXPECT_EQ(CountDifferentPoints(filter->GetTargetOutput(), first), 0);
   const double unit = 0x1p-40;
-  const auto other =
-    Refined({ Resized(pair.Source, unit), Resized(pair.Target, unit) }, 0.004 * unit);
+  const auto other = Refined(Resized(pair, unit), 0.004 * unit);
   EXPECT_EQ(CountDifferentPoints(other->GetTargetOutput(), Resized(first, unit)), 0);
 }
 
@@ -206,8 +204,7 @@ TEST(RefinedTriangulationPair, ReportsFailures)
 {
   using Filter = vtkRefinedTriangulationPair;
   const MeshPair near = MakePlanarPair(3, 61);
-  const auto farAway = [](const Point& p) { return p + Point{ 0x1p44, 0x1p44, 0.0 }; };
-  const MeshPair far{ Moved(near.Source, farAway), Moved(near.Target, farAway) };
+  const MeshPair far = Moved(near, [](const Point& p) { return p + Point{ 0x1p44, 0x1p44, 0.0 }; });
   struct Case
   {
     MeshPair Pair;

@@ -32,23 +32,16 @@ double Field(const Point& p)
 /// The field at the points of data, as active scalars.
 void AddField(vtkDataSet* data)
 {
-  vtkNew<vtkDoubleArray> field;
-  field->SetName("Field");
-  for (const Point& p : PointsOf(data))
-  {
-    field->InsertNextValue(Field(p));
-  }
-  data->GetPointData()->SetScalars(field);
+  data->GetPointData()->SetScalars(ValuesAt(data, "Field", Field));
 }
 
 /// An image over the source's domain and beyond, with a scalar that interpolation reproduces, a
 /// vector, and cell data.
 vtkSmartPointer<vtkImageData> MakeImage()
 {
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetExtent(0, 40, 0, 40, 0, 0);
-  image->SetOrigin(-0.5, -0.5, 0.0);
-  image->SetSpacing((n + 1.0) / 40.0, (n + 1.0) / 40.0, 1.0);
+  constexpr double spacing = (n + 1.0) / 40.0;
+  auto image =
+    fixtures::MakeImage({ 0, 40, 0, 40, 0, 0 }, { -0.5, -0.5, 0.0 }, { spacing, spacing, 1.0 });
   AddField(image);
   const auto wind = RandomArray("Wind", 3, image->GetNumberOfPoints(), 1);
   wind->FillComponent(0, 1.0);

@@ -280,7 +280,7 @@ TEST(TriangulationPairReport, DoesNotDependOnThreadsUnitsOrReflections)
     EXPECT_TRUE(single->GetStatistic(name) == value || std::isnan(value)) << name;
   }
   const double unit = 0x1p-50;
-  const auto scaled = Report({ Resized(pair.Source, unit), Resized(pair.Target, unit) });
+  const auto scaled = Report(Resized(pair, unit));
   const auto mirrored = Report({ pair.Source, Mirrored(pair.Target) });
   EXPECT_EQ(report->GetStatistic("Mirrored"), 0.0);
   EXPECT_EQ(mirrored->GetStatistic("Mirrored"), 1.0);

@@ -32,6 +32,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
+#include "vtkVariant.h"
 
 #include <gtest/gtest.h>
 
@@ -142,13 +143,10 @@ inline bool IsSame(vtkDataArray* a, vtkDataArray* b)
   {
     return false;
   }
-  const int components = a->GetNumberOfComponents();
   bool same = true;
   for (vtkIdType i = 0; i < a->GetNumberOfValues(); ++i)
   {
-    const auto value = static_cast<int>(i % components);
-    same = same &&
-      SameBits(a->GetComponent(i / components, value), b->GetComponent(i / components, value));
+    same = same && SameBits(a->GetVariantValue(i).ToDouble(), b->GetVariantValue(i).ToDouble());
   }
   return same;
 }
@@ -198,6 +196,29 @@ inline vtkIdType CountDifferentCells(vtkDataSet* a, vtkDataSet* b)
     different += a->GetCellType(i) != b->GetCellType(i) || IdsOf(a, i) != IdsOf(b, i);
   }
   return different;
+}
+
+/// An array of the values of a function at the points.
+template <typename Function>
+vtkSmartPointer<vtkDoubleArray> ValuesAt(vtkDataSet* data, const char* name, Function&& function)
+{
+  auto values = vtkSmartPointer<vtkDoubleArray>::New();
+  values->SetName(name);
+  for (const Point& p : PointsOf(data))
+  {
+    values->InsertNextValue(function(p));
+  }
+  return values;
+}
+
+inline vtkSmartPointer<vtkImageData> MakeImage(
+  std::array<int, 6> extent, const Point& origin, const Point& spacing)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(extent.data());
+  image->SetOrigin(origin.data());
+  image->SetSpacing(spacing.data());
+  return image;
 }
 
 /// An array of random numbers.

@@ -93,16 +93,15 @@ inline std::vector<Triangle> GridTriangles(int n)
 /// the orientation of all triangles). The boundary is the square [0, n] x [0, n].
 inline std::vector<Point> GridPoints(int n, std::uint64_t seed, double jitter)
 {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> offset(-jitter, jitter);
+  Random random(seed);
   std::vector<Point> points;
   for (int j = 0; j <= n; ++j)
   {
     for (int i = 0; i <= n; ++i)
     {
       const bool inside = i > 0 && i < n && j > 0 && j < n;
-      const double dx = offset(generator);
-      const double dy = offset(generator);
+      const double dx = random.Uniform(-jitter, jitter);
+      const double dy = random.Uniform(-jitter, jitter);
       points.push_back({ i + (inside ? dx : 0.0), j + (inside ? dy : 0.0), 0.0 });
     }
   }
@@ -242,7 +241,7 @@ inline vtkSmartPointer<vtkUnsignedCharArray> MakeGhosts(
   return ghosts;
 }
 
-/// A mesh with every point moved by a function.
+/// A mesh or a pair with every point moved by a function.
 template <typename Move>
 vtkSmartPointer<vtkPolyData> Moved(vtkPolyData* mesh, Move&& move)
 {
@@ -258,9 +257,15 @@ vtkSmartPointer<vtkPolyData> Moved(vtkPolyData* mesh, Move&& move)
   result->SetPoints(points);
   return result;
 }
+template <typename Move>
+MeshPair Moved(const MeshPair& pair, Move&& move)
+{
+  return { Moved(pair.Source, move), Moved(pair.Target, move) };
+}
 
 /// All coordinates multiplied by a factor.
-inline vtkSmartPointer<vtkPolyData> Resized(vtkPolyData* mesh, double factor)
+template <typename Mesh>
+auto Resized(const Mesh& mesh, double factor)
 {
   return Moved(mesh, [factor](const Point& p) { return factor * p; });
 }

@@ -133,8 +133,7 @@ TEST(PointBlocks, BlocksEqualSinglePoints)
   const MeshPair plane = MakePlanarPair(9, 21);
   const std::vector<Pairing> pairings{ { "a plane", plane },
     { "two triangles", MakePlanarPair(1, 22) },
-    { "tilted planes",
-      { fixtures::Moved(plane.Source, sloping), fixtures::Moved(plane.Target, sloping) } },
+    { "tilted planes", fixtures::Moved(plane, sloping) },
     { "a closed surface", MakeClosedPair(3, 24) },
     { "a surface", { plane.Source, fixtures::Moved(plane.Target, curved) } } };
   for (const auto& [name, pair] : pairings)

@@ -14,20 +14,12 @@ using namespace fixtures;
 // A function that is linear in each direction is interpolated exactly, other data as by VTK.
 TEST(ImageSampling, InterpolatesLinearly)
 {
-  vtkNew<vtkImageData> image;
-  image->SetExtent(2, 9, -3, 4, 0, 5);
-  image->SetOrigin(0.5, -1.0, 2.0);
-  image->SetSpacing(0.25, 0.5, 2.0);
+  const auto image = MakeImage({ 2, 9, -3, 4, 0, 5 }, { 0.5, -1.0, 2.0 }, { 0.25, 0.5, 2.0 });
   const auto function = [](const Point& p) {
     return 100.0 + 3.0 * p[0] - 2.0 * p[1] + p[2] + 0.5 * p[0] * p[1];
   };
   const vtkIdType size = image->GetNumberOfPoints();
-  const auto values = RandomArray("Value", 1, size, 42);
-  for (vtkIdType i = 0; i < size; ++i)
-  {
-    values->SetValue(i, function(fixtures::PointOf(image, i)));
-  }
-  image->GetPointData()->AddArray(values);
+  image->GetPointData()->AddArray(ValuesAt(image, "Value", function));
   image->GetPointData()->AddArray(RandomArray<vtkFloatArray>("Float", 1, size, 43));
   image->GetPointData()->AddArray(RandomArray<vtkShortArray>("Integer", 3, size, 44));
   image->GetCellData()->AddArray(RandomArray("Cell", 1, image->GetNumberOfCells(), 45));

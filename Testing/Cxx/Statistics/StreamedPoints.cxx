@@ -42,12 +42,10 @@ int main(int argc, char* argv[])
   constexpr int side = 2000;
   constexpr int pieces = 16;
   constexpr int divisions = 70;
-  const MeshPair grids = MakePlanarPair(divisions, 950);
-  const double scale = static_cast<double>(side - 1) / divisions;
   vtkNew<vtkRTAnalyticSource> image;
   image->SetWholeExtent(0, side - 1, 0, side - 1, 0, 0);
-  const auto map =
-    MakeFilter(Smooth, { Resized(grids.Source, scale), Resized(grids.Target, scale) });
+  const double scale = static_cast<double>(side - 1) / divisions;
+  const auto map = MakeFilter(Smooth, Resized(MakePlanarPair(divisions, 950), scale));
   map->SetDataConnection(image->GetOutputPort());
   map->ComputeJacobianDeterminantOn();
 
