@@ -56,7 +56,7 @@ struct Result
   double RoundTrip = 0.0;
 };
 
-void Measure(const CubicMap& map, int points, std::mt19937_64& random, Result& result)
+void Measure(const CubicMap& map, int points, Random& random, Result& result)
 {
   const PlanarPair& pair = map.GetPair();
   const CubicMapStatistics& statistics = map.GetStatistics();
@@ -76,7 +76,7 @@ void Measure(const CubicMap& map, int points, std::mt19937_64& random, Result& r
   }
   result.Points += points;
   CubicTriangle prepared = map.Prepare();
-  for (const Sample& sample : RandomSamples(pair, random(), points))
+  for (const Sample& sample : RandomSamples(pair, random.Bits(), points))
   {
     const int t = sample.Triangle;
     const Vector2 point = sample.In(pair, pair.Source);
@@ -123,7 +123,7 @@ void RunPairs()
     {
       const bool least = bending == CubicBending::Least;
       Result result;
-      std::mt19937_64 random(1);
+      Random random(1);
       for (int seed = 0; seed < Count(least ? 6 : 60); ++seed)
       {
         const CubicMap map(RandomPair(seed, strength, 11), Options(bending));
@@ -139,7 +139,7 @@ void RunPairs()
 void RunNeedles()
 {
   PrintHead();
-  std::mt19937_64 random(2);
+  Random random(2);
   Result result;
   for (int n = 0; n < Count(10000); ++n)
   {
@@ -151,7 +151,7 @@ void RunNeedles()
 
 void RunStars()
 {
-  std::mt19937_64 random(3);
+  Random random(3);
   // By whether the rays turn within 90 degrees: stars, with a derivative at once, in rings, none.
   int numbers[2][4] = {};
   int uncertified = 0;
@@ -193,7 +193,7 @@ void RunFar()
   for (CubicBending bending : { CubicBending::Local, CubicBending::Least })
   {
     Result result;
-    std::mt19937_64 random(4);
+    Random random(4);
     for (int seed = 0; seed < Count(10); ++seed)
     {
       // A map sheet of 10 km at coordinates of 10^7 m, in millimeters.
@@ -207,7 +207,7 @@ void RunFar()
     Print(bending == CubicBending::Least ? "at 10^7, LEAST" : "at 10^7, LOCAL", result);
   }
   Result result;
-  std::mt19937_64 random(5);
+  Random random(5);
   for (int seed = 0; seed < Count(10); ++seed)
   {
     // Cells that shrink by 0.7 from one to the next.
@@ -237,15 +237,14 @@ double SecondDifferences(const CubicMap& map, bool linear, int cells)
 {
   const PlanarPair& pair = map.GetPair();
   const double h = 0.1 / cells;
-  std::mt19937_64 random(6);
-  std::uniform_real_distribution<double> uniform(h, 1.0 - h);
+  Random random(6);
   double sum = 0.0;
   const int count = 4000;
   int t = 0;
   CubicTriangle prepared = map.Prepare();
   for (int n = 0; n < count; ++n)
   {
-    const Vector2 x{ uniform(random), uniform(random) };
+    const Vector2 x{ random.Uniform(h, 1.0 - h), random.Uniform(h, 1.0 - h) };
     const auto value = [&](const Vector2& p) {
       t = std::max(0, Locate(pair, pair.Source, t, p));
       return linear ? MapLinearly(pair, t, p) : map.MapPoint(t, p, prepared);

@@ -7,19 +7,23 @@
 #ifndef CubicPairs_h
 #define CubicPairs_h
 
+#include "Fixtures/Random.h"
+
 #include "Mesh/CubicMapOptions.h"
 #include "Mesh/PlanarPair.h"
+
+#include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <random>
 #include <vector>
 
 namespace cubic_test
 {
 
+using fixtures::Random;
 using homeomorphism::LargeVector;
 using homeomorphism::PlanarPair;
 using homeomorphism::Vector2;
@@ -44,17 +48,16 @@ PlanarPair Moved(PlanarPair pair, Move&& move)
 
 /// A jittered grid of @a cells^2 squares cut in two, each inner point moved by up to @a jitter
 /// of a cell, in the unit square.
-inline PlanarPair JitteredGrid(std::mt19937_64& random, int cells, double jitter)
+inline PlanarPair JitteredGrid(Random& random, int cells, double jitter)
 {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   PlanarPair pair;
   for (int j = 0; j <= cells; ++j)
   {
     for (int i = 0; i <= cells; ++i)
     {
       const bool inner = i > 0 && j > 0 && i < cells && j < cells;
-      const double x = i + (inner ? jitter * uniform(random) : 0.0);
-      const double y = j + (inner ? jitter * uniform(random) : 0.0);
+      const double x = i + (inner ? random.Uniform(-jitter, jitter) : 0.0);
+      const double y = j + (inner ? random.Uniform(-jitter, jitter) : 0.0);
       pair.Source.push_back({ x / cells, y / cells });
     }
   }
@@ -79,60 +82,46 @@ inline PlanarPair JitteredGrid(std::mt19937_64& random, int cells, double jitter
 
 /// Moves the target's inner points so that each is a convex combination of its neighbors, weights
 /// exp(strength * normal): an embedding (Tutte, Floater), however uneven.
-inline void EmbedByConvexCombinations(std::mt19937_64& random, PlanarPair& pair, double strength)
+inline void EmbedByConvexCombinations(Random& random, PlanarPair& pair, double strength)
 {
   std::normal_distribution<double> normal;
   const homeomorphism::PointFans fans(pair);
-  struct Row
-  {
-    int Point;
-    std::vector<int> Neighbors;
-    std::vector<double> Weights;
-  };
-  std::vector<Row> rows;
-  for (int p = 0; p < pair.GetNumberOfPoints(); ++p)
+  const int count = pair.GetNumberOfPoints();
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 2);
+  std::vector<int> inner;
+  for (int p = 0; p < count; ++p)
   {
     const homeomorphism::PointFan fan = fans.Get(pair, p);
     if (!fan.Closed)
     {
+      entries.emplace_back(p, p, 1.0);
+      right.row(p) << pair.Target[p].x, pair.Target[p].y;
       continue;
     }
-    Row row{ p, {}, {} };
-    double sum = 0.0;
+    inner.push_back(p);
     for (int t : fan.Triangles)
     {
-      row.Neighbors.push_back(pair.Triangles[t][homeomorphism::NextCorner(pair.GetCorner(t, p))]);
-      row.Weights.push_back(std::exp(strength * normal(random)));
-      sum += row.Weights.back();
+      const double weight = std::exp(strength * normal(random.Engine));
+      const int neighbor = pair.Triangles[t][homeomorphism::NextCorner(pair.GetCorner(t, p))];
+      entries.emplace_back(p, neighbor, -weight);
+      entries.emplace_back(p, p, weight);
     }
-    for (double& weight : row.Weights)
-    {
-      weight /= sum;
-    }
-    rows.push_back(row);
   }
-  double change = 1.0;
-  for (int sweep = 0; sweep < 200000 && change > 1e-15; ++sweep)
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(matrix);
+  const Eigen::MatrixXd points = solver.solve(right);
+  for (int p : inner)
   {
-    change = 0.0;
-    for (const Row& row : rows)
-    {
-      Vector2 mean;
-      for (std::size_t i = 0; i < row.Neighbors.size(); ++i)
-      {
-        mean = mean + row.Weights[i] * pair.Target[row.Neighbors[i]];
-      }
-      const Vector2 move = mean - pair.Target[row.Point];
-      change = std::max({ change, std::abs(move.x), std::abs(move.y) });
-      pair.Target[row.Point] = mean;
-    }
+    pair.Target[p] = { points(p, 0), points(p, 1) };
   }
 }
 
 /// A random pair of 2 cells^2 triangles.
 inline PlanarPair RandomPair(int seed, double strength, int cells = 11)
 {
-  std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+  Random random(static_cast<std::uint64_t>(seed));
   PlanarPair pair = JitteredGrid(random, cells, 0.3);
   EmbedByConvexCombinations(random, pair, strength);
   return pair;
@@ -186,19 +175,17 @@ struct Sample
 /// Points of triangles, a third of them close to a corner and a third close to an edge.
 inline std::vector<Sample> RandomSamples(const PlanarPair& pair, std::uint64_t seed, int count)
 {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(seed);
   std::vector<Sample> samples(static_cast<std::size_t>(count));
   for (int n = 0; n < count; ++n)
   {
     Sample& sample = samples[static_cast<std::size_t>(n)];
-    sample.Triangle =
-      static_cast<int>(random() % static_cast<std::uint64_t>(pair.GetNumberOfTriangles()));
+    sample.Triangle = random.Below(pair.GetNumberOfTriangles());
     double sum = 0.0;
     for (int i = 0; i < 3; ++i)
     {
       const bool isSmall = n % 3 != 0 && (i == 0) == (n % 3 == 2);
-      sample.Weights[i] = std::pow(uniform(random), isSmall ? 12.0 : 1.0) + 1e-30;
+      sample.Weights[i] = std::pow(random.Uniform(), isSmall ? 12.0 : 1.0) + 1e-30;
       sum += sample.Weights[i];
     }
     std::rotate(sample.Weights.begin(), sample.Weights.begin() + n / 3 % 3, sample.Weights.end());
@@ -211,11 +198,10 @@ inline std::vector<Sample> RandomSamples(const PlanarPair& pair, std::uint64_t s
 }
 
 /// Two triangles on either side of an edge, heights from 1e-3 to 1e3, apexes sheared.
-inline PlanarPair RandomNeedles(std::mt19937_64& random, double shear)
+inline PlanarPair RandomNeedles(Random& random, double shear)
 {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto apex = [&](double sign) {
-    return Vector2{ shear * uniform(random), sign * std::pow(10.0, 3.0 * uniform(random)) };
+    return Vector2{ random.Uniform(-shear, shear), sign * random.PowerOfTen(-3.0, 3.0) };
   };
   PlanarPair pair;
   pair.Source = { { 0.0, 0.0 }, { 1.0, 0.0 }, apex(1.0), apex(-1.0) };
@@ -239,16 +225,15 @@ inline void AddHub(PlanarPair& pair, const Vector2& source, const Vector2& targe
 }
 
 /// Angles of the rays of a star, no sector wider than 172 degrees.
-inline std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
+inline std::vector<double> RandomAngles(Random& random, int valence)
 {
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
   constexpr double turn = 2.0 * 3.141592653589793;
   while (true)
   {
-    std::vector<double> angles{ turn * uniform(random) };
+    std::vector<double> angles{ turn * random.Uniform() };
     std::vector<double> steps;
     std::generate_n(
-      std::back_inserter(steps), valence, [&]() { return 0.02 + std::pow(uniform(random), 2.0); });
+      std::back_inserter(steps), valence, [&]() { return 0.02 + std::pow(random.Uniform(), 2.0); });
     const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
     for (int i = 1; i < valence; ++i)
     {
@@ -263,10 +248,8 @@ inline std::vector<double> RandomAngles(std::mt19937_64& random, int valence)
 
 /// A star whose rays turn by different angles, the greatest minus the least being @a range. The
 /// logarithms of the target's radii are up to @a spread.
-inline PlanarPair RandomStar(
-  std::mt19937_64& random, int valence, double spread, double* range = nullptr)
+inline PlanarPair RandomStar(Random& random, int valence, double spread, double* range = nullptr)
 {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   constexpr double turn = 2.0 * 3.141592653589793;
   const std::vector<double> from = RandomAngles(random, valence);
   const std::vector<double> to = RandomAngles(random, valence);
@@ -274,8 +257,8 @@ inline PlanarPair RandomStar(
   std::vector<double> turns;
   for (std::size_t k = 0; k < from.size(); ++k)
   {
-    const double radius = std::exp(uniform(random));
-    const double image = std::exp(spread * uniform(random));
+    const double radius = std::exp(random.Uniform(-1.0, 1.0));
+    const double image = std::exp(random.Uniform(-spread, spread));
     pair.Source.push_back({ radius * std::cos(from[k]), radius * std::sin(from[k]) });
     pair.Target.push_back({ image * std::cos(to[k]), image * std::sin(to[k]) });
     const double angle = to[k] - from[k];

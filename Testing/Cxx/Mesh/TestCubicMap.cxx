@@ -5,7 +5,6 @@
 // random pairs as uneven as convex combinations make them, needles, and boundaries of all kinds.
 
 #include "CubicPairs.h"
-#include "Fixtures/Random.h"
 
 #include "Mesh/CubicMap.h"
 
@@ -137,7 +136,7 @@ void ExpectRoundTrip(const CubicMap& map, int count, double deviation = 1e300)
 /// A grid, and its image by a smooth map.
 PlanarPair SmoothPair(int cells, double jitter, double size)
 {
-  std::mt19937_64 random(31);
+  Random random(31);
   PlanarPair pair = JitteredGrid(random, cells, jitter);
   for (Vector2& p : pair.Target)
   {
@@ -150,7 +149,7 @@ PlanarPair SmoothPair(int cells, double jitter, double size)
 /// the corners are straight.
 PlanarPair DisplacedGrid(int cells)
 {
-  std::mt19937_64 random(32);
+  Random random(32);
   PlanarPair pair = JitteredGrid(random, cells, 0.2);
   for (Vector2& p : pair.Target)
   {
@@ -199,7 +198,7 @@ TEST_P(CubicMaps, AreCertifiedAndC1)
 TEST(CubicMap, CutsOnlySomeTriangles)
 {
   // One vertex moves far, all others stay: slaves between cut and whole triangles.
-  std::mt19937_64 random(5);
+  Random random(5);
   PlanarPair pair = JitteredGrid(random, 10, 0.2);
   const int middle = 5 * 11 + 5;
   pair.Target[middle] = pair.Target[middle] + Vector2{ 0.076, 0.02 };
@@ -279,7 +278,7 @@ TEST_P(CubicMaps, KeepsItsDeviation)
 
 TEST(CubicMap, NeedlesAreCertified)
 {
-  std::mt19937_64 random(51);
+  Random random(51);
   for (int n = 0; n < 200; ++n)
   {
     SCOPED_TRACE(n);
@@ -293,7 +292,7 @@ TEST_P(CubicMaps, CertifiedTrianglesBesideOthersStayInTheTarget)
 {
   // A triangle on the edge of another one, so thin in the source that often one of them is not
   // certified.
-  fixtures::Random random(35);
+  Random random(35);
   int certified = 0;
   for (int n = 0; n < 200; ++n)
   {
@@ -343,7 +342,7 @@ TEST_P(CubicMaps, TrianglesAsThinAsRoundingAreNotCertified)
   for (const double ulps : { 1.0, 4.0, 30.0, 1000.0, 1e5 })
   {
     SCOPED_TRACE(ulps);
-    std::mt19937_64 random(36);
+    Random random(36);
     PlanarPair pair = JitteredGrid(random, 8, 0.0);
     pair.Source[41].x = pair.Source[40].x + ulps * 0x1p-53;
     const CubicMap map(pair, Options(GetParam()));
@@ -417,7 +416,7 @@ TEST_P(CubicMaps, BoundaryCornersStraightOnOneSideAreListed)
 TEST(CubicMap, StarsBeyondTheProgramHaveRings)
 {
   int rings = 0;
-  std::mt19937_64 random(71);
+  Random random(71);
   for (int n = 0; n < 60; ++n)
   {
     const CubicMap map(RandomStar(random, 3 + n % 6, 0.5), Options(CubicBending::Local));
@@ -435,7 +434,7 @@ TEST(CubicMap, StarsBeyondTheProgramHaveRings)
 
 TEST_P(CubicMaps, PointsWithinRoundingOfExceptionalVerticesKeepTheirSense)
 {
-  std::mt19937_64 random(38);
+  Random random(38);
   for (int n = 0; n < 40; ++n)
   {
     const PlanarPair pair = RandomStar(random, 4 + n % 7, 1.5);
@@ -479,7 +478,7 @@ TEST(CubicMap, RingsLeadToADerivativeWhereSectorsAreAlmostHalfTurns)
     ExpectRoundTrip(map, 500);
   }
   // Far from what can be done without rings that turn the rays.
-  std::mt19937_64 random(72);
+  Random random(72);
   for (int n = 0; n < 200; ++n)
   {
     const CubicMap map(RandomStar(random, 3 + n % 7, 2.8), Options(CubicBending::Local));
@@ -738,7 +737,7 @@ TEST(CubicMap, RefinedTemplatesAreCertifiedByTheirOwnTriangles)
 TEST(CubicMap, PartsTurnedOverByRoundingAreNotCertified)
 {
   // Needles a few ulp high: the midpoints of their edges are rounded to either side.
-  fixtures::Random random(14);
+  Random random(14);
   int turned = 0;
   for (int n = 0; n < 80; ++n)
   {
@@ -775,7 +774,7 @@ TEST(CubicMap, PreimagesAreExactWhereSecondDerivativesChangeSign)
 {
   // Between inflections the first of Newton's steps may by chance come much closer than the next.
   // One component bends, so that this happens along whole lines.
-  std::mt19937_64 random(7);
+  Random random(7);
   PlanarPair pair = JitteredGrid(random, 3, 0.0);
   for (Vector2& p : pair.Target)
   {
