@@ -16,7 +16,7 @@ namespace homeomorphism
 namespace
 {
 
-/// The share of an edge that must be visible for a bend to be put on it.
+/// A bend is placed on an edge only if at least this share of the edge is visible.
 constexpr double VisibleShare = 0.1;
 
 std::vector<Vector2> WithBox(const std::vector<Vector2>& points)
@@ -26,7 +26,7 @@ std::vector<Vector2> WithBox(const std::vector<Vector2>& points)
   return all;
 }
 
-/// Lines pass vertices at this angle at least: less could be lost in rounding.
+/// The least angle at which a line passes a vertex: smaller angles could be lost in rounding.
 constexpr double GrazingAngle = 1e-9;
 
 double Length(const Vector2& v)
@@ -250,7 +250,8 @@ std::vector<std::array<int, 2>> CommonMap::Signature(
 
 bool CommonMap::SeparatesAlike(int from, int to, std::vector<int>& differing)
 {
-  // The smaller of the two new faces: floods of doubling size, so that splitting costs n log n.
+  // Find the smaller of the two new faces by flood fills from both sides with doubling limits. So
+  // all splits together take O(n log n) steps.
   std::array<int, 2> ends{ { from, to } };
   std::array<std::vector<int>, 2> regions;
   for (std::size_t limit = 8;; limit *= 2)
@@ -468,7 +469,7 @@ void CommonMap::Faces(std::vector<std::array<int, 3>>& closed, std::vector<Face>
       {
         halfEdges[edge] = true;
         walk.push_back(edge[0]);
-        // Clockwise about the end, from the edge just walked.
+        // The next constrained edge, clockwise about the end of this one.
         int t = drawing.FindEdge(edge[0], edge[1]).Triangle;
         for (;;)
         {
@@ -558,10 +559,10 @@ std::vector<Vector2> CommonMap::Shorten(
   return bends;
 }
 
-std::vector<CommonMap::Way> CommonMap::FindWays(
+std::vector<CommonMap::Path> CommonMap::FindPaths(
   int domain, int from, int before, const std::vector<std::array<int, 2>>& goals) const
 {
-  // Breadth first through the triangles of the face, from all of the corner's.
+  // Breadth-first search through the triangles of the face, from all triangles at the corner.
   const auto& drawing = this->Drawings[domain];
   std::map<int, int> cameFrom;
   std::vector<int> queue = this->Fan(domain, from, before);
@@ -588,7 +589,7 @@ std::vector<CommonMap::Way> CommonMap::FindWays(
   {
     rank[queue[i]] = static_cast<int>(i);
   }
-  std::vector<Way> ways;
+  std::vector<Path> paths;
   for (const auto& goal : goals)
   {
     int best = -1;
@@ -602,7 +603,7 @@ std::vector<CommonMap::Way> CommonMap::FindWays(
     }
     if (best < 0)
     {
-      ways.push_back({ false, {} });
+      paths.push_back({ false, {} });
       continue;
     }
     std::vector<std::array<int, 2>> portals;
@@ -614,13 +615,13 @@ std::vector<CommonMap::Way> CommonMap::FindWays(
       {
         ++k;
       }
-      // Seen from where the path comes, the edge's left end is the next corner of this triangle.
+      // In the direction of the path, the left end of the edge is the next corner of this triangle.
       portals.push_back({ triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] });
     }
     std::reverse(portals.begin(), portals.end());
-    ways.push_back({ true, this->Shorten(domain, from, goal[0], portals) });
+    paths.push_back({ true, this->Shorten(domain, from, goal[0], portals) });
   }
-  return ways;
+  return paths;
 }
 
 CommonMap::Drawn CommonMap::Draw(Route& route)
@@ -628,7 +629,7 @@ CommonMap::Drawn CommonMap::Draw(Route& route)
   const std::size_t count = std::max(route.Bends[0].size(), route.Bends[1].size());
   for (int d = 0; d < 2; ++d)
   {
-    // The longest pieces are divided until there are as many in both domains.
+    // Divide the longest pieces until both domains have the same number of bends.
     auto& bends = route.Bends[d];
     while (bends.size() < count)
     {
@@ -702,18 +703,18 @@ CommonMap::Drawn CommonMap::Split(const Face& face)
         }
       }
     }
-    const auto ways0 = this->FindWays(0, walk[i], walk[(i + 1) % m], goals);
-    const auto ways1 = this->FindWays(1, walk[i], walk[(i + 1) % m], goals);
+    const auto paths0 = this->FindPaths(0, walk[i], walk[(i + 1) % m], goals);
+    const auto paths1 = this->FindPaths(1, walk[i], walk[(i + 1) % m], goals);
     for (std::size_t k = 0; k < goals.size(); ++k)
     {
-      // Bends for each corner that is cut off; with too many, the parts would be larger than the
-      // whole.
+      // The number of bends per corner that is cut off. If there are too many, a part would have
+      // more corners than the face.
       const double bends =
-        static_cast<double>(std::max(ways0[k].Bends.size(), ways1[k].Bends.size()));
+        static_cast<double>(std::max(paths0[k].Bends.size(), paths1[k].Bends.size()));
       const double cost = bends / cut[k];
-      if (ways0[k].Exists && ways1[k].Exists && bends > 0.0 && cost < 0.4 && cost < best.Cost)
+      if (paths0[k].Exists && paths1[k].Exists && bends > 0.0 && cost < 0.4 && cost < best.Cost)
       {
-        best = { walk[i], goals[k][0], { { ways0[k].Bends, ways1[k].Bends } }, cost };
+        best = { walk[i], goals[k][0], { { paths0[k].Bends, paths1[k].Bends } }, cost };
       }
     }
   }
@@ -757,14 +758,14 @@ CommonMap::Drawn CommonMap::Bridge(const Face& face)
           goals.push_back({ to, toBefore });
         }
       }
-      // Straight in this domain, as short as possible in the other one.
-      const auto ways = this->FindWays(1 - d, from, before, goals);
+      // The route is straight in this domain and has few bends in the other one.
+      const auto paths = this->FindPaths(1 - d, from, before, goals);
       for (std::size_t k = 0; k < goals.size(); ++k)
       {
-        if (ways[k].Exists)
+        if (paths[k].Exists)
         {
-          Route route{ from, goals[k][0], {}, static_cast<double>(ways[k].Bends.size()) };
-          route.Bends[1 - d] = ways[k].Bends;
+          Route route{ from, goals[k][0], {}, static_cast<double>(paths[k].Bends.size()) };
+          route.Bends[1 - d] = paths[k].Bends;
           routes.push_back(std::move(route));
         }
       }

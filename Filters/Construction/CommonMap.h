@@ -111,7 +111,7 @@ private:
   using Triangulation = ConstrainedTriangulation;
 
   /// The bends of a line in one domain, if there is room for it.
-  struct Way
+  struct Path
   {
     bool Exists = false;
     std::vector<Vector2> Bends;
@@ -126,13 +126,20 @@ private:
     double Cost = 0.0;
   };
 
+  /// Whether a new edge that closes a cycle separates the components in the same way in both
+  /// domains. If not, returns the vertices that are on different sides.
   bool SeparatesAlike(int from, int to, std::vector<int>& differing);
+  /// Finds the triangles of a face by a flood fill; returns false if there are more than the limit.
   bool Flood(int domain, int start, std::size_t limit, std::vector<int>& region);
+  /// The constrained edges on the boundary of a region, and its isolated vertices.
   std::vector<std::array<int, 2>> Signature(int domain, const std::vector<int>& region) const;
+  /// The triangles of a face at one of its corners: those around a vertex counterclockwise from the
+  /// edge to @a before, or all around an isolated vertex (@a before is -1).
   std::vector<int> Fan(int domain, int vertex, int before) const;
-  std::vector<Way> FindWays(
+  std::vector<Path> FindPaths(
     int domain, int from, int before, const std::vector<std::array<int, 2>>& goals) const;
   Drawn Draw(Route& route);
+  /// The bends of a line that crosses the given edges (left and right ends), with few bends.
   std::vector<Vector2> Shorten(
     int domain, int from, int to, const std::vector<std::array<int, 2>>& portals) const;
   std::vector<std::array<int, 3>> FaceTriangles(int domain, const std::vector<int>& walk) const;

@@ -73,7 +73,7 @@ bool CertainlyInCircle(const Vector2& a, const Vector2& b, const Vector2& c, con
   const double permanent = uu * (std::abs(v.x * w.y) + std::abs(v.y * w.x)) +
     vv * (std::abs(w.x * u.y) + std::abs(w.y * u.x)) +
     ww * (std::abs(u.x * v.y) + std::abs(u.y * v.x));
-  // Shewchuk's bound is (10 + 96 u) u; twice that does no harm.
+  // Twice Shewchuk's bound, which is (10 + 96 u) u for the unit roundoff u.
   return determinant > 10.0 * std::numeric_limits<double>::epsilon() * permanent;
 }
 
@@ -134,7 +134,7 @@ ConstrainedTriangulation::ConstrainedTriangulation(std::vector<Vector2>& points)
   this->TriangleOf[1] = 0;
   this->TriangleOf[3] = 1;
 
-  // Rounds of random halves (Amenta, Choi, Rote 2003), each along the curve.
+  // Biased randomized insertion order (Amenta, Choi, Rote 2003); each round follows the curve.
   const std::vector<int> order =
     HilbertOrder(std::vector<Vector2>(points.begin() + BoxCorners, points.end()));
   std::vector<std::vector<int>> rounds(64);
@@ -193,7 +193,7 @@ int ConstrainedTriangulation::Locate(const Vector2& point, int& onEdge) const
     const Triangle& t = this->Triangles[triangle];
     onEdge = -1;
     int exit = -1;
-    // A varying first edge: a walk that always prefers one can go round in circles.
+    // Begin with a random edge: a walk that always tries the same edge first can cycle.
     turn = turn * 1664525u + 1013904223u;
     int k = static_cast<int>((turn >> 16) % 3u);
     for (int i = 0; i < 3 && exit < 0; ++i, k = NextCorner(k))
@@ -364,9 +364,8 @@ void ConstrainedTriangulation::Flip(int t, int k)
 
 void ConstrainedTriangulation::Legalize()
 {
-  // A new point is a corner of all flipped triangles, and few edges are far from a new constraint:
-  // more flips than these go round in circles, where products of coordinates underflow. The
-  // triangulation is valid after each of them.
+  // Flips can cycle where products of coordinates underflow, so their number is limited. Without
+  // cycles, far fewer flips are needed. The triangulation is valid after each flip.
   std::size_t flipsLeft = 64 + 16 * this->Triangles.size();
   while (!this->Doubtful.empty())
   {
@@ -395,7 +394,7 @@ void ConstrainedTriangulation::Legalize()
 
 ConstrainedTriangulation::Edge ConstrainedTriangulation::FindEdge(int from, int to) const
 {
-  // Counterclockwise about the vertex; then, at the box's corners, clockwise.
+  // Turn counterclockwise about the vertex. If the boundary of the box is reached, turn clockwise.
   bool clockwise = false;
   for (int t = this->TriangleOf[from];;)
   {
@@ -494,7 +493,7 @@ void ConstrainedTriangulation::SetConstrained(int from, int to, bool constrained
 
 void ConstrainedTriangulation::Constrain(int from, int to, const Trace& trace)
 {
-  // Sloan 1993: flip the crossed edges out of the way.
+  // Flip the crossed edges until none crosses the segment (Sloan 1993).
   std::deque<std::pair<int, int>> crossed(trace.Crossed.begin(), trace.Crossed.end());
   std::vector<std::pair<int, int>> made;
   while (!crossed.empty())

@@ -17,14 +17,14 @@ namespace homeomorphism
 namespace
 {
 
-/// What an open face costs: this for each edge but one, and something once, so that a triangle
-/// costs nothing.
+/// The cost of a face is EdgeCost for each edge but one, plus FaceCost. So a triangle costs
+/// nothing.
 constexpr float EdgeCost = 0.5F;
 constexpr float FaceCost = -2.0F * EdgeCost;
 
-/// For each corner of a polygon the others that are visible from it, ascending: those to which a
-/// segment leads through the inside and meets no corner. Takes as many steps as triangles are
-/// visible.
+/// For each corner of a polygon, the other corners that are visible from it, ascending. A corner is
+/// visible if the segment to it lies inside and meets no other corner. Takes one step for each
+/// triangle that is visible from a corner.
 std::vector<std::vector<int>> VisibleCorners(
   const std::vector<Vector2>& points, const CornerTriangles& own)
 {
@@ -100,14 +100,15 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
   const std::array<std::vector<std::vector<int>>, 2> visible{ { VisibleCorners(polygons[0], own[0]),
     VisibleCorners(polygons[1], own[1]) } };
 
-  // Common chords, by their lower corners, and the best dissection of the part of the polygons
-  // between the ends of each.
+  // The common chords, by their lower corners. For each one, the best dissection of the part of the
+  // polygons between its ends.
   struct Part
   {
     int End;
     float Cost = 0.0F;
     float Quality = std::numeric_limits<float>::infinity();
-    /// The third corner of the triangle at the chord, -1 if the face there is an open one.
+    /// The third corner of the triangle at the chord; -1 if the face at the chord is not a
+    /// triangle.
     int Third = -1;
   };
   std::vector<std::vector<Part>> parts(size);
@@ -123,10 +124,10 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
     }
   }
 
-  // The cost of the cheapest walks along chords to each corner from each earlier one.
+  // The costs of the cheapest walks along chords to each corner from each earlier one.
   std::vector<float> walks(size * size, std::numeric_limits<float>::infinity());
-  // Of each corner, the part between it and the current one, if there is a chord, and where the
-  // parts of later ones begin.
+  // For each corner: the part between it and the current corner if there is a chord, and the number
+  // of its parts that end at or before the current corner.
   std::vector<Part*> ending(size, nullptr);
   std::vector<std::size_t> passed(size, 0);
   for (int j = 0; j < m; ++j)
@@ -165,13 +166,14 @@ std::vector<std::array<int, 2>> Dissect(const PolygonPair& polygons,
           const float least = std::min(part->Quality, second->Quality);
           if (cost < best.Cost || (cost == best.Cost && least > best.Quality))
           {
-            const float own2 = static_cast<float>(
+            const float ofTriangle = static_cast<float>(
               QualityOf(quality, { polygons[0][i], polygons[0][k], polygons[0][j] },
                 { polygons[1][i], polygons[1][k], polygons[1][j] }));
-            if (own2 >= 0.0F && (cost < best.Cost || std::min(least, own2) > best.Quality))
+            if (ofTriangle >= 0.0F &&
+              (cost < best.Cost || std::min(least, ofTriangle) > best.Quality))
             {
               best.Cost = cost;
-              best.Quality = std::min(least, own2);
+              best.Quality = std::min(least, ofTriangle);
               best.Third = k;
             }
           }

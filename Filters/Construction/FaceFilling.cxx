@@ -114,7 +114,8 @@ int CrossingsOf(const Chord& chord, const std::vector<Chord>& others)
   return count;
 }
 
-/// Whether a triangle has room for points on its edges: needles lose their area in rounding.
+/// Whether a triangle is thick enough for added points on its edges, whose rounding could flip
+/// needles.
 bool IsThick(const Vector2& a, const Vector2& b, const Vector2& c)
 {
   const double longest = std::max({ Dot(b - a, b - a), Dot(c - b, c - b), Dot(a - c, a - c) });
@@ -155,10 +156,10 @@ void LowerCrossings(const PolygonPair& polygons, std::array<ChordTriangulation, 
   }
 }
 
-/// A planar map in the making: at each node its neighbors, counterclockwise.
+/// The rotation system of a planar map: the neighbors of each node, counterclockwise.
 using Rotations = std::vector<std::vector<int>>;
 
-/// Closed walks with a face on the left.
+/// The closed walks along the boundaries of the faces, with the face on the left.
 std::vector<std::vector<int>> Walks(const Rotations& rotations)
 {
   std::map<std::pair<int, int>, bool> walked;
@@ -192,9 +193,10 @@ std::vector<std::vector<int>> Walks(const Rotations& rotations)
   return walks;
 }
 
-/// The centroid of the points of a polygon that its edges' ends see at this slope at least above
-/// the edge, which cutting a box by lines finds. False if there are none, or if not the whole
-/// polygon is visible from there.
+/// Computes the centroid of the region of points whose triangle with each edge of the polygon has
+/// angles at the edge with at least this tangent. For 0, the region is the kernel of the polygon.
+/// The region is found by clipping a box. Returns false if it is empty or if, by rounding, not the
+/// whole polygon is visible from the centroid.
 bool CenterAtSlope(const std::vector<Vector2>& polygon, double slope, Vector2& center)
 {
   const std::size_t m = polygon.size();
@@ -341,8 +343,8 @@ bool FillWithFewPoints(const PolygonPair& polygons, const QualityMeasure& qualit
   {
     return false;
   }
-  // The best filling of the part between two corners: the corners of the face at the chord between
-  // them, which is a triangle or a star.
+  // The best filling of the part that a chord cuts off. Between contains the other corners of the
+  // cell at the chord, which is a triangle or a polygon with a point in the middle.
   struct Part
   {
     int Points = 0;
@@ -358,7 +360,7 @@ bool FillWithFewPoints(const PolygonPair& polygons, const QualityMeasure& qualit
     const auto& points = polygons[domain];
     return Orientation(points[a], points[b], points[c]) > 0;
   };
-  // A simple quadrangle has a diagonal.
+  // A quadrilateral is simple if a diagonal divides it into two counterclockwise triangles.
   const auto isSimple = [&](int d, int i, int k, int l, int j) {
     return (isLeft(d, i, k, l) && isLeft(d, i, l, j)) || (isLeft(d, i, k, j) && isLeft(d, k, l, j));
   };
@@ -446,7 +448,7 @@ bool FillWithFewPoints(const PolygonPair& polygons, const QualityMeasure& qualit
     {
       if (!findCenter(i, found.Between, j))
       {
-        // Too small for double precision.
+        // The kernel is too small for double precision.
         return false;
       }
       const int point = m + static_cast<int>(added[0].size());
@@ -478,7 +480,7 @@ bool FindBestStarCenter(const std::vector<Vector2>& polygon, Vector2& center)
   {
     return false;
   }
-  // The largest slope that leaves anything, to within a few percent.
+  // The largest slope for which such points exist, to within a few percent.
   double slope = 1.0;
   for (int i = 0; i < 60 && !CenterAtSlope(polygon, slope, center); ++i)
   {
@@ -515,8 +517,8 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
   const std::array<std::vector<Chord>, 2> diagonals{ { chords[0].Diagonals(),
     chords[1].Diagonals() } };
 
-  // Every crossing is a node; along each diagonal they follow each other in an order that is known
-  // from the corners alone.
+  // Every crossing is a node. The order of the crossings along a diagonal follows from the numbers
+  // of the corners.
   std::map<std::pair<Chord, Chord>, int> nodes;
   std::array<std::map<Chord, std::vector<Chord>>, 2> crossed;
   const int firstAdded = m + static_cast<int>(added[0].size());
@@ -558,7 +560,8 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
     }
   }
 
-  // The map whose edges are the pieces of diagonals, and its faces.
+  // The rotation system of the overlay. Its edges are the sides of the polygon and the pieces of
+  // diagonals between nodes.
   Rotations rotations(static_cast<std::size_t>(count));
   std::vector<std::vector<std::pair<int, int>>> spokes(static_cast<std::size_t>(m));
   for (int i = 0; i < m; ++i)
@@ -587,9 +590,11 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
         const int node = last
           ? chord.second
           : (d == 0 ? nodes[{ chord, others[i] }] : nodes[{ others[i], chord }]);
-        // Counterclockwise about a crossing: the source diagonal's first corner, the target
-        // diagonal's corner between, the source's second, the target's outside.
-        const auto spot = [&](const Chord& other, bool forward) {
+        // The neighbors of a crossing, counterclockwise: toward the first corner of the source
+        // diagonal, the corner of the target diagonal that is between the ends of the source
+        // diagonal, the second corner of the source diagonal, and the other one of the target
+        // diagonal.
+        const auto slot = [&](const Chord& other, bool forward) {
           if (d == 0)
           {
             return forward ? 2 : 0;
@@ -603,7 +608,7 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
         }
         else
         {
-          rotations[previous][spot(others[i - 1], true)] = node;
+          rotations[previous][slot(others[i - 1], true)] = node;
         }
         if (last)
         {
@@ -611,7 +616,7 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
         }
         else
         {
-          rotations[node][spot(others[i], false)] = previous;
+          rotations[node][slot(others[i], false)] = previous;
         }
         previous = node;
       }
@@ -627,7 +632,7 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
   }
   for (const std::vector<int>& walk : Walks(rotations))
   {
-    // The outer face is the one that runs through the polygon backwards.
+    // The walk around the outer face traverses the polygon clockwise.
     const std::size_t n = walk.size();
     bool outer = static_cast<int>(n) == m;
     for (std::size_t i = 0; i < n && outer; ++i)

@@ -88,7 +88,7 @@ std::array<Vector2, 2> Enlarged(const std::array<Vector2, 2>& bounds, double mar
     { bounds[1].x + margin, bounds[1].y + margin } } };
 }
 
-/// The typical distance between points: that of as many points spread over their bounds.
+/// The spacing of the same number of points distributed evenly over the bounds.
 double Spacing(const std::vector<Vector2>& points)
 {
   const std::array<Vector2, 2> bounds = Bounds(points);
@@ -141,7 +141,8 @@ std::vector<int> Hull(const std::vector<Vector2>& points)
   return hull;
 }
 
-/// 1 or -1 as a simple polygon runs counterclockwise or clockwise, 0 if it is not simple.
+/// The orientation of a simple polygon: 1 if it is counterclockwise, -1 if it is clockwise. Can be
+/// 0 only if the polygon is not simple.
 int Sense(const std::vector<Vector2>& points, const std::vector<int>& loop)
 {
   std::size_t least = 0;
@@ -256,7 +257,7 @@ private:
     return this->Result.Problems.empty();
   }
 
-  /// The loops that bound the domain, and whether the drawings are mirror images.
+  /// Determines the loops that bound the domain, and whether the drawings are mirror images.
   void ChooseDomain()
   {
     this->Result.Points = this->Figure.Points;
@@ -289,7 +290,8 @@ private:
       for (int d = 0; d < 2 && (domain != FigureDomain::Frame || !framesGiven); ++d)
       {
         const auto& p = this->Result.Points[d];
-        // The point farthest from the first, and the whole on the line of the two?
+        // All points are collinear if they lie on the line through the first point and the farthest
+        // one from it.
         std::size_t far = 0;
         for (std::size_t i = 1; i < p.size(); ++i)
         {
@@ -385,7 +387,8 @@ private:
     double margin = least;
     while (margin < most)
     {
-      // Points nearer to the image than half the margin would make thin triangles.
+      // Points nearer to the edges of the frame than half the least margin would make thin
+      // triangles.
       const std::vector<Vector2> inner = images(Corners(Enlarged(bounds, margin - 0.5 * least)));
       if (std::all_of(this->Result.Points[1].begin(), this->Result.Points[1].end(),
             [&](const Vector2& p) { return IsInside(p, inner, sense); }))
@@ -578,7 +581,6 @@ BoundedFigure FindBoundary(const FigurePair& figure, const BoundaryOptions& opti
   return Boundary(figure, options).Find();
 }
 
-/// Whether p, on the line of a and b, lies strictly between them.
 bool IsBetween(const Vector2& p, const Vector2& a, const Vector2& b)
 {
   return std::make_pair(std::min(a.x, b.x), std::min(a.y, b.y)) <= std::make_pair(p.x, p.y) &&
@@ -595,7 +597,8 @@ std::array<std::vector<Vector2>, 2> MatchRectangles(const FigurePair& figure,
   {
     std::reverse(frames[1].begin(), frames[1].end());
   }
-  // Of the four rotations the one whose corners lie in the directions of the affine images.
+  // Of the four rotations, choose the one whose corners lie best in the directions of the affine
+  // images.
   const Vector2 center = 0.5 * (target[0] + target[1]);
   const Vector2 sourceCenter = 0.5 * (source[0] + source[1]);
   double best = -std::numeric_limits<double>::infinity();

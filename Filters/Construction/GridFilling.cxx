@@ -16,7 +16,7 @@ namespace homeomorphism
 namespace
 {
 
-/// The least distance of a point from the edges, in units of the parallelogram.
+/// The least distance of a point from the edges, in coordinates of the parallelogram.
 constexpr double LeastMargin = 1e-6;
 
 class Grid
@@ -50,7 +50,7 @@ public:
   }
 
 private:
-  /// Coordinates in the parallelogram of three corners, from 0 to 1.
+  /// Computes coordinates from 0 to 1 in the parallelogram, and their least distance from 0 and 1.
   void FindPositions()
   {
     for (int d = 0; d < 2; ++d)
@@ -67,8 +67,9 @@ private:
     }
   }
 
-  /// Slightly inclined, so that no two points are on one line. The second domain's axes are
-  /// exchanged, so that in both the lines are those of constant x.
+  /// Sorts the lines through the landmarks. They are slightly inclined, so that no two landmarks
+  /// are on one line. The axes of the second domain are exchanged, so that x is constant on the
+  /// lines of both domains.
   void SortLines()
   {
     this->Slope = 0.31 * this->Margin;
@@ -93,7 +94,7 @@ private:
     }
   }
 
-  /// Landmarks are nodes where their two lines meet; the others are new points.
+  /// A landmark is the node where its two lines meet. The other nodes are new points.
   void NumberNodes()
   {
     const auto side = static_cast<std::size_t>(this->Side);
@@ -145,7 +146,7 @@ private:
     }
   }
 
-  /// Cells are divided by the better diagonal, and the rim by fans about the corners.
+  /// Divides each cell by the better diagonal, and the rim by fans around the corners of the frame.
   bool Triangulate(std::vector<std::array<int, 3>>& triangles) const
   {
     const auto quality = [this](const std::array<int, 3>& t) {
@@ -203,7 +204,8 @@ private:
   const std::array<int, 4>& Corners;
   const std::vector<int>& Landmarks;
   std::array<std::vector<Vector2>, 2>& Points;
-  /// Lines, or nodes on each: one through each landmark, one beside each of two edges.
+  /// The number of lines, and of nodes on each line: one line passes through each landmark, and one
+  /// passes beside each of two opposite edges.
   int Side;
   int FirstAdded = 0;
   double Margin = 0.5;

@@ -115,7 +115,7 @@ PathFolds InBetweenPath::FindFolds(const std::vector<std::array<std::int64_t, 3>
     const int sign = Orientation(corner(source, 0), corner(source, 1), corner(source, 2));
     if (sign == 0 || sign != Orientation(corner(target, 0), corner(target, 1), corner(target, 2)))
     {
-      // Folded at one end, and until the other.
+      // Degenerate at time 0, or degenerate or flipped at time 1.
       ++folds.Triangles;
       const double begin = sign == 0 ? 0.0 : 1.0;
       if (folds.FirstTriangle < 0 || begin < folds.Begin)

@@ -26,38 +26,41 @@ namespace
 
 using Kind = FigureProblem::Kind;
 
-/// Corners of a face up to which all common diagonals are weighed against each other at once, and
-/// the share of points whose components the figure must have connected for that: otherwise the
-/// edges that connect them leave too little choice.
+/// Larger faces are not dissected by an optimal set of common diagonals.
 constexpr std::size_t LargestDissection = 2500;
+/// Faces are dissected only if there are more than this many points per component. Otherwise the
+/// edges that connect components leave too little choice.
 constexpr std::size_t ConnectedShare = 10;
-/// Segments left out, and points, up to which others are left out instead if that is better.
+/// With more conflicting segments or more points, the first choice of the segments to leave out is
+/// kept.
 constexpr std::size_t ExchangedSegments = 20;
 constexpr std::size_t ExchangedPoints = 3000;
-/// Corners of a face up to which all diagonals are tried, and are weighed against each other.
+/// In larger faces, not all pairs of corners are tried as diagonals.
 constexpr std::size_t AllPairs = 700;
+/// Larger faces are not filled by FillByDiagonals, which takes cubic time.
 constexpr std::size_t ExactFill = 400;
-/// Corners up to which a face is filled by an overlay; larger ones are divided.
+/// Larger faces are divided before they are filled by an overlay.
 constexpr std::size_t LargestOverlay = 300;
-/// Points up to which edges are tried in several orders if points have to be added.
+/// With more points, edges are tried in one order only.
 constexpr std::size_t SeveralOrders = 20000;
-/// How many orders are tried, and with how many added points it is worth trying more than four.
+/// The number of orders that are tried. If more than FewPoints have to be added, four are tried.
 constexpr int Orders = 12;
 constexpr int FewPoints = 4;
-/// Added points beyond which another order would take long and change little.
+/// With more added points, another order would take long and change little.
 constexpr int ManyPoints = 200;
-/// Components that common edges leave, from which on points are taken to be unrelated: so many, or
-/// so many that are also a fifth of all points.
+/// The positions in the two domains are considered unrelated if common edges leave more than
+/// Unrelated components, or more than UnrelatedFew that are also more than a fifth of the points.
 constexpr int Unrelated = 70;
 constexpr int UnrelatedFew = 20;
 /// An angle that is not too thin for any quality, in degrees.
 constexpr double Thin = 5.0;
-/// One that calls for points before other qualities do.
+/// If the smallest angle is below this, in degrees, it is enlarged before other qualities are
+/// improved.
 constexpr double VeryThin = 1.0;
 
-/// The construction from the checked figure to the mesh. Works on points in an order of its own,
-/// which depends on positions alone, and on the domain whose coordinates come first in the order of
-/// numbers: so neither the order of landmarks nor which domain is the source changes the result.
+/// Constructs the mesh from the checked figure. The points are sorted by their positions along a
+/// Hilbert curve in the domain whose sorted coordinates come first. So the result depends neither
+/// on the order of the landmarks nor on which domain is the source.
 class Builder
 {
 public:
@@ -73,7 +76,8 @@ public:
     this->Result.NumberOfFramePoints = this->Figure.NumberOfFramePoints;
   }
 
-  /// Makes the best pair that needs few added points. False if the figure was refused.
+  /// Constructs the pair with the fewest added points of several attempts. Returns false if the
+  /// figure is refused.
   bool Prepare()
   {
     if (!this->Result.Problems.empty())
@@ -82,11 +86,11 @@ public:
     }
     this->ChooseOrder();
     this->ChooseSegments();
-    // Which edges are tried first can decide whether points have to be added.
+    // The order in which edges are tried can decide whether points have to be added.
     for (int order = 0; order < Orders; ++order)
     {
       std::unique_ptr<PairMesh> mesh = this->Construct(order);
-      // Of equally many points, those with the better triangles.
+      // If the numbers of added points are equal, the quality decides.
       if (mesh &&
         (!this->Best ||
           std::make_pair(mesh->CountAdded(), -mesh->WorstQuality()) <
@@ -112,7 +116,7 @@ public:
     return this->Best != nullptr;
   }
 
-  /// Improves the pair as the options say, and hands it over.
+  /// Improves the pair according to the options and stores it in the result.
   void Finish()
   {
     PairMesh& mesh = *this->Best;
@@ -122,7 +126,7 @@ public:
     const int added = mesh.CountAdded();
     if (limit >= 0 && added > limit)
     {
-      this->Refuse(Kind::PointLimit, -1, this->PlaceOfAdded(mesh));
+      this->Refuse(Kind::PointLimit, -1, this->PointsNearAdded(mesh));
       this->Result.Problems.back().Count = added;
       return;
     }
@@ -130,8 +134,8 @@ public:
     if (this->Options.Quality == PairQuality::Concordance ||
       this->Options.Quality == PairQuality::NonObtuse)
     {
-      // Half of the points first make the angles larger where obtuse ones are to be avoided, or
-      // where the triangles are too thin to be a measure.
+      // First use half of the points to enlarge the angles, if obtuse angles are to be avoided or
+      // if triangles are too thin for the quality measure.
       const bool isNonObtuse = this->Options.Quality == PairQuality::NonObtuse;
       double thin = std::min(Thin, mesh.SmallestAngle());
       if (isNonObtuse || thin < VeryThin)
@@ -181,7 +185,7 @@ public:
     return this->Best ? this->Best->CountAdded() : std::numeric_limits<int>::max();
   }
 
-  /// Whether another order or frame could need fewer added points, and may be tried.
+  /// Whether another order or frame could need fewer added points and should be tried.
   bool CanImprove() const
   {
     const int enough =
@@ -244,7 +248,7 @@ private:
     }
   }
 
-  /// The figure's number of a vertex of the map, -1 for those that were added.
+  /// The point of the figure at a vertex of the map; -1 for an added vertex.
   int PointOf(int vertex) const
   {
     const std::size_t i = static_cast<std::size_t>(vertex - ConstrainedTriangulation::BoxCorners);
@@ -328,9 +332,9 @@ private:
     return { problem };
   }
 
-  /// Which of the segments that contradict each other are left out: as few as possible, and such
-  /// that few components lie on different sides of others, which would take many points. Segments
-  /// that had to be left out are drawn first, one after the other, as long as that is better.
+  /// Chooses which of the conflicting segments are left out: as few as possible, and such that few
+  /// components remain separate, because joining them takes many points. The method is a greedy
+  /// search: each segment that was left out is drawn first on trial, and the best choice is kept.
   void ChooseSegments()
   {
     using Cost = std::pair<std::size_t, std::size_t>;
@@ -343,12 +347,12 @@ private:
       std::vector<std::array<int, 3>> closed;
       std::vector<CommonMap::Face> faces;
       this->Map->Faces(closed, faces);
-      std::size_t apart = 0;
+      std::size_t separate = 0;
       for (const CommonMap::Face& face : faces)
       {
-        apart += face.Walks.size() - 1;
+        separate += face.Walks.size() - 1;
       }
-      return { conflicting.size(), apart };
+      return { conflicting.size(), separate };
     };
     if (!this->Options.LeaveOutConflictingSegments || this->Order.size() > ExchangedPoints)
     {
@@ -388,7 +392,7 @@ private:
     this->Result.LeftOut.clear();
   }
 
-  /// A pair with the points that are necessary; null if it had to be refused.
+  /// Constructs a pair with only the necessary added points; returns null if that is impossible.
   std::unique_ptr<PairMesh> Construct(int order)
   {
     this->StartMap();
@@ -431,7 +435,7 @@ private:
     fixed.insert(fixed.end(), this->Segments.begin(), this->Segments.end());
     const int firstAdded =
       ConstrainedTriangulation::BoxCorners + static_cast<int>(this->Order.size());
-    // Angles first if obtuse ones are to be avoided then.
+    // Until Finish, the smallest angle stands for Concordance and NonObtuse.
     auto mesh = std::make_unique<PairMesh>(points, triangles, fixed, firstAdded,
       this->Options.Quality == PairQuality::Distortion ? PairQuality::Distortion
                                                        : PairQuality::MinimumAngle);
@@ -439,7 +443,8 @@ private:
     return mesh;
   }
 
-  /// Asks the caller, once and for all, whether to go on.
+  /// Returns a function that reports progress and returns whether to continue. Once the caller has
+  /// stopped the work, it returns false without asking again.
   std::function<bool()> KeepGoing(double progress)
   {
     return [this, progress]() {
@@ -496,7 +501,7 @@ private:
       this->Refuse(Kind::OutsideDomain, -1, outside);
       return false;
     }
-    // Short segments first: where some have to be left out, these are the more certain ones.
+    // Short segments first: of conflicting segments, short ones are more likely to be correct.
     struct Segment
     {
       std::ptrdiff_t Preference;
@@ -577,7 +582,7 @@ private:
     return polygons;
   }
 
-  /// Connects components by those of some edges that agree.
+  /// Adds those candidates that connect different components.
   void ConnectComponents(const std::vector<std::array<int, 2>>& candidates)
   {
     for (const auto& edge : candidates)
@@ -613,7 +618,7 @@ private:
     return this->Proceed(0.45);
   }
 
-  /// Large faces are usually the same in all orders.
+  /// Results are stored, because large faces are usually the same in all orders.
   const std::vector<std::array<int, 2>>& DissectFace(const CommonMap::Face& face)
   {
     const PolygonPair polygons = this->Polygons(face);
@@ -746,8 +751,8 @@ private:
       (components > UnrelatedFew && 5 * static_cast<std::size_t>(components) > this->Order.size());
   }
 
-  /// For points in frames whose positions have little to do with each other; false if the figure
-  /// has other parts.
+  /// Triangulates points whose positions in the two frames are unrelated. Returns false if the
+  /// figure has other parts than points and a frame with four corners, or if there is no grid.
   bool FillGrid(
     std::array<std::vector<Vector2>, 2>& points, std::vector<std::array<int, 3>>& triangles) const
   {
@@ -828,8 +833,8 @@ private:
     return true;
   }
 
-  /// Points of the figure beside the first added one.
-  std::vector<int> PlaceOfAdded(const PairMesh& mesh) const
+  /// Points of the figure near the first added point.
+  std::vector<int> PointsNearAdded(const PairMesh& mesh) const
   {
     std::vector<int> vertices;
     std::vector<int> star;
@@ -911,20 +916,22 @@ private:
   std::unique_ptr<PairMesh> Best;
   bool NeedsPlainFrame = false;
   bool Refused = false;
-  /// Of faces by their corners' coordinates.
+  /// The dissections of faces, by the coordinates of their corners.
   std::map<std::vector<double>, std::vector<std::array<int, 2>>> Dissections;
   std::vector<int> LoopOf;
 
-  // Which domain comes first, the points in their order, and what vertex of the map each is.
+  /// The domain that comes first.
   int First = 0;
+  /// The points in the order of the construction, and the vertex of each point.
   std::vector<int> Order;
   std::vector<int> Vertex;
+  /// The coordinates in the order of the construction, the first domain first.
   std::array<std::vector<Vector2>, 2> Ordered;
   std::unique_ptr<CommonMap> Map;
   bool Stopped = false;
   std::vector<std::array<int, 2>> LoopEdges;
   std::vector<std::array<int, 2>> Segments;
-  // Segments that contradict others and could not be drawn, and those that are drawn first.
+  // Segments that could not be drawn because of others, and segments that are drawn first.
   std::vector<std::array<int, 2>> Conflicting;
   std::vector<std::array<int, 2>> FirstSegments;
 };

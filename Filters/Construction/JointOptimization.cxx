@@ -19,32 +19,36 @@ namespace homeomorphism
 namespace
 {
 
-/// Corners of a star or of two, beyond which filling by diagonals takes too long.
+/// Larger outlines of one or two stars are not filled by diagonals, which would take too long.
 constexpr int LargestOutline = 40;
-/// Points that are moved together; in larger meshes only those near a change are.
-constexpr std::size_t MovedTogether = 40;
-/// More points than this are not moved, and not merged: it would take too long.
-constexpr int MovedAtAll = 5000;
-constexpr int MergedAtAll = 20000;
-/// Points up to which regions are filled anew, the triangles of such regions, how many of each size
-/// are tried around a point, and how often.
-constexpr int RefilledAtAll = 100;
+/// If the motion of a vertex affects more free vertices than this, only those near it are moved
+/// with it.
+constexpr std::size_t LargestMovedSet = 40;
+/// Meshes with more free vertices are not smoothed as a whole.
+constexpr int MaximumSmoothed = 5000;
+/// Points are not merged while there are more added points than this.
+constexpr int MaximumMerged = 20000;
+/// Meshes with more added points are not refilled by regions.
+constexpr int MaximumRefilled = 100;
+/// The sizes of these regions, in triangles.
 constexpr std::array<int, 4> RegionSizes{ { 6, 10, 18, 32 } };
+/// The number of regions of each size that are tried around a point, and the number of rounds.
 constexpr int RegionTurns = 12;
 constexpr int RegionRounds = 8;
-/// Points up to which each is moved by itself, and how often.
-constexpr int SettledAtAll = 1000;
+/// Meshes with more free vertices are not improved by moving single vertices.
+constexpr int MaximumSettled = 1000;
 constexpr int SettlingPasses = 4;
-/// Points without gain after which adding more is given up.
+/// AddPoints stops, or accepts the worst triangle, after this many points without improvement.
 constexpr int IdlePoints = 7;
-/// The same for each further triangle, after the worst one could not be improved.
+/// The number of points without improvement for each triangle after the first accepted one.
 constexpr int IdlePointsLater = 2;
-/// Points up to which each is tried elsewhere at the end.
-constexpr std::size_t TriedElsewhere = 20;
+/// In meshes with more free vertices, points are not removed in order to insert others elsewhere.
+constexpr std::size_t MaximumRelocated = 20;
 
-/// Minimization with a limited memory of past steps (Nocedal, Wright, "Numerical Optimization",
-/// 2006, algorithm 7.4). @a evaluate returns the value, infinite where it must not go, and fills
-/// the gradient. @a firstStep is the largest component of the first step.
+/// Minimization by L-BFGS; the search direction is that of algorithm 7.4 in Nocedal, Wright,
+/// "Numerical Optimization", 2006. @a evaluate returns the value of the objective, which is
+/// infinite outside the feasible set, and computes the gradient. @a firstStep is the largest
+/// component of the first step.
 void Minimize(std::vector<double>& x,
   const std::function<double(const std::vector<double>&, std::vector<double>&)>& evaluate,
   double firstStep, int steps)
@@ -121,7 +125,7 @@ void Minimize(std::vector<double>& x,
       {
         return;
       }
-      // The memory misleads: steepest descent again.
+      // No decrease in the search direction: restart with steepest descent.
       moves.clear();
       changes.clear();
       continue;
@@ -226,7 +230,7 @@ std::vector<int> JointOptimization::MovedWith(int vertex) const
   std::vector<int> vertices;
   std::vector<int> next{ vertex };
   std::vector<int> star;
-  while (next.size() > vertices.size() && next.size() <= MovedTogether)
+  while (next.size() > vertices.size() && next.size() <= LargestMovedSet)
   {
     vertices = next;
     std::vector<int> triangles;
@@ -237,7 +241,7 @@ std::vector<int> JointOptimization::MovedWith(int vertex) const
     }
     next = this->FreeVerticesOf(triangles);
   }
-  if (next.size() <= MovedTogether)
+  if (next.size() <= LargestMovedSet)
   {
     return next;
   }
@@ -270,7 +274,7 @@ void JointOptimization::SmoothDomain(
   }
   std::sort(triangles.begin(), triangles.end());
   triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-  // Positions are counted from the present ones, in units of a typical edge.
+  // The variables are displacements from the present positions, in units of a typical edge.
   struct Moving
   {
     TrianglePoints Start;
@@ -336,7 +340,7 @@ void JointOptimization::SmoothDomain(
         }
         else
         {
-          // Concave in the excess, so that a few very obtuse angles are no worse than many.
+          // Bounded, so that a few very obtuse angles cost less than many slightly obtuse ones.
           const double excess = 91.0 - terms[i][k].Value;
           if (excess <= 0.0)
           {
@@ -416,7 +420,7 @@ void JointOptimization::Smooth(const std::vector<int>& vertices, bool finish)
   }
 }
 
-void JointOptimization::Round(const std::vector<int>& vertices, bool finish)
+void JointOptimization::SmoothAndFlip(const std::vector<int>& vertices, bool finish)
 {
   const std::size_t mark = this->Mesh.Mark();
   const double before = this->Mesh.Score();
@@ -438,14 +442,14 @@ void JointOptimization::Round(const std::vector<int>& vertices, bool finish)
 void JointOptimization::Improve(int rounds)
 {
   const std::vector<int> vertices = this->Mesh.FreeVertices();
-  if (vertices.empty() || static_cast<int>(vertices.size()) > MovedAtAll)
+  if (vertices.empty() || static_cast<int>(vertices.size()) > MaximumSmoothed)
   {
     return;
   }
   double score = this->Mesh.Score();
   for (int i = 0; i < rounds && this->KeepGoing(); ++i)
   {
-    this->Round(vertices, i + 1 == rounds);
+    this->SmoothAndFlip(vertices, i + 1 == rounds);
     const double now = this->Mesh.Score();
     if (!(now > score + 1e-3))
     {
@@ -504,7 +508,7 @@ bool JointOptimization::MergePoints(int vertex, int other)
   if (static_cast<int>(triangles.size()) > LargestOutline ||
     !this->Mesh.Outline(triangles, outline) || triangles.size() != outline.size() + 2)
   {
-    // Not a disk with these two vertices inside and no other.
+    // The two stars do not form a disk with exactly these two interior vertices.
     return false;
   }
   PolygonPair polygons;
@@ -544,7 +548,6 @@ bool JointOptimization::MergePoints(int vertex, int other)
 
 void JointOptimization::RemovePoints(bool mergePoints)
 {
-  // Points wait until something near them has changed.
   std::vector<int> star;
   const auto neighbors = [&](int vertex) {
     std::vector<int> found;
@@ -560,27 +563,28 @@ void JointOptimization::RemovePoints(bool mergePoints)
   for (int pass = 0; pass < 6; ++pass)
   {
     const int before = this->Mesh.CountAdded();
-    const bool merge = mergePoints && before <= MergedAtAll;
-    std::vector<char> waiting(static_cast<std::size_t>(this->Mesh.GetNumberOfPoints()), 0);
+    const bool merge = mergePoints && before <= MaximumMerged;
+    // Points in the queue. A point enters it again only when the mesh has changed near it.
+    std::vector<char> queued(static_cast<std::size_t>(this->Mesh.GetNumberOfPoints()), 0);
     std::priority_queue<std::pair<int, int>, std::vector<std::pair<int, int>>, std::greater<>>
       queue;
-    const auto wake = [&](int vertex) {
-      if (this->Mesh.IsFree(vertex) && !waiting[vertex])
+    const auto enqueue = [&](int vertex) {
+      if (this->Mesh.IsFree(vertex) && !queued[vertex])
       {
         this->Mesh.Star(vertex, star);
-        waiting[vertex] = 1;
+        queued[vertex] = 1;
         queue.emplace(static_cast<int>(star.size()), vertex);
       }
     };
     for (const int v : this->Mesh.FreeVertices())
     {
-      wake(v);
+      enqueue(v);
     }
     while (!queue.empty() && this->KeepGoing())
     {
       const int vertex = queue.top().second;
       queue.pop();
-      waiting[vertex] = 0;
+      queued[vertex] = 0;
       if (!this->Mesh.IsFree(vertex))
       {
         continue;
@@ -599,19 +603,19 @@ void JointOptimization::RemovePoints(bool mergePoints)
       if (changed)
       {
         this->Mesh.Commit();
-        wake(vertex);
+        enqueue(vertex);
         for (const int v : around)
         {
-          wake(v);
+          enqueue(v);
         }
         for (const int v : further)
         {
-          wake(v);
+          enqueue(v);
         }
       }
     }
     this->Mesh.Commit();
-    if (mergePoints && !merge && this->Mesh.CountAdded() < MergedAtAll)
+    if (mergePoints && !merge && this->Mesh.CountAdded() < MaximumMerged)
     {
       continue;
     }
@@ -619,7 +623,7 @@ void JointOptimization::RemovePoints(bool mergePoints)
     {
       return;
     }
-    // Other edges and positions may let more points go.
+    // Flipping edges and moving points may make more points removable.
     this->Flip();
     this->Improve(2);
     this->Mesh.Commit();
@@ -628,7 +632,7 @@ void JointOptimization::RemovePoints(bool mergePoints)
 
 void JointOptimization::RefillRegions()
 {
-  if (this->Mesh.CountAdded() > RefilledAtAll)
+  if (this->Mesh.CountAdded() > MaximumRefilled)
   {
     return;
   }
@@ -650,7 +654,7 @@ void JointOptimization::RefillRegions()
       }
     }
     idle = this->Mesh.CountAdded() < before ? 0 : idle + 1;
-    // Other edges and positions may let more points go.
+    // Flipping edges and moving points may make more points removable.
     this->Settle();
   }
 }
@@ -661,7 +665,7 @@ void JointOptimization::Settle()
   std::vector<int> outline;
   std::vector<Vector2> polygon;
   const std::vector<int> vertices = this->Mesh.FreeVertices();
-  if (static_cast<int>(vertices.size()) > SettledAtAll)
+  if (static_cast<int>(vertices.size()) > MaximumSettled)
   {
     return;
   }
@@ -681,10 +685,10 @@ void JointOptimization::Settle()
     {
       this->Mesh.Star(vertex, star);
       this->Mesh.Outline(star, outline);
-      // In both domains, else in one of them.
+      // Move the vertex in both domains or, if that does not help, in one of them.
       const double before = worst();
       bool moved = false;
-      for (const int which : { 3, 1, 2 })
+      for (const int domains : { 3, 1, 2 })
       {
         const std::size_t mark = this->Mesh.Mark();
         for (int d = 0; d < 2 && !moved; ++d)
@@ -695,7 +699,7 @@ void JointOptimization::Settle()
           {
             polygon.push_back(this->Mesh.GetPoints(d)[v]);
           }
-          if ((which & (1 << d)) != 0 && FindBestStarCenter(polygon, center))
+          if ((domains & (1 << d)) != 0 && FindBestStarCenter(polygon, center))
           {
             this->Mesh.Move(vertex, d, center);
           }
@@ -785,7 +789,7 @@ bool JointOptimization::InsertNear(int worst)
     this->FlipAround(star);
     for (int i = 0; i < rounds; ++i)
     {
-      this->Round(this->MovedWith(vertex), rounds > 1 && i + 1 == rounds);
+      this->SmoothAndFlip(this->MovedWith(vertex), rounds > 1 && i + 1 == rounds);
     }
     return true;
   };
@@ -867,7 +871,7 @@ bool JointOptimization::FlipAndMove()
         this->Smooth(vertices, true);
         if (this->Mesh.Score() > before + 1e-2)
         {
-          this->Round(vertices, true);
+          this->SmoothAndFlip(vertices, true);
           return true;
         }
         this->Mesh.RollBack(mark);
@@ -885,7 +889,6 @@ bool JointOptimization::Exchange()
   {
     return false;
   }
-  // Whichever point, taken out, leaves the best mesh.
   const auto remove = [this](int vertex) {
     std::vector<int> star;
     this->Mesh.Star(vertex, star);
@@ -898,11 +901,12 @@ bool JointOptimization::Exchange()
     this->Flip();
     for (int i = 0; i < 3; ++i)
     {
-      this->Round(vertices, i == 2);
+      this->SmoothAndFlip(vertices, i == 2);
     }
     return true;
   };
-  const std::size_t more = this->Mesh.Mark();
+  // Remove the point whose removal leaves the best mesh.
+  const std::size_t inserted = this->Mesh.Mark();
   int best = -1;
   double bestScore = before + 1e-2;
   for (const int vertex : this->Mesh.FreeVertices())
@@ -912,7 +916,7 @@ bool JointOptimization::Exchange()
       best = vertex;
       bestScore = this->Mesh.Score();
     }
-    this->Mesh.RollBack(more);
+    this->Mesh.RollBack(inserted);
   }
   if (best < 0)
   {
@@ -925,7 +929,8 @@ bool JointOptimization::Exchange()
 void JointOptimization::AddPoints(double target, int maximum)
 {
   const PairQuality kind = this->Mesh.GetQuality().Kind;
-  // What counts is how many triangles reach the target, not the worst one alone.
+  // For these qualities, the share of triangles that reach the target matters, not only the worst
+  // triangle.
   const bool isShare = kind == PairQuality::Concordance || kind == PairQuality::NonObtuse;
   const double least = isShare ? 0.5 * this->Mesh.GetQuality().Thin : 0.0;
   this->Mesh.Commit();
@@ -957,7 +962,7 @@ void JointOptimization::AddPoints(double target, int maximum)
       {
         break;
       }
-      // Points do not help here: the other triangles are still worth it.
+      // Further points do not improve the worst triangle: continue with the next worst one.
       this->Mesh = best;
       this->Mesh.Accept(this->Mesh.Worst());
       best = this->Mesh;
@@ -965,7 +970,7 @@ void JointOptimization::AddPoints(double target, int maximum)
       idle = IdlePoints - IdlePointsLater;
     }
   }
-  const bool tryElsewhere = this->Mesh.FreeVertices().size() <= TriedElsewhere;
+  const bool tryElsewhere = this->Mesh.FreeVertices().size() <= MaximumRelocated;
   for (int i = 0; i < 2 * maximum && bestQuality < target && this->KeepGoing(); ++i)
   {
     if (!(tryElsewhere && this->Relocate()) && !this->FlipAndMove() &&
@@ -1007,7 +1012,8 @@ void JointOptimization::Refine(const std::array<double, 2>& maximumArea, int max
     {
       continue;
     }
-    // The edge that is longest, compared with the longest of the domain's triangle.
+    // The longest edge that is not fixed. Squared lengths are divided by the maximum areas, so that
+    // both domains have equal weight.
     int longest = -1;
     double length = 0.0;
     for (int k = 0; k < 3; ++k)

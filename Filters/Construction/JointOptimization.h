@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 /// @file JointOptimization.h
-/// Fewer added points and better triangles for a pair of triangulations.
+/// Removal of added points and improvement of triangles in a pair of triangulations.
 
 #ifndef homeomorphism_JointOptimization_h
 #define homeomorphism_JointOptimization_h
@@ -60,21 +60,27 @@ private:
 
   void FlipAround(std::vector<int> triangles);
   bool RemovePoint(int vertex);
-  /// Replaces triangles by diagonals of their outline.
+  /// Triangulates the outline of triangles again, by diagonals only.
   bool RefillWithout(const std::vector<int>& triangles, const std::vector<int>& outline);
   bool MergePoints(int vertex, int other);
   void Smooth(const std::vector<int>& vertices, bool finish);
   void SmoothDomain(
     const std::vector<int>& vertices, int domain, Goal goal, double sharpness, int steps);
-  void Round(const std::vector<int>& vertices, bool finish);
+  /// Smooths, unless that makes the mesh worse, and flips edges around the vertices.
+  void SmoothAndFlip(const std::vector<int>& vertices, bool finish);
   std::vector<int> Neighborhood(int triangle, int rings) const;
   std::vector<int> FreeVerticesOf(const std::vector<int>& triangles) const;
   /// The free vertices whose best positions depend on a vertex: those that are connected with it by
   /// edges between free vertices, or, if these are many, those near it.
   std::vector<int> MovedWith(int vertex) const;
+  /// Adds a point near the worst triangle. The candidates are the centroids of triangles and the
+  /// midpoints of edges.
   bool InsertNear(int worst);
+  /// Removes a point and inserts another one near the worst triangle.
   bool Relocate();
+  /// Flips an edge near the worst triangle and smooths.
   bool FlipAndMove();
+  /// Inserts a point near the worst triangle and removes another one.
   bool Exchange();
   int SplitTriangle(int triangle);
   int SplitEdge(int t, int k);

@@ -18,7 +18,8 @@ namespace
 constexpr std::size_t Neighbors = 18;
 /// Monomials of a polynomial of degree two in two variables.
 constexpr int Monomials = 6;
-/// Variance of residuals inside, for independent errors of variance 1; between 1.3 and 1.5.
+/// The variance of residuals away from the border, for independent errors of variance 1, is between
+/// 1.3 and this.
 constexpr double UsualVariance = 1.5;
 
 /// Landmarks with their squared distances.
@@ -40,7 +41,7 @@ public:
     }
     const double width = high.x - this->Low.x;
     const double height = high.y - this->Low.y;
-    // Some four points a cell, and no more cells than points along a line.
+    // About four points per cell, and at most about n / 4 rows and columns.
     const double n = static_cast<double>(points.size());
     this->Size = std::max({ std::sqrt(4.0 * width * height / n), 4.0 * width / n, 4.0 * height / n,
       std::numeric_limits<double>::min() });
@@ -93,7 +94,7 @@ public:
           }
         }
       }
-      // Points beyond this ring are farther than it is wide.
+      // Points outside the rings so far are farther away than ring * Size.
       if (found.size() >= count)
       {
         std::nth_element(found.begin(), found.begin() + (count - 1), found.end());
@@ -157,12 +158,12 @@ void Fit(const std::array<Neighbor, Neighbors>& neighbors, std::size_t count, in
       coefficients[r] = coefficients[r] + weighted * n.To;
     }
   }
-  // A trace of preference for small coefficients decides where neighbors are on a line.
+  // A slight regularization makes the solution unique if the neighbors are collinear.
   for (int r = 1; r < terms; ++r)
   {
     a[r][r] += (r < 3 ? 1e-12 : 1e-9) * a[0][0];
   }
-  // Positive definite: elimination needs no pivots.
+  // The matrix is positive definite, so elimination needs no pivoting.
   for (int k = 0; k < terms; ++k)
   {
     for (int r = k + 1; r < terms; ++r)
@@ -188,7 +189,7 @@ void Fit(const std::array<Neighbor, Neighbors>& neighbors, std::size_t count, in
   }
 }
 
-/// The residuals of landmarks among those that are trusted.
+/// The residuals of landmarks under a map through the trusted ones, which are not rejected.
 class Residuals
 {
 public:
@@ -230,8 +231,8 @@ public:
     return result;
   }
 
-  /// @param nearest room for neighbors, which many calls can share
-  /// @param reduction what the distance is divided by, because the map is uncertain at the landmark
+  /// @param nearest a buffer, which calls can share
+  /// @param reduction the divisor of the distance, above 1 where the map is uncertain
   double Compute(int landmark, Distances& nearest, double* reduction = nullptr) const
   {
     this->Nearest(landmark, Neighbors, nearest);
@@ -248,7 +249,7 @@ public:
       n.Near = std::exp(-2.0 * square / (radius * radius));
       n.Weight = n.Near;
     }
-    // The constant one is the value at the landmark.
+    // The constant coefficient is the value at the landmark.
     std::array<Vector2, Monomials> coefficients;
     std::array<double, Monomials> influence;
     std::array<double, Neighbors> sorted;
@@ -324,8 +325,8 @@ std::vector<int> FindWorst(
   return worst;
 }
 
-/// The residual that four fifths of the trusted landmarks do not exceed.
-double FourFifths(const std::vector<double>& residuals, const std::vector<int>& rejected)
+/// The 80 % quantile of the residuals of trusted landmarks.
+double Quantile80(const std::vector<double>& residuals, const std::vector<int>& rejected)
 {
   std::vector<double> trusted;
   for (int i = 0; i < static_cast<int>(residuals.size()); ++i)
@@ -362,8 +363,8 @@ std::vector<double> ComputeAll(const Residuals& among, int n)
   return residuals;
 }
 
-/// Rejects one or two of few landmarks. A wrong one is a neighbor of most others, whose residuals
-/// it spoils, so that none stands out before it is left out. Returns the residuals.
+/// Rejects one or two of few landmarks. A wrong landmark is a neighbor of most others and increases
+/// their residuals, so none is an outlier until the wrong one is excluded. Returns the residuals.
 std::vector<double> RejectAmongFew(Residuals& among, int n)
 {
   std::vector<double> residuals = ComputeAll(among, n);
@@ -380,7 +381,7 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
     {
       among.Rejected = set;
       std::vector<double> changed = ComputeAll(among, n);
-      const double usual = FourFifths(changed, set);
+      const double usual = Quantile80(changed, set);
       const double sum = Sum(changed, set);
       if (sum < least &&
         std::all_of(set.begin(), set.end(), [&](int i) { return changed[i] > 6.0 * usual; }))
@@ -402,7 +403,8 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
     sets.push_back({ i });
   }
   attempt(sets);
-  // Two that have changed places are both wrong: without one of them, the other still spoils all.
+  // Two landmarks that have been interchanged are both wrong. If only one is excluded, the other
+  // one still increases the residuals of most landmarks.
   constexpr int fewer = 16;
   if (n >= 8 && n <= fewer)
   {
@@ -419,14 +421,14 @@ std::vector<double> RejectAmongFew(Residuals& among, int n)
   return residuals;
 }
 
-/// Rejects landmarks that stand out. Returns the residuals.
+/// Rejects outliers. Returns the residuals.
 std::vector<double> Reject(Residuals& among, int n)
 {
   Distances nearest;
   std::vector<double> residuals = RejectAmongFew(among, n);
-  const double limit = 4.0 * FourFifths(residuals, among.Rejected);
-  // Reject the landmark without which the others fit best, as long as one stands out. The worst one
-  // may only be the neighbor of a wrong one.
+  const double limit = 4.0 * Quantile80(residuals, among.Rejected);
+  // While there are outliers, reject the one without which the others fit best. The one with the
+  // largest residual may only be the neighbor of a wrong landmark.
   while (static_cast<int>(among.Rejected.size()) < std::min(10, n / 5))
   {
     double best = -1.0;
@@ -479,12 +481,12 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
   }
   Residuals among(landmarks);
   std::vector<double> residuals = Reject(among, n);
-  // A landmark that is wrong in the source lies far from its neighbors there, where a map through
-  // them is uncertain; but the inverse map is not.
+  // A landmark that is wrong in the source may be far from its neighbors there, where a map through
+  // them is uncertain. The inverse map is certain.
   const std::array<std::vector<Vector2>, 2> exchanged{ landmarks[1], landmarks[0] };
   Residuals back(exchanged);
   const std::vector<double> inverse = Reject(back, n);
-  const double usual = FourFifths(inverse, back.Rejected);
+  const double usual = Quantile80(inverse, back.Rejected);
   std::vector<int> added;
   Distances nearest;
   for (const int i : back.Rejected)
@@ -504,7 +506,7 @@ std::vector<double> LandmarkResiduals(const std::array<std::vector<Vector2>, 2>&
   if (!added.empty())
   {
     residuals = ComputeAll(among, n);
-    const double scale = usual > 0.0 ? FourFifths(residuals, among.Rejected) / usual : 0.0;
+    const double scale = usual > 0.0 ? Quantile80(residuals, among.Rejected) / usual : 0.0;
     for (const int i : added)
     {
       residuals[i] = std::max(residuals[i], scale * inverse[i]);

@@ -62,8 +62,8 @@ SurfacePoint MakePoint(
   return point;
 }
 
-/// A point of a triangle for a number of a sequence: uniform in the limit, and in any part of it
-/// nearly so (Martin Roberts' R2 sequence, folded into the triangle).
+/// The point with a given number in a low-discrepancy sequence of points in a triangle (Martin
+/// Roberts' R2 sequence, folded into the triangle).
 Barycentric MakeWeights(std::int64_t number)
 {
   constexpr double golden = 1.32471795724474602596;
@@ -114,7 +114,7 @@ MapSamples SampleMap(const Homeomorphism& map, const Homeomorphism& linear)
         Vector3 linearImage;
         if (!map.MapPoint(Domain::Source, point, image.data()))
         {
-          // Where a Cubic map is not certified.
+          // A Cubic map is not evaluated where it is not certified.
           continue;
         }
         linear.MapPoint(Domain::Source, point, linearImage.data());
@@ -158,8 +158,9 @@ SecondDifference MeasureSecondDifference(
   {
     return result;
   }
-  // Each sample has an equal share of the area, and lies in the triangle that has its middle.
-  std::vector<double> areasUpTo;
+  // The area is divided into equal shares, one per sample. Each sample lies in the triangle that
+  // contains the middle of its share.
+  std::vector<double> cumulativeAreas;
   double area = 0.0;
   for (const TriangleIndex triangle : valid)
   {
@@ -167,7 +168,7 @@ SecondDifference MeasureSecondDifference(
     const Vector2 a = geometry.GetPlanePoint(corners[0]);
     area += std::abs(
       Cross(geometry.GetPlanePoint(corners[1]) - a, geometry.GetPlanePoint(corners[2]) - a));
-    areasUpTo.push_back(area);
+    cumulativeAreas.push_back(area);
   }
   const auto count =
     static_cast<vtkIdType>(std::min(1e6, std::max(5e4, 16.0 * static_cast<double>(valid.size()))));
@@ -184,7 +185,8 @@ SecondDifference MeasureSecondDifference(
     {
       const double middle = area * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
       const auto at = std::min<std::ptrdiff_t>(
-        std::upper_bound(areasUpTo.begin(), areasUpTo.end(), middle) - areasUpTo.begin(),
+        std::upper_bound(cumulativeAreas.begin(), cumulativeAreas.end(), middle) -
+          cumulativeAreas.begin(),
         static_cast<std::ptrdiff_t>(valid.size()) - 1);
       const TriangleIndex triangle = valid[static_cast<std::size_t>(at)];
       const SurfacePoint point = MakePoint(geometry, triangle, MakeWeights(i));

@@ -233,7 +233,8 @@ bool PairMesh::Outline(const std::vector<int>& triangles, std::vector<int>& outl
       }
     }
   }
-  // A disk: every vertex has one edge that leaves it, and one walk has them all.
+  // The triangles form a disk if one edge leaves every boundary vertex and one walk contains all
+  // edges.
   std::size_t at = 0;
   do
   {
@@ -418,7 +419,7 @@ void PairMesh::RollBack(std::size_t mark)
     {
       this->Free(*t);
     }
-    // The free numbers are a stack: they come back in the order in which they went.
+    // The free numbers are a stack. Take them off it in reverse order of their release.
     for (std::size_t i = change.Old.size(); i-- > 0;)
     {
       const auto at =
@@ -449,7 +450,7 @@ void PairMesh::RollBack(std::size_t mark)
 bool PairMesh::FlipIfBetter(int t, int k, std::vector<int>& made)
 {
   const int n = this->Triangles[t].Neighbors[k];
-  // A little more, so that rounding cannot turn an edge round and round.
+  // The margin keeps rounding from flipping an edge back and forth.
   return n >= 0 &&
     this->Flip(t, k, std::min(this->Triangles[t].Quality, this->Triangles[n].Quality) + 1e-9, made);
 }
@@ -482,7 +483,7 @@ bool PairMesh::Flip(int t, int k, double least, std::vector<int>& made)
 
 void PairMesh::Accept(int triangle)
 {
-  // Less a little, so that rounding does not count as getting worse.
+  // With the margin, rounding is not mistaken for a deterioration.
   Triangle& t = this->Triangles[triangle];
   t.AcceptedQuality = t.Quality - 1e-9;
 }

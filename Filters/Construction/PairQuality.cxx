@@ -74,7 +74,7 @@ double QualityOf(
     }
     if (count == 0)
     {
-      // Counterclockwise, but only just.
+      // Counterclockwise, but with an area of 0 in floating point.
       return 0.0;
     }
   }
@@ -92,7 +92,8 @@ int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
   int count = 0;
   if (quality.Kind == PairQuality::Distortion)
   {
-    // |J|^2 det is the cotangent-weighted sum of squared edges (Pinkall, Polthier 1993).
+    // For the map from the other triangle to p, |J|^2 times the other triangle's area is half the
+    // cotangent-weighted sum of squared edges (Pinkall, Polthier 1993).
     double energy = 0.0;
     TrianglePoints gradient{};
     for (int k = 0; k < 3; ++k)
@@ -112,7 +113,8 @@ int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
       gradient[next] = gradient[next] + cotangent * edge;
       gradient[previous] = gradient[previous] - cotangent * edge;
     }
-    // mean = energy / (2 A), quality = 60 / mean.
+    // The mean of the ratio of singular values and its inverse is energy / (2 A), with the area A
+    // of p. The quality is 60 divided by this mean.
     QualityTerm& term = terms[count++];
     term.Value = 60.0 * doubleArea / energy;
     for (int k = 0; k < 3; ++k)
@@ -124,7 +126,7 @@ int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
     }
     return count;
   }
-  // Edges, and the angles between them: the largest one is what the two others leave.
+  // Compute the angle opposite the longest edge from the other two.
   TrianglePoints edges;
   std::array<double, 3> squares;
   int longest = 0;
@@ -175,8 +177,9 @@ int QualityTerms(const QualityMeasure& quality, const TrianglePoints& p,
     }
     else if (isConcordance)
     {
-      // The centroid's foot is within an edge if the median makes an angle below 90 degrees with
-      // it. The median divides the corner's angle.
+      // The projection of the centroid to an edge is between its ends if the angles between the
+      // edge and the medians at its ends are below 90 degrees. The median divides the angle at the
+      // corner.
       const Vector2 median = u + v;
       const Vector2 byMedian = (Degrees / Dot(median, median)) * Vector2{ -median.y, median.x };
       const double withU = Degrees * std::atan2(doubleArea, Dot(u, median));

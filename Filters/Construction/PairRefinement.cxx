@@ -44,7 +44,7 @@ struct EdgeHash
   }
 };
 
-/// Triangles with a smaller height over longest edge are not elongated further, because the
+/// Triangles with a smaller ratio of height to longest edge are not elongated further, because the
 /// slightest bend would flip needles.
 constexpr double Needle = 0.03;
 
@@ -196,7 +196,7 @@ public:
     {
       if (edge == worst || error.OfEdges[edge] > maximum)
       {
-        this->HalveWithCare(edges[edge]);
+        this->BisectAvoidingNeedles(edges[edge]);
       }
     }
   }
@@ -268,7 +268,7 @@ private:
         }
       }
     }
-    if (this->IsTurnedOver(part))
+    if (this->IsFlipped(part))
     {
       error.Largest = std::numeric_limits<double>::infinity();
     }
@@ -277,7 +277,7 @@ private:
 
   /// Whether the part, in source or target, is degenerate or differs in orientation from its
   /// original triangle.
-  bool IsTurnedOver(const Part& part) const
+  bool IsFlipped(const Part& part) const
   {
     for (const Domain domain : { Domain::Source, Domain::Target })
     {
@@ -378,7 +378,7 @@ private:
 
   /// Bisects an edge unless that has been done. If a part at the edge is a needle, bisects the
   /// longest edge of the needle first.
-  void HalveWithCare(const Ends& ends)
+  void BisectAvoidingNeedles(const Ends& ends)
   {
     for (auto found = this->PartsOfEdge.find(ends);
          found != this->PartsOfEdge.end() && !this->BelowRounding;
@@ -395,11 +395,11 @@ private:
       }
       if (first == ends)
       {
-        this->Halve(ends);
+        this->Bisect(ends);
         return;
       }
-      // Each step leads to a longer edge, so the loop ends.
-      this->HalveWithCare(first);
+      // Each recursion bisects a longer edge, so it ends.
+      this->BisectAvoidingNeedles(first);
     }
   }
 
@@ -415,7 +415,7 @@ private:
   }
 
   /// Bisects an edge and the parts on both sides of it.
-  void Halve(const Ends& ends)
+  void Bisect(const Ends& ends)
   {
     const std::array<std::size_t, 2> parts = this->PartsOfEdge.find(ends)->second;
     const Part part = this->Parts[parts[0]];
@@ -423,7 +423,7 @@ private:
     const Weights weights = Middle(part, edge);
     const Triangulation::Corners& corners =
       this->Map.GetPair().GetTriangulation().GetCorners(part.Original);
-    // An edge without a second part lies on the boundary. There only Cubic is not linear.
+    // An edge without a second part lies on the boundary, where all maps but Cubic are linear.
     const bool isOnBoundary = parts[0] == parts[1];
     std::array<Vector3, 2> positions;
     for (std::size_t side = 0; side < 2; ++side)

@@ -192,7 +192,7 @@ TriangulationCounts CountConnections(const Triangulation& triangulation)
 {
   TriangulationCounts counts;
   const TriangleIndex count = triangulation.GetNumberOfTriangles();
-  // 0: not reached yet; 1 and -1: wound as the component's first triangle, or otherwise.
+  // 0: not reached; 1: same winding as the first triangle of the component; -1: opposite winding.
   std::vector<signed char> winding(static_cast<std::size_t>(count), 0);
   for (TriangleIndex first = 0; first < count; ++first)
   {
@@ -243,7 +243,7 @@ MeshShapes MeasureShapes(const TriangulationPair& pair, Domain domain)
   shapes.AreaRatios.assign(count, None);
   std::vector<double> areas(count, None);
   std::vector<unsigned char> concordant(count, 0);
-  // For each triangle, the lengths of the edges that no triangle before it has.
+  // For each triangle, the lengths of the edges that it does not share with an earlier triangle.
   std::vector<std::array<double, 3>> lengths(count, { None, None, None });
   ForEachTriangle(triangulation, [&](TriangleIndex triangle) {
     const auto n = static_cast<std::size_t>(triangle);
@@ -347,7 +347,8 @@ LinearMaps MeasureLinearMaps(const TriangulationPair& pair)
     const double d = q.Y / p.Y;
     const double b = (q.X - a * p.X) / p.Y;
     const double largest = 0.5 * (std::hypot(a + d, b) + std::hypot(a - d, b));
-    // Their product is the determinant, which loses nothing where the difference would.
+    // The product of the singular values is the determinant. Half the difference of the two terms
+    // would suffer from cancellation.
     const double smallest = a * d / largest;
     maps.Determinants[n] = a * d * rescale * rescale;
     maps.Distortions[n] = largest / smallest;

@@ -20,9 +20,8 @@ namespace homeomorphism
 namespace
 {
 
-/// Corners of a region up to which it is filled again, which takes up to the fourth power of their
-/// number of steps.
-constexpr std::size_t MostCorners = 250;
+/// Regions with more corners are not filled again, because n corners can take O(n^4) steps.
+constexpr std::size_t MaximumCorners = 250;
 
 /// An edge with a triangle of the region on its left.
 using HalfEdge = std::array<int, 2>;
@@ -32,8 +31,8 @@ HalfEdge EdgeOf(const PairMesh::Triangle& triangle, int k)
   return { triangle.Vertices[NextCorner(k)], triangle.Vertices[PreviousCorner(k)] };
 }
 
-/// The triangles around a free vertex and those beside them, up to a number: all around, or for odd
-/// turns first on one side.
+/// The star of a free vertex, extended to about @a size triangles: by breadth-first search for even
+/// turns and by depth-first search, which extends it to one side, for odd turns.
 std::vector<int> Grow(const PairMesh& mesh, int vertex, int size, int turn)
 {
   std::vector<int> region;
@@ -88,7 +87,7 @@ SlitRegion Slit(const PairMesh& mesh, const std::vector<int>& region)
     }
     return v;
   };
-  // By how many ends are free, then by length: free vertices should be inside.
+  // Edges with few added ends come first, then short edges, so that free vertices remain inside.
   std::vector<std::tuple<int, double, HalfEdge>> candidates;
   for (const int i : region)
   {
@@ -138,7 +137,7 @@ SlitRegion Slit(const PairMesh& mesh, const std::vector<int>& region)
       ++degrees[edge[1]];
     }
   }
-  // Slits that end at a free vertex are closed.
+  // Remove slits that end at an added vertex; the vertex is then inside.
   for (bool changed = true; changed;)
   {
     changed = false;
@@ -185,7 +184,7 @@ std::vector<int> Walk(const PairMesh& mesh, const std::vector<int>& region, cons
     corners.push_back(edge[0]);
     for (bool found = false; !found;)
     {
-      // The edge that leaves the end of the last one, clockwise about that end.
+      // The next side, clockwise about the end of the last one.
       k = PreviousCorner(mesh.IndexOf(t, edge[1]));
       found = isSide();
       t = found ? t : mesh.GetTriangles()[t].Neighbors[k];
@@ -206,7 +205,7 @@ bool RefillRegion(PairMesh& mesh, int vertex, int size, int turn)
     return false;
   }
   std::vector<int> corners = Walk(mesh, region, slit);
-  if (corners.size() > MostCorners)
+  if (corners.size() > MaximumCorners)
   {
     return false;
   }
