@@ -28,14 +28,6 @@ FigurePair Square()
   return figure;
 }
 
-/// In the target the second line passes between the first one's ends.
-void MakeCrossing(FigurePair& figure)
-{
-  figure.Lines = { { 4, 5 }, { 6, 0 } };
-  figure.Points[1][6] = { 3, 2.5 };
-  figure.Points[0][6] = { 0.5, 3 };
-}
-
 using Ids = std::vector<int>;
 using Options = IsomorphicTriangulationOptions;
 
@@ -96,7 +88,13 @@ TEST(FigureRefusals, NameWhatIsWrong)
       [](FigurePair& f, Options&) { f.Points[1][5].x = std::nan(""); } },
     { Kind::Coincident, 0, { 4, 6 }, -1, -1,
       [](FigurePair& f, Options&) { f.Points[0][6] = f.Points[0][4]; } },
-    { Kind::Crossing, 1, { 0, 6, 4, 5 }, 1, -1, [](FigurePair& f, Options&) { MakeCrossing(f); } },
+    // In the target the second line passes between the first one's ends.
+    { Kind::Crossing, 1, { 0, 6, 4, 5 }, 1, -1,
+      [](FigurePair& f, Options&) {
+        f.Lines = { { 4, 5 }, { 6, 0 } };
+        f.Points[1][6] = { 3, 2.5 };
+        f.Points[0][6] = { 0.5, 3 };
+      } },
     { Kind::PointOnSegment, 1, { 6, 4, 5 }, -1, -1,
       [](FigurePair& f, Options&) {
         f.Lines = { { 4, 5 } };

@@ -76,7 +76,6 @@ void ExpectAllDifferentiable(Continuity* filter)
 /// Every estimate is within its own bound of the closed form, and most bounds are narrow.
 void ExpectJumpsOfTheClosedForm(Continuity* filter)
 {
-  vtkIdType beyond = 0;
   vtkIdType wide = 0;
   vtkIdType jumps = 0;
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfPoints(); ++i)
@@ -84,11 +83,10 @@ void ExpectJumpsOfTheClosedForm(Continuity* filter)
     const double jump = PointValue(filter->GetOutput(), "JacobianJump", i);
     const double bound = PointValue(filter->GetOutput(), "JacobianJumpError", i);
     const double exact = PointValue(filter->GetOutput(), "JacobianJumpExact", i);
-    beyond += std::abs(jump - exact) > bound;
+    EXPECT_FALSE(std::abs(jump - exact) > bound);
     jumps += exact > 1e-3;
     wide += exact > 1e-3 && !(bound < 1e-6 * exact);
   }
-  EXPECT_EQ(beyond, 0);
   EXPECT_LE(2 * wide, jumps);
 }
 
@@ -105,18 +103,16 @@ TEST_P(JacobianContinuityOf, VerdictsAreThoseOfTheClosedForm)
     ExpectJumpsOfTheClosedForm(filter);
     ExpectJumpsOfTheClosedForm(Measure(pair, GetParam(), ListEverything));
     const vtkIdType edges = filter->GetOutput()->GetNumberOfCells();
-    vtkIdType wrong = 0;
     for (vtkIdType i = 0; i < edges; ++i)
     {
       const bool jumps = CellValue(filter, "JacobianJumpExact", i) > filter->GetResolution();
       const double verdict = CellValue(filter, "Verdict", i);
-      wrong += verdict == (jumps ? Continuity::DIFFERENTIABLE : Continuity::CREASE);
+      EXPECT_NE(verdict, jumps ? Continuity::DIFFERENTIABLE : Continuity::CREASE);
       if (verdict == Continuity::CREASE)
       {
         EXPECT_NEAR(CellValue(filter, "ConvergenceOrder", i), 0.0, 0.3);
       }
     }
-    EXPECT_EQ(wrong, 0);
     EXPECT_LE(filter->GetNumberOfUndecidedEdges(), edges / 100);
     EXPECT_EQ(filter->GetNumberOfDifferentiableEdges() + filter->GetNumberOfCreases() +
         filter->GetNumberOfUndecidedEdges(),
@@ -485,8 +481,7 @@ TEST(JacobianContinuity, VerticesOfSurfacesAreNotMeasured)
 
 TEST(JacobianContinuity, TrianglesAndPointsHaveTheLargestJumpOfTheirEdges)
 {
-  const MeshPair pair = MakePlanarPair(6, 2);
-  const auto filter = Measure(pair, Linear);
+  const auto filter = Measure(MakePlanarPair(6, 2), Linear);
   auto* colored = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
   std::vector<double> largest(colored->GetNumberOfCells(), 0.0);
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
@@ -499,8 +494,6 @@ TEST(JacobianContinuity, TrianglesAndPointsHaveTheLargestJumpOfTheirEdges)
   }
   EXPECT_EQ(ValuesOf(CellArray(colored, "JacobianJump")), largest);
   EXPECT_EQ(PointArray(colored, "JacobianJump")->GetRange()[1], filter->GetLargestJump());
-  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells() * 2 + filter->GetNumberOfBoundaryEdges(),
-    3 * pair.Source->GetNumberOfCells());
 }
 
 TEST(JacobianContinuity, ResultsDoNotDependOnThreads)

@@ -231,8 +231,7 @@ TEST(TriangulationPairReport, DefectsAreDataAndNoErrors)
 
   const auto none = Report({ MakePlanarPair(3, 1).Source, MakePlanarPair(4, 1).Target });
   EXPECT_FALSE(none->GetValid());
-  EXPECT_EQ(none->GetStatistic("Measured"), 0.0);
-  EXPECT_EQ(none->GetStatistic("SourcePoints"), 16.0);
+  ExpectStatistics(none, { { "Measured", 0.0 }, { "SourcePoints", 16.0 } });
   EXPECT_EQ(none->GetDefects()->GetNumberOfRows(), 2);
   EXPECT_TRUE(std::isnan(none->GetStatistic("SmoothSecondDifference")));
   EXPECT_EQ(none->GetErrorCode(), 0u);

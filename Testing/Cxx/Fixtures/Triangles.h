@@ -376,27 +376,6 @@ inline std::string Description(const PlaneTriangle& t, const Vector2& inFrame)
   return text.str();
 }
 
-/// The largest of many values, NaN above all, and where it occurs.
-class Worst
-{
-public:
-  template <typename Describe>
-  void Take(double value, Describe&& describe)
-  {
-    if (!(value <= this->Value) && !std::isnan(this->Value))
-    {
-      this->Value = value;
-      this->Where = describe();
-    }
-  }
-  void Take(double value, const PlaneTriangle& triangle, const Vector2& point)
-  {
-    this->Take(value, [&]() { return Description(triangle, point); });
-  }
-  double Value = 0.0;
-  std::string Where;
-};
-
 } // namespace homeomorphism_test
 
 #endif

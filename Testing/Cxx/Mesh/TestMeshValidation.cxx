@@ -324,13 +324,10 @@ TEST(MeshValidation, DegenerateTrianglesInSpace)
   // Exactly collinear in float, as midpoints of short numbers are.
   ExpectFoundInEachMesh(pair,
     [](vtkPolyData* mesh) {
-      vtkNew<vtkPoints> rounded;
-      rounded->SetDataTypeToFloat();
-      rounded->DeepCopy(mesh->GetPoints());
-      rounded->SetPoint(18, 3.0, 3.0, 0.25);
-      rounded->SetPoint(23, 3.0, 4.0, 0.75);
-      rounded->SetPoint(24, 3.0, 3.5, 0.5);
-      mesh->SetPoints(rounded);
+      mesh->SetPoints(MakeCloud(PointsOf(mesh), VTK_FLOAT)->GetPoints());
+      MovePoint(mesh, 18, { 3.0, 3.0, 0.25 });
+      MovePoint(mesh, 23, { 3.0, 4.0, 0.75 });
+      MovePoint(mesh, 24, { 3.0, 3.5, 0.5 });
     },
     Kind::DegenerateTriangle, { 31 });
   for (const std::vector<Point>& points :
