@@ -424,8 +424,7 @@ int CubicMap::FindChild(int triangle, Barycentric& l) const
 //------------------------------------------------------------------------------
 int CubicMap::FindChild(int triangle, const Vector2& point) const
 {
-  Barycentric l = ToBarycentric(this->Pair.GetSourceCorners(triangle),
-    point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
+  Barycentric l = this->GetBarycentric(triangle, point);
   return this->FindChild(triangle, l);
 }
 
@@ -502,16 +501,6 @@ Vector2 CubicMap::MapPoint(
   }
   prepared.Set(child);
   return origin + prepared.Map(point - pair.Source[pair.Triangles[child][0]]);
-}
-
-//------------------------------------------------------------------------------
-Vector2 CubicMap::MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const
-{
-  const int child = this->Levels > 0 ? this->FindChild(triangle, point) : triangle;
-  const PlanarPair& pair = this->GetFine();
-  const int first = pair.Triangles[child][0];
-  prepared.Set(child);
-  return pair.Target[first] + prepared.Map(point - pair.Source[first]);
 }
 
 //------------------------------------------------------------------------------

@@ -99,14 +99,15 @@ public:
   /// coordinates.
   Vector2 MapPoint(
     int triangle, Barycentric l, const Vector2& point, CubicTriangle& prepared) const;
+  Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const
+  {
+    return this->MapPoint(triangle, this->GetBarycentric(triangle, point), point, prepared);
+  }
 
   /// Sets the preimages of a batch, and the triangles in which they lie, -1 if no preimage is
   /// found, which happens only outside the target's domain. The preimage of a point does not depend
   /// on the other points.
   void FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const;
-
-  /// The image of a point of a triangle.
-  Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const;
 
   /// The derivative at a point of a triangle.
   Matrix2 GetDerivative(int triangle, const Vector2& point, CubicTriangle& prepared) const;
@@ -135,6 +136,11 @@ private:
   bool IsWhole(int fineTriangle) const
   {
     return this->Bending && this->Bending->Cuts[fineTriangle] < 0;
+  }
+  Barycentric GetBarycentric(int triangle, const Vector2& point) const
+  {
+    return ToBarycentric(this->Pair.GetSourceCorners(triangle),
+      point - this->Pair.Source[this->Pair.Triangles[triangle][0]]);
   }
   /// Whether a point is in the middle of a triangle, where the template is affine.
   bool IsInMiddle(int fineTriangle, const Barycentric& l) const;

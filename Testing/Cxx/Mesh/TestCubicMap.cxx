@@ -674,6 +674,12 @@ TEST_P(CubicMaps, BatchesGiveTheBitsOfSinglePoints)
           EXPECT_EQ(batch.ImageX[i], single.ImageX[0]);
           EXPECT_EQ(batch.ImageY[i], single.ImageY[0]);
           const Vector2 found{ batch.ImageX[i], batch.ImageY[i] };
+          if (!inverse)
+          {
+            const Vector2 alone =
+              map.MapPoint(first[i].Triangle, first[i].Weights, pointOf(i), fresh);
+            EXPECT_TRUE(alone.x == found.x && alone.y == found.y);
+          }
           const Vector2 image = inverse ? map.MapPoint(batch.Triangles[i], found, fresh)
                                         : map.MapPoint(first[i].Triangle, pointOf(i), fresh);
           EXPECT_LT(Norm(image - (inverse ? pointOf(i) : found)), 1e-13);
