@@ -22,27 +22,30 @@ namespace
 
 constexpr int MaximumRounds = 120;
 constexpr int MaximumProximalRounds = 20;
-/// Proximal rounds end when the energy falls to no less than this share.
+/// Proximal rounds end unless the energy falls below this share of the previous one.
 constexpr double EnoughProgress = 0.998;
-/// The divisors of the penalty's weights when a solution is certified: of elements whose weight had
-/// to be increased for that, and of others.
+/// The divisors of the penalty's weights when a solution is certified: for elements that have
+/// failed since the previous certified solution, and for others.
 constexpr double CautiousRelaxation = 4.0;
 constexpr double Relaxation = 64.0;
-/// Coefficients of the determinant that are less than this share of the template's above the
-/// least one allowed are constraints, whose multipliers are computed in this number of sweeps.
-constexpr double NearShare = 0.4;
+/// A coefficient of the determinant is treated as an active constraint if it exceeds the least
+/// allowed one by less than this share of the template's coefficient.
+constexpr double ActiveShare = 0.4;
+/// The number of sweeps of coordinate descent that compute the multipliers of the constraints.
 constexpr int MultiplierSweeps = 30;
-/// Above this share of failing triangles everything is cut from the start, which bends less.
+/// If more than this share of the triangles fails in the first round, all triangles are cut at
+/// once, which leads to less bending.
 constexpr double CutAllShare = 0.05;
-/// Failures after which a whole triangle, or the whole neighbors of a cut one, are cut.
-constexpr int PatientRounds = 3;
-/// Elements of cut triangles that are thinner than this share of their triangle's size bend at a
-/// scale that is not seen. They count as if their bending were spread over this width.
-constexpr double SeenWidth = 0.05;
-/// Steps of conjugate gradients, and the residual over the right-hand side that ends them.
+/// The number of failures after which a whole triangle, or the whole neighbors of a cut one, are
+/// cut.
+constexpr int FailuresBeforeCut = 3;
+/// In elements of cut triangles that are thinner than this share of their triangle's size, bending
+/// is not visible. It is weighted as if it were spread over this width.
+constexpr double VisibleWidth = 0.05;
+/// The maximum number of steps of conjugate gradients, and the relative residual that ends them.
 constexpr int MaximumSteps = 1000;
 constexpr double EnoughResidual = 1e-12;
-/// A residual that is still taken where rounding does not let it fall further.
+/// The largest relative residual that is accepted if rounding prevents a smaller one.
 constexpr double TolerableResidual = 1e-6;
 
 Vector2 Normal(const Vector2& along)
@@ -55,8 +58,8 @@ double Length(const Vector2& v)
   return std::sqrt(Dot(v, v));
 }
 
-/// A number that depends linearly on the unknowns, for both components of the map at once: the
-/// coefficients are the same, the constants are not.
+/// A number that depends linearly on the unknowns, for both components of the map at once. The
+/// components have the same coefficients and different constants.
 struct LinearForm
 {
   Vector2 Constant;
@@ -115,23 +118,25 @@ NodeForms Fixed(const BendingNode& node)
 struct Element
 {
   int Triangle;
-  /// Of the cut, -1 for a whole triangle.
+  /// The number in the cut, -1 for a whole triangle.
   int Number;
   std::array<int, 3> Nodes;
   double Omega = 0.0;
-  /// The coefficient that is enough.
-  double Enough = 0.0;
-  double Reference = 0.0;
+  /// The least allowed coefficient of the determinant.
+  double LeastAllowed = 0.0;
+  /// The least coefficient of the template.
+  double OfTemplate = 0.0;
   bool Failed = false;
   /// How often it has failed since the last certified solution.
   int Failures = 0;
-  /// The share of its bending that is minimized, and the matrix of that share.
+  /// The share of the element's bending that is minimized, and the matrix of that share.
   double Weight = 1.0;
   BendingMatrix Bending{};
-  /// What the constraints exert on it, see Solver::KeepForce.
-  std::array<Vector2, 9> Force{};
-  /// Doubles cannot represent even the template's own element: its triangle is not certified.
-  bool IsLost = false;
+  /// The force of the constraints on the element, see Solver::UpdateConstraintForce.
+  std::array<Vector2, 9> ConstraintForce{};
+  /// Whether doubles cannot represent even the template's element, so that its triangle cannot be
+  /// certified.
+  bool IsUncertifiable = false;
 };
 
 double GetDoubledArea(const std::array<Vector2, 3>& points)
@@ -151,7 +156,8 @@ double GetThickness(const CubicElement& element)
     longest;
 }
 
-/// The matrix of the penalty: that of the squared distance of an element's data from its aim.
+/// The matrix of the penalty: of the squared distance of an element's data from the center of the
+/// penalty.
 BendingMatrix GetPenaltyMatrix(const std::array<Vector2, 3>& points)
 {
   BendingMatrix penalty{};
@@ -207,11 +213,12 @@ private:
     int Owner;
     /// The node's number in the triangle's cut.
     int Number;
-    /// On an edge beside a whole triangle.
-    bool Slave = false;
-    /// The map towards which the penalty pulls the solution, and the last solution.
-    BendingNode Aim;
-    BendingNode Now;
+    /// Whether the node is on an edge of a whole triangle, so that the ends of the edge determine
+    /// its data.
+    bool IsHanging = false;
+    /// The center of the penalty, from which it measures distances, and the last solution.
+    BendingNode Center;
+    BendingNode Current;
     /// The largest weight of the penalty in an element of the node.
     double Omega = 0.0;
   };
@@ -229,14 +236,14 @@ private:
   void Assemble();
   bool SolveSystem();
   int Check(bool rigorous);
-  void Aim();
-  void KeepForce(Element& element) const;
+  void MoveCenter();
+  void UpdateConstraintForce(Element& element) const;
   double GetEnergy(bool isWeighted) const;
   void CutTriangle(int triangle) { this->IsCut[triangle] = 1; }
   BendingNode GetTemplateNode(int triangle, const TriangleCut& cut, int node) const;
-  CubicElement GetElement(const Element& element, bool aim) const;
-  void GetVector(const Element& element, bool aim, std::array<Vector2, 9>& v) const;
-  std::array<Vector2, 9> GetAim(const Element& element) const;
+  CubicElement GetElement(const Element& element, bool atCenter) const;
+  void GetVector(const Element& element, bool atCenter, std::array<Vector2, 9>& v) const;
+  std::array<Vector2, 9> GetPenaltyCenter(const Element& element) const;
   LinearForm Unknown() { return { {}, { { this->NumberOfUnknowns++, 1.0 } } }; }
   BendingSolution Extract() const;
 
@@ -252,12 +259,13 @@ private:
   std::vector<Node> Nodes;
   std::vector<NodeForms> Forms;
   std::vector<Element> Elements;
-  /// Of each cut triangle, its nodes.
+  /// The nodes of each cut triangle.
   std::map<int, std::array<int, TriangleCut::NumberOfNodes>> CutNodes;
   int NumberOfUnknowns = 0;
-  /// Whether the matrix has been assembled with the nodes as they are; and where its entries are.
+  /// Whether the sparsity pattern of the matrix is known for the present nodes, and the position of
+  /// each contribution among the matrix entries.
   bool PatternIsKnown = false;
-  std::vector<std::int32_t> Places;
+  std::vector<std::int32_t> EntryPositions;
   Eigen::SparseMatrix<double> Matrix;
   Eigen::Matrix<double, Eigen::Dynamic, 2> Right;
   Eigen::Matrix<double, Eigen::Dynamic, 2> Solution;
@@ -336,7 +344,7 @@ BendingNode Solver::GetTemplateNode(int triangle, const TriangleCut& cut, int no
 //------------------------------------------------------------------------------
 void Solver::Build()
 {
-  // Keeps what is known of nodes and elements that stay.
+  // Nodes and elements that remain keep their data.
   std::map<std::pair<int, int>, Node> oldNodes;
   std::map<std::pair<int, int>, Element> oldElements;
   const std::size_t points = this->Pair.Source.size();
@@ -363,8 +371,8 @@ void Solver::Build()
     Node node{ PointNode, point, 0, false, {}, {}, 0.0 };
     if (oldPoints.empty())
     {
-      node.Aim.Gradient = this->Template.GetDerivative(point);
-      node.Now = node.Aim;
+      node.Center.Gradient = this->Template.GetDerivative(point);
+      node.Current = node.Center;
     }
     else
     {
@@ -385,8 +393,8 @@ void Solver::Build()
       }
       else
       {
-        element.Reference = this->Template.GetAffine(t).Determinant();
-        element.Enough = this->Options.CertificateMargin * element.Reference;
+        element.OfTemplate = this->Template.GetAffine(t).Determinant();
+        element.LeastAllowed = this->Options.CertificateMargin * element.OfTemplate;
       }
       this->Elements.push_back(element);
       continue;
@@ -400,7 +408,7 @@ void Solver::Build()
       const int neighbor = this->Pair.Neighbors[t][k];
       if (n < 9 && neighbor >= 0 && neighbor < t && this->IsCut[neighbor])
       {
-        // The neighbor runs through the edge in the other direction.
+        // The neighbor traverses the edge in the other direction.
         const int edge = this->Pair.GetSharedEdge(neighbor, t);
         nodes[n] = this->CutNodes[neighbor][3 + 2 * edge + (n % 2 == 1 ? 1 : 0)];
         continue;
@@ -413,10 +421,10 @@ void Solver::Build()
       }
       else
       {
-        node.Aim = this->GetTemplateNode(t, cut, n);
-        node.Now = node.Aim;
+        node.Center = this->GetTemplateNode(t, cut, n);
+        node.Current = node.Center;
       }
-      node.Slave = n < 9 && neighbor >= 0 && !this->IsCut[neighbor];
+      node.IsHanging = n < 9 && neighbor >= 0 && !this->IsCut[neighbor];
       nodes[n] = static_cast<int>(this->Nodes.size());
       this->Nodes.push_back(node);
     }
@@ -440,9 +448,9 @@ void Solver::Build()
       {
         const CubicElement own = this->Template.GetElement(cut, this->Template.GetAffine(t), t, e);
         const DeterminantCoefficients c = GetDeterminantCoefficients(own);
-        element.Reference = *std::min_element(c.begin(), c.end());
-        element.Enough = this->Options.CertificateMargin * element.Reference;
-        element.IsLost = !(LeastDeterminant(own) > 0.0);
+        element.OfTemplate = *std::min_element(c.begin(), c.end());
+        element.LeastAllowed = this->Options.CertificateMargin * element.OfTemplate;
+        element.IsUncertifiable = !(LeastDeterminant(own) > 0.0);
       }
       this->Elements.push_back(element);
     }
@@ -458,7 +466,7 @@ void Solver::Build()
         if (element.Number >= 0)
         {
           const double width =
-            SeenWidth * std::sqrt(GetDoubledArea(this->Pair.GetSourceCorners(element.Triangle)));
+            VisibleWidth * std::sqrt(GetDoubledArea(this->Pair.GetSourceCorners(element.Triangle)));
           const double share = GetThickness(cubic) / width;
           element.Weight = share > 0.0 ? std::min(1.0, share) : 1.0;
           for (std::array<double, 9>& row : element.Bending)
@@ -474,7 +482,7 @@ void Solver::Build()
 }
 
 //------------------------------------------------------------------------------
-CubicElement Solver::GetElement(const Element& element, bool aim) const
+CubicElement Solver::GetElement(const Element& element, bool atCenter) const
 {
   const int t = element.Triangle;
   CubicElement result;
@@ -495,7 +503,7 @@ CubicElement Solver::GetElement(const Element& element, bool aim) const
   for (int i = 0; i < 3; ++i)
   {
     const Node& node = this->Nodes[element.Nodes[i]];
-    const BendingNode& data = aim ? node.Aim : node.Now;
+    const BendingNode& data = atCenter ? node.Center : node.Current;
     result.Values[i] = data.Value;
     result.Gradients[i] = data.Gradient - this->Template.GetAffine(t);
   }
@@ -519,9 +527,9 @@ NodeForms Solver::MakeEdgeForms(int number)
   const bool boundary = this->Pair.Neighbors[t][k] < 0;
   if (this->IsSpecial(atEnd ? b : a))
   {
-    return Fixed(node.Aim);
+    return Fixed(node.Center);
   }
-  if (!node.Slave && !boundary)
+  if (!node.IsHanging && !boundary)
   {
     return { this->Unknown(), this->Unknown(), this->Unknown() };
   }
@@ -529,8 +537,8 @@ NodeForms Solver::MakeEdgeForms(int number)
   const double length = cut.Lengths[k];
   const Vector2 along = cut.Along[k];
   const Vector2 slope = this->Template.GetAffine(t) * along;
-  // The span on which the map along the edge is one cubic: from end to end, or from the edge point
-  // of an end where the template stays.
+  // The part of the edge on which the map is one cubic. At an end that keeps the template, it
+  // begins at the edge point.
   double start = 0.0;
   double end = length;
   NodeForms first = this->Forms[a];
@@ -538,12 +546,12 @@ NodeForms Solver::MakeEdgeForms(int number)
   if (this->IsSpecial(a))
   {
     start = this->Template.GetRadius(a);
-    first = Fixed(this->Nodes[this->CutNodes[t][3 + 2 * k]].Aim);
+    first = Fixed(this->Nodes[this->CutNodes[t][3 + 2 * k]].Center);
   }
   if (this->IsSpecial(b))
   {
     end = length - this->Template.GetRadius(b);
-    last = Fixed(this->Nodes[this->CutNodes[t][4 + 2 * k]].Aim);
+    last = Fixed(this->Nodes[this->CutNodes[t][4 + 2 * k]].Center);
   }
   const double span = end - start;
   const double at = atEnd ? length - this->Template.GetRadius(b) : this->Template.GetRadius(a);
@@ -562,7 +570,7 @@ NodeForms Solver::MakeEdgeForms(int number)
   tangential.Add(6.0 * s * (1.0 - s) / span, last.Value);
   tangential.Add((1.0 - s) * (1.0 - 3.0 * s), firstSlope);
   tangential.Add(s * (3.0 * s - 2.0), lastSlope);
-  if (node.Slave)
+  if (node.IsHanging)
   {
     LinearForm normal;
     normal.Add(1.0 - s, first.Along(Normal(along)));
@@ -570,11 +578,13 @@ NodeForms Solver::MakeEdgeForms(int number)
     forms.SetGradient(along, tangential, normal);
     return forms;
   }
-  // On the boundary the cubic is prescribed: the larger the weight, the closer to the node's aim.
+  // On the boundary the cubic is prescribed: the larger the weight, the closer to the node's
+  // center.
   const double share = 1.0 / (1.0 + node.Omega);
-  forms.Value = Constant(node.Aim.Value + share * (forms.Value.Constant - node.Aim.Value));
-  const Vector2 aim = node.Aim.Gradient * along;
-  forms.SetGradient(along, Constant(aim + share * (tangential.Constant - aim)), this->Unknown());
+  forms.Value = Constant(node.Center.Value + share * (forms.Value.Constant - node.Center.Value));
+  const Vector2 center = node.Center.Gradient * along;
+  forms.SetGradient(
+    along, Constant(center + share * (tangential.Constant - center)), this->Unknown());
   return forms;
 }
 
@@ -587,7 +597,8 @@ void Solver::MakeForms()
   }
   for (const Element& element : this->Elements)
   {
-    // The aim of a whole triangle is its affine map, which is no aim for the boundary.
+    // At first, the center of a whole triangle is its affine map, which does not apply to the
+    // boundary.
     if (element.Number >= 0 || this->Proximal)
     {
       for (int node : element.Nodes)
@@ -621,14 +632,14 @@ void Solver::MakeForms()
     const double share = 1.0 / (1.0 + node.Omega);
     if (boundary->second.Straight)
     {
-      const Vector2 aim = node.Aim.Gradient * boundary->second.Tangent;
+      const Vector2 center = node.Center.Gradient * boundary->second.Tangent;
       forms.SetGradient(boundary->second.Tangent,
-        Constant(aim + share * (boundary->second.Slope - aim)), this->Unknown());
+        Constant(center + share * (boundary->second.Slope - center)), this->Unknown());
     }
     else
     {
       const Matrix2 gradient =
-        node.Aim.Gradient + share * (boundary->second.Derivative - node.Aim.Gradient);
+        node.Center.Gradient + share * (boundary->second.Derivative - node.Center.Gradient);
       forms.ByX = Constant(gradient.ImageOfX);
       forms.ByY = Constant(gradient.ImageOfY);
     }
@@ -645,7 +656,7 @@ void Solver::MakeForms()
     const int corner = (node.Number - 9) % 2 == 1 ? PreviousCorner(k) : NextCorner(k);
     if (this->IsSpecial(this->Pair.Triangles[node.Owner][corner]))
     {
-      this->Forms[n] = Fixed(node.Aim);
+      this->Forms[n] = Fixed(node.Center);
     }
     else
     {
@@ -655,13 +666,13 @@ void Solver::MakeForms()
 }
 
 //------------------------------------------------------------------------------
-void Solver::GetVector(const Element& element, bool aim, std::array<Vector2, 9>& v) const
+void Solver::GetVector(const Element& element, bool atCenter, std::array<Vector2, 9>& v) const
 {
   const Matrix2& affine = this->Template.GetAffine(element.Triangle);
   for (int i = 0; i < 3; ++i)
   {
     const Node& node = this->Nodes[element.Nodes[i]];
-    const BendingNode& data = aim ? node.Aim : node.Now;
+    const BendingNode& data = atCenter ? node.Center : node.Current;
     v[3 * i] = data.Value;
     v[3 * i + 1] = data.Gradient.ImageOfX - affine.ImageOfX;
     v[3 * i + 2] = data.Gradient.ImageOfY - affine.ImageOfY;
@@ -669,22 +680,23 @@ void Solver::GetVector(const Element& element, bool aim, std::array<Vector2, 9>&
 }
 
 //------------------------------------------------------------------------------
-// The data towards which the penalty pulls an element: at first, that of a whole triangle's affine
-// map.
-std::array<Vector2, 9> Solver::GetAim(const Element& element) const
+// The data from which the penalty measures the distance of an element: at first, those of the
+// affine map in a whole triangle.
+std::array<Vector2, 9> Solver::GetPenaltyCenter(const Element& element) const
 {
-  std::array<Vector2, 9> aim{};
+  std::array<Vector2, 9> center{};
   if (element.Number >= 0 || this->Proximal)
   {
-    this->GetVector(element, true, aim);
+    this->GetVector(element, true, center);
   }
-  return aim;
+  return center;
 }
 
 //------------------------------------------------------------------------------
 void Solver::Assemble()
 {
-  // Entries in a fixed order, which are summed where the first assembly has found their places.
+  // The order of the contributions is fixed, so later assemblies add them at the positions that the
+  // first one has found.
   std::vector<Eigen::Triplet<double>> triplets;
   std::size_t entry = 0;
   const bool isKnown = this->PatternIsKnown;
@@ -709,8 +721,8 @@ void Solver::Assemble()
       constants[3 * i + 1] = node.ByX.Constant - affine.ImageOfX;
       constants[3 * i + 2] = node.ByY.Constant - affine.ImageOfY;
     }
-    // Bending times the constants, then the penalty times their distance from the aim, less the
-    // forces of the constraints.
+    // Half the gradient of the objective if all unknowns are 0: bending times the constants, plus
+    // the penalty times their distance from the center, minus the force of the constraints.
     std::array<Vector2, 9> force{};
     for (int m = 0; m < 9; ++m)
     {
@@ -721,16 +733,16 @@ void Solver::Assemble()
     }
     if (element.Omega > 0.0)
     {
-      const std::array<Vector2, 9> aim = this->GetAim(element);
+      const std::array<Vector2, 9> center = this->GetPenaltyCenter(element);
       const BendingMatrix penalty = GetPenaltyMatrix(this->GetElement(element, true).Points);
       for (int m = 0; m < 9; ++m)
       {
-        force[m] = force[m] - element.Force[m];
+        force[m] = force[m] - element.ConstraintForce[m];
         for (int n = 0; n < 9; ++n)
         {
           const double weight = element.Omega * penalty[m][n];
           matrix[m][n] += weight;
-          force[m] = force[m] + weight * (constants[n] - aim[n]);
+          force[m] = force[m] + weight * (constants[n] - center[n]);
         }
       }
     }
@@ -751,7 +763,7 @@ void Solver::Assemble()
             const double value = row.second * column.second * matrix[m][n];
             if (isKnown)
             {
-              this->Matrix.valuePtr()[this->Places[entry++]] += value;
+              this->Matrix.valuePtr()[this->EntryPositions[entry++]] += value;
             }
             else
             {
@@ -768,20 +780,20 @@ void Solver::Assemble()
   }
   this->Matrix.resize(this->NumberOfUnknowns, this->NumberOfUnknowns);
   this->Matrix.setFromTriplets(triplets.begin(), triplets.end());
-  this->Places.resize(triplets.size());
+  this->EntryPositions.resize(triplets.size());
   for (std::size_t n = 0; n < triplets.size(); ++n)
   {
     const int* rows = this->Matrix.innerIndexPtr();
     const int* columns = this->Matrix.outerIndexPtr();
     const int column = triplets[n].col();
-    this->Places[n] = static_cast<std::int32_t>(
+    this->EntryPositions[n] = static_cast<std::int32_t>(
       std::lower_bound(rows + columns[column], rows + columns[column + 1], triplets[n].row()) -
       rows);
   }
 }
 
 //------------------------------------------------------------------------------
-// Returns false if there is no solution that numbers represent.
+// Returns false if the system cannot be solved in double precision.
 bool Solver::SolveSystem()
 {
   this->MakeForms();
@@ -828,7 +840,7 @@ bool Solver::SolveSystem()
   }
   if (!this->Solution.allFinite())
   {
-    // Triangles are so thin that the system's numbers overflow.
+    // The system overflows if triangles are extremely thin.
     return false;
   }
   ++this->Statistics.Rounds;
@@ -847,15 +859,15 @@ bool Solver::SolveSystem()
     {
       continue;
     }
-    this->Nodes[n].Now = { evaluate(this->Forms[n].Value),
+    this->Nodes[n].Current = { evaluate(this->Forms[n].Value),
       { evaluate(this->Forms[n].ByX), evaluate(this->Forms[n].ByY) } };
   }
   return true;
 }
 
 //------------------------------------------------------------------------------
-// Marks the elements that fail and returns how many triangles have any. Rounding is considered only
-// where it decides, unless the check is @a rigorous.
+// Marks the elements that fail and returns the number of triangles with such elements. Unless the
+// check is @a rigorous, rounding is considered only if coefficients are close to the limit.
 int Solver::Check(bool rigorous)
 {
   this->Parallel(static_cast<std::int64_t>(this->Elements.size()),
@@ -868,10 +880,11 @@ int Solver::Check(bool rigorous)
         if (!rigorous)
         {
           const DeterminantCoefficients c = GetDeterminantCoefficients(cubic);
-          isCertain = *std::min_element(c.begin(), c.end()) > 1.001 * element.Enough;
+          isCertain = *std::min_element(c.begin(), c.end()) > 1.001 * element.LeastAllowed;
         }
-        element.Failed = !element.IsLost &&
-          (!(isCertain || LeastDeterminant(cubic, element.Enough, 4) >= element.Enough) ||
+        element.Failed = !element.IsUncertifiable &&
+          (!(isCertain ||
+             LeastDeterminant(cubic, element.LeastAllowed, 4) >= element.LeastAllowed) ||
             (this->Options.MaximumDeviation < std::numeric_limits<double>::max() &&
               !(GreatestDisplacement(cubic) <= this->Options.MaximumDeviation)));
       }
@@ -890,31 +903,31 @@ int Solver::Check(bool rigorous)
 }
 
 //------------------------------------------------------------------------------
-// The penalty exerts a force on an element. The part of it that keeps small coefficients of the
-// determinant from falling is kept as a constant force when the weight is reduced: then the element
-// may move along the border of what is certified, but is not pressed against it. It is the sum of
-// the coefficients' gradients times multipliers of at least zero that is nearest to the force
-// (augmented Lagrangian: Hestenes 1969, Powell 1969).
-void Solver::KeepForce(Element& element) const
+// Updates the multipliers of the augmented Lagrangian (Hestenes 1969, Powell 1969). The penalty
+// exerts a force on an element. The part of it that keeps small coefficients of the determinant
+// from decreasing remains as a constant force when the weight is reduced. So the element can move
+// along the boundary of the certified maps without being pressed against it. This part is the
+// nonnegative combination of the coefficients' gradients that is nearest to the force.
+void Solver::UpdateConstraintForce(Element& element) const
 {
-  if (!(element.Omega > 0.0) || element.IsLost)
+  if (!(element.Omega > 0.0) || element.IsUncertifiable)
   {
     return;
   }
   const CubicElement cubic = this->GetElement(element, false);
   const BendingMatrix penalty = GetPenaltyMatrix(cubic.Points);
-  const std::array<Vector2, 9> aim = this->GetAim(element);
+  const std::array<Vector2, 9> center = this->GetPenaltyCenter(element);
   std::array<Vector2, 9> now;
   this->GetVector(element, false, now);
-  // By component, in units in which the penalty's diagonal is 1.
+  // The components of the force, in units in which the diagonal of the penalty is 1.
   std::array<double, 18> residual;
   std::array<double, 18> unit;
   for (int m = 0; m < 9; ++m)
   {
-    Vector2 force = element.Force[m];
+    Vector2 force = element.ConstraintForce[m];
     for (int n = 0; n < 9; ++n)
     {
-      force = force - (element.Omega * penalty[m][n]) * (now[n] - aim[n]);
+      force = force - (element.Omega * penalty[m][n]) * (now[n] - center[n]);
     }
     const double scale = 1.0 / std::sqrt(penalty[m][m]);
     unit[2 * m] = scale;
@@ -922,15 +935,15 @@ void Solver::KeepForce(Element& element) const
     residual[2 * m] = scale * force.x;
     residual[2 * m + 1] = scale * force.y;
   }
-  element.Force = {};
+  element.ConstraintForce = {};
   const DeterminantCoefficients coefficients = GetDeterminantCoefficients(cubic);
-  std::array<int, 45> near;
+  std::array<int, 45> active;
   int count = 0;
   for (int c = 0; c < 45; ++c)
   {
-    if (coefficients[c] < element.Enough + NearShare * element.Reference)
+    if (coefficients[c] < element.LeastAllowed + ActiveShare * element.OfTemplate)
     {
-      near[count++] = c;
+      active[count++] = c;
     }
   }
   if (count == 0)
@@ -939,7 +952,7 @@ void Solver::KeepForce(Element& element) const
   }
   const bool isCut = element.Number >= 0;
   const TriangleCut cut = isCut ? this->Template.GetCut(element.Triangle) : TriangleCut{};
-  // Coefficients are quadratic functions, so central differences are their derivatives.
+  // The coefficients are quadratic functions, so their central differences are exact derivatives.
   std::array<std::array<double, 18>, 45> gradients;
   const double size = std::sqrt(cubic.Affine.Determinant());
   for (int d = 0; d < 18; ++d)
@@ -961,7 +974,7 @@ void Solver::KeepForce(Element& element) const
     }
     for (int n = 0; n < count; ++n)
     {
-      gradients[n][d] = (beside[1][near[n]] - beside[0][near[n]]) / (2.0 * size);
+      gradients[n][d] = (beside[1][active[n]] - beside[0][active[n]]) / (2.0 * size);
     }
   }
   const auto product = [](const std::array<double, 18>& a, const std::array<double, 18>& b) {
@@ -997,7 +1010,7 @@ void Solver::KeepForce(Element& element) const
     {
       for (int d = 0; d < 18; ++d)
       {
-        Vector2& force = element.Force[d / 2];
+        Vector2& force = element.ConstraintForce[d / 2];
         (d % 2 == 0 ? force.x : force.y) += multipliers[n] * gradients[n][d] / unit[d];
       }
     }
@@ -1005,11 +1018,11 @@ void Solver::KeepForce(Element& element) const
 }
 
 //------------------------------------------------------------------------------
-void Solver::Aim()
+void Solver::MoveCenter()
 {
   for (Node& node : this->Nodes)
   {
-    node.Aim = node.Now;
+    node.Center = node.Current;
   }
   this->Proximal = true;
 }
@@ -1041,7 +1054,7 @@ BendingSolution Solver::Extract() const
   solution.Cuts.assign(this->Pair.Triangles.size(), -1);
   for (int point = 0; point < this->Pair.GetNumberOfPoints(); ++point)
   {
-    solution.Points.push_back(this->Nodes[point].Now);
+    solution.Points.push_back(this->Nodes[point].Current);
   }
   for (const auto& entry : this->CutNodes)
   {
@@ -1051,7 +1064,7 @@ BendingSolution Solver::Extract() const
     bool same = true;
     for (int n = 0; n < TriangleCut::NumberOfNodes; ++n)
     {
-      const BendingNode& node = this->Nodes[entry.second[n]].Now;
+      const BendingNode& node = this->Nodes[entry.second[n]].Current;
       if (n >= 3)
       {
         solution.CutNodes.back()[n - 3] = node;
@@ -1153,7 +1166,7 @@ BendingSolution Solver::Run()
     if (failed == 0)
     {
       const double energy = this->GetEnergy(true);
-      const bool isLittle = !(energy < EnoughProgress * bestEnergy);
+      const bool isConverged = !(energy < EnoughProgress * bestEnergy);
       if (energy < bestEnergy)
       {
         bestEnergy = energy;
@@ -1162,7 +1175,7 @@ BendingSolution Solver::Run()
       }
       const bool hasPenalty = std::any_of(this->Elements.begin(), this->Elements.end(),
         [](const Element& element) { return element.Omega > 0.0; });
-      if (isLittle || !hasPenalty || this->Statistics.ProximalRounds == MaximumProximalRounds)
+      if (isConverged || !hasPenalty || this->Statistics.ProximalRounds == MaximumProximalRounds)
       {
         break;
       }
@@ -1172,12 +1185,12 @@ BendingSolution Solver::Run()
           for (std::int64_t e = begin; e < end; ++e)
           {
             Element& element = this->Elements[e];
-            this->KeepForce(element);
+            this->UpdateConstraintForce(element);
             element.Omega /= element.Failures > 0 ? CautiousRelaxation : Relaxation;
             element.Failures = 0;
           }
         });
-      this->Aim();
+      this->MoveCenter();
       continue;
     }
     bool rebuild = false;
@@ -1200,16 +1213,16 @@ BendingSolution Solver::Run()
         }
         const int t = element.Triangle;
         const bool whole = element.Number < 0;
-        // In proximal rounds, twice as much harder with each failure.
-        const double harder = 4.0 * (this->Proximal ? std::exp2(element.Failures) : 1.0);
+        // In proximal rounds, the factor doubles with each failure.
+        const double factor = 4.0 * (this->Proximal ? std::exp2(element.Failures) : 1.0);
         ++element.Failures;
-        element.Omega = std::max(harder * element.Omega, whole && !this->Proximal ? 0.5 : 0.1);
+        element.Omega = std::max(factor * element.Omega, whole && !this->Proximal ? 0.5 : 0.1);
         if (counted == t || this->Proximal)
         {
           continue;
         }
         counted = t;
-        if (++this->Failures[t] < PatientRounds)
+        if (++this->Failures[t] < FailuresBeforeCut)
         {
           continue;
         }
@@ -1237,7 +1250,8 @@ BendingSolution Solver::Run()
   }
   if (!std::isfinite(bestEnergy))
   {
-    // The limit of the rounds, taken at once, where they ran out or a system has no solution.
+    // With growing weights, the solutions approach the template. Use it if the rounds are used up
+    // or a system could not be solved.
     std::fill(this->IsCut.begin(), this->IsCut.end(), std::uint8_t(1));
     this->Nodes.clear();
     this->Elements.clear();

@@ -95,14 +95,14 @@ bool SolveWithWholeTriangles(const CubicTemplate& cubicTemplate, const BendingOp
   BendingSolution& solution, const ParallelFor& parallelFor = SerialFor);
 
 /// Minimizes the integral of the squared second derivatives over all gradients and over the values
-/// of all nodes except those at points. Where the determinant is not certified, a penalty pulls the
-/// solution towards a certified map: first towards the triangle's affine map and then, in cut
-/// triangles, towards the template. Its weight grows until all triangles are certified. The
-/// solution then replaces the template in the penalty, and the weight is reduced as long as the
-/// bending decreases. In elements that are much thinner than their triangles, only a fraction of
-/// the bending is minimized. @a isFree marks points whose value is also an unknown. Corners at
-/// vertices at which the template is not differentiable keep the template's elements. See
-/// Documentation/cubic.md.
+/// of all nodes except those at points. Where the determinant is not certified, a penalty is
+/// added to the energy: the squared distance from a certified map, first from the triangle's affine
+/// map and then, in cut triangles, from the template. Its weight grows until all triangles are
+/// certified. The solution then replaces the template in the penalty, and the weight is reduced as
+/// long as the bending decreases. In elements that are much thinner than their triangles, only a
+/// fraction of the bending is minimized. @a isFree marks points whose value is also an unknown.
+/// Corners at vertices at which the template is not differentiable keep the template's elements.
+/// See Documentation/cubic.md.
 BendingSolution SolveForLeastBending(const CubicTemplate& cubicTemplate,
   const BendingOptions& options, const std::vector<std::uint8_t>& isFree,
   const ParallelFor& parallelFor = SerialFor);

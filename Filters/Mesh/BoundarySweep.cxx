@@ -77,7 +77,7 @@ public:
   /// @a starting are the segments that start at the point. Returns false if the sweep must end.
   bool Advance(const Vector2& point, std::vector<const BoundarySegment*> starting)
   {
-    // All segments through the point are taken out; those that go on are put back above it.
+    // Remove all segments through the point. Those that continue beyond it are inserted again.
     const auto through = this->Status.equal_range(point);
     const BoundarySegment* passing = nullptr;
     for (auto i = through.first; i != through.second; ++i)
@@ -108,7 +108,7 @@ public:
     {
       cover += starting[i]->Change;
       this->Status.insert(above, Crossed{ starting[i], cover });
-      // Between segments that lie on each other there is nothing.
+      // There is no area between overlapping collinear segments.
       const bool last =
         i + 1 == starting.size() || Orientation(point, starting[i]->End, starting[i + 1]->End) != 0;
       if (last && cover != 0 && cover != 1)

@@ -143,7 +143,7 @@ void CubicHomeomorphism::MapPoints(Domain from, CubicBatch& batch, CubicTriangle
   }
 }
 
-// Where the map is not certified, its values may be anything.
+// Removes the images of points in triangles that are not certified, where values have no meaning.
 void CubicHomeomorphism::LeaveUncertified(CubicBatch& batch) const
 {
   const int count = this->Map->GetStatistics().UncertifiedTriangles > 0 ? batch.Count : 0;

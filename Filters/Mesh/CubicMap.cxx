@@ -17,9 +17,10 @@ namespace
 {
 
 constexpr int NewtonSteps = 300;
-// Half the second derivatives times the length of a triangle, over the least stretch: seldom more.
+// Half the second derivatives times the size of a triangle, divided by the smallest stretch, rarely
+// exceed this.
 constexpr double MostBending = 10.0;
-// Of twice the area to the sum of the squares of the edges. Nets of thinner triangles have
+// The least ratio of twice the area to the sum of the squared edges. Nets of thinner triangles have
 // inaccurate derivatives.
 constexpr double LeastThickness = 1.0 / 16.0;
 // Residuals of this many ulp of the target's coordinates are rounding.
@@ -30,8 +31,8 @@ double MaxNorm(const Vector2& v)
   return std::max(std::abs(v.x), std::abs(v.y));
 }
 
-// Whether a triangle is counterclockwise in both domains, seen from its corner 0 as the map sees
-// it: rounding may turn the parts of a refined needle over. Fourth powers of its lengths must be
+// Whether a triangle is counterclockwise in both domains, computed relative to corner 0 as in the
+// map. Rounding can flip the parts of a refined needle. Fourth powers of the lengths must be
 // representable.
 bool IsPositive(const PlanarPair& pair, int triangle)
 {
@@ -45,8 +46,8 @@ bool IsPositive(const PlanarPair& pair, int triangle)
   return isPositive(pair.GetSourceCorners(triangle)) && isPositive(pair.GetTargetCorners(triangle));
 }
 
-// Whether all elements of a triangle that is cut are thicker than the rounding of points: cubics
-// grow without bound where a point is taken far beyond its element.
+// Whether all elements of a triangle that is cut are thicker than the rounding errors of points. A
+// cubic grows without bound at points outside its element.
 bool IsResolved(const CubicTemplate& cubicTemplate, int triangle)
 {
   constexpr double leastUlps = 4.0;
@@ -63,11 +64,11 @@ bool IsResolved(const CubicTemplate& cubicTemplate, int triangle)
   return thinnest >= leastUlps * std::numeric_limits<double>::epsilon() * coordinates;
 }
 
-// A cubic map on a triangle: ten control points, by weights of the corners.
+// A cubic Bezier triangle with ten control points.
 struct CubicPatch
 {
   std::array<Vector2, 3> Corners;
-  // Rows of equal weight of the third corner, from the first to the second.
+  // Rows with the same index of the third corner, each from the first to the second corner.
   std::array<Vector2, 10> Points;
 };
 
@@ -76,8 +77,8 @@ constexpr int PatchNumber(int second, int third)
   return 4 * third - third * (third - 1) / 2 + second;
 }
 
-// Cuts a patch from the middle of its edge from first to second corner, as a quartic in
-// CubicElement is, and turns the halves so that a different edge is cut next.
+// Bisects a patch at the middle of the edge from the first to the second corner, by de Casteljau's
+// algorithm. Numbers the corners of the halves so that another edge is bisected next.
 std::array<CubicPatch, 2> Bisect(const CubicPatch& patch)
 {
   const Vector2 middle = 0.5 * (patch.Corners[0] + patch.Corners[1]);
@@ -134,7 +135,8 @@ std::array<CubicPatch, 3> GetPatches(const CubicElement& element)
   return patches;
 }
 
-// Whether the control points surround an image, and how far apart they are.
+// Whether the bounding boxes of the control points contain an image. Returns the extent of the
+// control points.
 bool Contains(const CubicPatch& patch, const Vector2& image, double tolerance, double& extent)
 {
   Vector2 least = patch.Points[0];
@@ -150,7 +152,8 @@ bool Contains(const CubicPatch& patch, const Vector2& image, double tolerance, d
   {
     return false;
   }
-  // A box in the plane's axes is far too large for a thin image: the same along two of its edges.
+  // An axis-aligned box is far too large for a thin patch, so test a parallelogram along two of its
+  // edges, too.
   const Vector2 origin = patch.Points[0];
   const Vector2 first = patch.Points[PatchNumber(3, 0)] - origin;
   const Vector2 second = patch.Points[PatchNumber(0, 3)] - origin;
@@ -172,12 +175,14 @@ bool Contains(const CubicPatch& patch, const Vector2& image, double tolerance, d
     along.y >= least.y - slack.y && along.y <= greatest.y + slack.y;
 }
 
-// Bisections until a patch is as small as rounding allows, and between attempts to finish sooner.
+// The number of bisections after which a patch is as small as rounding allows.
 constexpr int Bisections = 110;
+// The number of bisections between attempts to find the preimage by Newton's method.
 constexpr int BisectionsPerAttempt = 6;
 
-// Halves a patch wherever its control points surround an image, and calls found with the middles
-// of small parts, and whether they are as small as they get; stops when that returns true.
+// Bisects a patch recursively where it may contain an image. Calls found(middle, smallest) for
+// parts, where smallest tells whether a part is not bisected further. Stops when found returns
+// true.
 template <typename Found>
 bool Subdivide(
   const CubicPatch& patch, const Vector2& image, double tolerance, int depth, Found&& found)
@@ -209,7 +214,7 @@ Vector2 Solve(const Matrix2& m, const Vector2& v)
   return { Cross(v, m.ImageOfY) / d, Cross(m.ImageOfX, v) / d };
 }
 
-// The edge through which a point relative to corner 0 lies outside farthest, -1 if it is inside.
+// The edge beyond which a point, relative to corner 0, is farthest outside; -1 if it is inside.
 int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
 {
   // Corner 0 is the origin, so a point on an edge is on it from both sides.
@@ -284,7 +289,7 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
     this->Statistics.Bending = this->Bending->Statistics;
     if (this->Statistics.Bending.TookTemplate)
     {
-      // In closed form it is more accurate than through its nodes.
+      // The template is more accurate in closed form than by its nodes.
       this->Bending.reset();
     }
   }
@@ -495,7 +500,7 @@ Vector2 CubicMap::MapPoint(
   if (!this->Bending && this->IsInMiddle(child, l))
   {
     const std::array<Vector2, 3> corners = pair.GetTargetCorners(child);
-    // As MapMiddle does.
+    // The same operations as in MapMiddle.
     return { origin.x + l[1] * corners[1].x + l[2] * corners[2].x,
       origin.y + l[1] * corners[1].y + l[2] * corners[2].y };
   }
@@ -516,7 +521,7 @@ Matrix2 CubicMap::GetDerivative(int triangle, const Vector2& point, CubicTriangl
   const Barycentric l{ 1.0 - first - second, first, second };
   if (this->IsWhole(child))
   {
-    // The net's ordinates are rounded on the scale of the longest edge.
+    // The rounding errors of the net's ordinates are proportional to the longest edge.
     const Vector2 edge = corners[2] - corners[1];
     const double squares =
       Dot(corners[1], corners[1]) + Dot(corners[2], corners[2]) + Dot(edge, edge);
@@ -574,7 +579,7 @@ void CubicMap::Walk(int& triangle, Vector2& point) const
 namespace
 {
 
-/// Calls use(begin, end, triangle) for points in a row that are in one triangle.
+/// Calls use(begin, end, triangle) for consecutive points in the same triangle.
 template <typename Use>
 void ForEachRun(const std::int32_t* triangles, int count, Use&& use)
 {
@@ -649,12 +654,12 @@ void CubicMap::MapPoints(CubicBatch& batch, CubicTriangle& prepared) const
 }
 
 //------------------------------------------------------------------------------
-// Points on their way to their preimages in whole triangles of the refined pair.
+// Points whose preimages are searched for in whole triangles of the refined pair.
 struct CubicMap::Walkers
 {
   int Count = 0;
   std::int32_t Triangles[CubicBatch::Capacity];
-  /// Their numbers in the batch.
+  /// The indices of the points in the batch.
   std::int32_t Numbers[CubicBatch::Capacity];
   CubicWalkers Arrays;
 };
@@ -672,7 +677,7 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
     batch.ImageX[i] = preimage.x;
     batch.ImageY[i] = preimage.y;
   };
-  // What whole vectors read beyond the points.
+  // Whole SIMD vectors read elements beyond the last point.
   const auto fill = [&arrays](int count) {
     for (int i = count; i < count + WidestVector; ++i)
     {
@@ -683,7 +688,7 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
     }
   };
   const auto enter = [&](int i, int triangle, const Vector2& point) {
-    // Newton's method mends the rounding.
+    // Rounding errors of these coordinates are corrected by Newton's method.
     const std::array<Vector2, 3> corners = pair.GetSourceCorners(triangle);
     const double scale = 1.0 / Cross(corners[1], corners[2]);
     const double first = scale * Cross(point, corners[2]);
@@ -706,7 +711,7 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
     const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
     for (int i = begin; i < end; ++i)
     {
-      // Those that start outside do so in the triangle that has most of their neighbors in a row.
+      // If the starting point is outside the triangle, begin in the triangle that contains it.
       if (arrays.States[i] == CubicWalkers::Left)
       {
         int next = t;
@@ -744,7 +749,7 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
           finish(number, next, point);
           continue;
         }
-        // Those that go on take the places of earlier ones.
+        // Points that are not finished are moved to the beginning of the arrays.
         walkers.Numbers[left] = number;
         arrays.Residual[left] = arrays.Residual[i];
         enter(left, next, point);
@@ -856,7 +861,7 @@ bool CubicMap::FindByWalking(
   Vector2 residual;
   Matrix2 derivative;
   double size = std::numeric_limits<double>::infinity();
-  // Whole steps first, on the prepared triangles.
+  // First full steps, on the prepared triangles.
   int at = t;
   Vector2 from = x;
   double lastMove = 0.0;
@@ -875,9 +880,10 @@ bool CubicMap::FindByWalking(
     }
     t = at;
     x = from;
-    // Within one element, the error of a step is about a constant times the square of its length,
-    // and so is the error of the next. That of the last step may be small by chance, if second
-    // derivatives change their sign along it: the next step must be short beside the element, too.
+    // Within one element, the error after a step is about a constant times the square of its
+    // length, which predicts the error after the next step. The error after the last step can be
+    // small by chance if second derivatives change sign along it, so the next step must also be
+    // short compared with the element.
     const double length = MaxNorm(move);
     const bool isSame = at == lastTriangle && prepared.GetLastElement() == lastElement;
     const double next = isSame ? now * (length / lastMove) * (length / lastMove) : now;
@@ -945,7 +951,7 @@ bool CubicMap::FindByWalking(
   }
   if (!(size <= this->ResidualTolerance))
   {
-    // Stuck, or outside the target's domain.
+    // Newton's method has stalled, or the image is outside the target's domain.
     int found = t;
     Vector2 better;
     if (this->SearchPreimage(image, found, better))
@@ -961,7 +967,7 @@ bool CubicMap::FindByWalking(
 }
 
 //------------------------------------------------------------------------------
-// Looks for the preimage in all triangles, nearest neighbors first, by halving control nets.
+// Searches all triangles for the preimage, breadth-first, by bisecting control nets.
 bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& point) const
 {
   const PlanarPair& pair = this->GetFine();
@@ -987,7 +993,7 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
         {
           found = found ||
             Subdivide(patch, local, tolerance, 0, [&](const Vector2& start, bool smallest) {
-              // Newton's method from here, as long as it gains and stays in the element.
+              // Newton's method, while the residual decreases and the point is in the element.
               Vector2 x = start;
               point = sourceOrigin + factor * x;
               double last = std::numeric_limits<double>::infinity();

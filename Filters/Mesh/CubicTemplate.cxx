@@ -13,11 +13,13 @@ namespace homeomorphism
 namespace
 {
 
-// The edge points' distance from a vertex over the length of its shortest edge, the inner points'
-// height over that of the triangle, and the share of the bound that Theorem 1 leaves to the
-// variation of the determinant. Any with a convex middle and Slack < 1 will do; these bend least.
+// The template is valid for all values with a convex middle and Slack < 1. These values result in
+// the least bending.
+// The distance of edge points from a vertex, divided by the length of its shortest edge.
 constexpr double EdgeShare = 0.25;
+// The height of inner points, divided by that of the triangle.
 constexpr double HeightShare = 0.25;
+// The share of the bound of Theorem 1 that is used for the variation of the determinant.
 constexpr double Slack = 0.5;
 
 double Length(const Vector2& v)
@@ -46,8 +48,8 @@ FanSector GetSector(const TriangleCut& cut, const Matrix2& affine, int corner)
     { cut.Along[out], -1.0 * cut.Along[in] }, { cut.Heights[out], cut.Heights[in] } };
 }
 
-// A direction relative to a sector's fan: beside the first ray (0), in the middle (1), beside the
-// last (2).
+// The part of a sector in which a direction lies: beside the first ray (0), in the middle (1), or
+// beside the last ray (2).
 int FindPart(const FanSector& s, const Vector2& point)
 {
   return Cross(s.InnerStart, point) < 0.0 ? 0 : (Cross(point, s.InnerEnd) < 0.0 ? 2 : 1);
@@ -61,8 +63,8 @@ double GetGauge(const FanSector& s, int part, const Vector2& point)
   return Cross(point - Vector2{}, b - a) / Cross(a, b - a);
 }
 
-// The coordinates of a point that rounding has taken out of an element, in it: beside the vertex of
-// endless rings, elements are smaller than rounding, and cubics grow without bound.
+// Moves a point that is outside an element by rounding into the element. Near the vertex of endless
+// rings, elements are smaller than rounding errors, and cubics grow without bound outside them.
 Barycentric Inside(const Barycentric& l)
 {
   if (*std::min_element(l.begin(), l.end()) >= 0.0)
@@ -330,7 +332,7 @@ CubicTemplate::CubicTemplate(
     std::iota(triangles.begin(), triangles.end(), 0);
   }
   LargeVector<double> factors(static_cast<std::size_t>(points), 1.0);
-  // Corners that stray too far are made smaller, until none does.
+  // Shrink the corners in which the map deviates too much, until there are none.
   while (!changed.empty())
   {
     parallelFor(
@@ -358,11 +360,11 @@ CubicTemplate::CubicTemplate(
           if (options.MaximumDeviation < std::numeric_limits<double>::max() &&
             !options.OnlyBoundary)
           {
-            const double strays =
+            const double deviation =
               this->GetDeviation(fans.Get(pair, point), point, exceptions[point].get());
-            // Corners that are not too small for doubles can always be made smaller.
-            factors[point] = strays > options.MaximumDeviation && this->Radii[point] > 1e-300
-              ? std::min(0.5, 0.9 * options.MaximumDeviation / strays)
+            // Corners can be shrunk as long as doubles represent their size.
+            factors[point] = deviation > options.MaximumDeviation && this->Radii[point] > 1e-300
+              ? std::min(0.5, 0.9 * options.MaximumDeviation / deviation)
               : 1.0;
           }
         }
@@ -500,8 +502,8 @@ void CubicTemplate::SetMiddle(int triangle)
 //------------------------------------------------------------------------------
 bool CubicTemplate::TakeMean(int point, const PointFans& fans, LargeArray<Bounds>& bounds)
 {
-  // The least bound that is taken without looking closer, and the greatest condition number of a
-  // derivative with which rounding is certainly far below what is added for it.
+  // The mean is accepted if the bound exceeds enough. Up to this condition number of the
+  // derivative, rounding errors are certainly far below the allowance for rounding.
   constexpr double enough = 0.3;
   constexpr double greatestCondition = 1e4;
   constexpr double rounding = 1e-6;
@@ -713,7 +715,7 @@ Matrix2 CubicTemplate::GetGradient(
   {
     return {};
   }
-  // Across the edge only: w n^T is what the two affine maps differ by.
+  // The derivatives differ only across the edge: the difference of the affine maps is w n^T.
   const Vector2 normal = Normal(cut.Along[(node - 3) / 2]);
   const Matrix2 across = this->GetAffine(neighbor);
   const double d = affine.Determinant();
@@ -738,7 +740,7 @@ CubicElement CubicTemplate::GetElement(
   {
     return result;
   }
-  // At edge points exactly nothing changes along the edge.
+  // At edge points, the derivative along the edge is exactly that of the affine map.
   RightAngle& right = result.Right;
   for (int i = 0; i < 3; ++i)
   {
@@ -774,7 +776,7 @@ void CubicTemplate::EvaluateRings(
   const bool center = !endless && ring >= exception.Rings.GetNumberOfRings();
   ring = center ? exception.Rings.GetNumberOfRings() : ring;
   const double scale = std::pow(VertexRings::Ratio, ring);
-  // Powers of two: nothing is rounded.
+  // The scale is a power of two, so nothing is rounded.
   const Vector2 scaled = (1.0 / scale) * point;
   CubicElement element;
   if (center)
@@ -794,7 +796,7 @@ void CubicTemplate::EvaluateRings(
     const std::array<CubicElement, 6> elements =
       GetRingElements(exception.Fan, outlines[endless ? 0 : ring],
         outlines[endless ? 0 : static_cast<std::size_t>(ring) + 1], sector);
-    // Of the two, the one in which the point is less outside.
+    // Choose the element in which the point is less outside.
     const Barycentric first = ToBarycentric(elements[2 * part].Points, scaled);
     const Barycentric second = ToBarycentric(elements[2 * part + 1].Points, scaled);
     const bool takeFirst = *std::min_element(first.begin(), first.end()) >=

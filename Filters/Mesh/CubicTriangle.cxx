@@ -16,9 +16,10 @@ Vector2 Normal(const Vector2& along)
   return { -along.y, along.x };
 }
 
-/// The elements that are zero at the corners and on the edges, with their derivatives, but for the
-/// derivative across one edge: 9/2 of the opposite corner's barycentric coordinate in its middle.
-/// With the notation of CubicNet, that of edge k is 18 n_i n_j m + 9 (n_i + n_j) m^2 + 6 m^3.
+/// Bubble functions. They and their derivatives are zero at the corners and on the edges, except
+/// for the derivative across one edge. In the middle of that edge, it is 9/2 of the derivative of
+/// the opposite corner's barycentric coordinate. In the notation of CubicNet, the bubble of edge k
+/// is 18 n_i n_j m + 9 (n_i + n_j) m^2 + 6 m^3.
 class EdgeBubbles
 {
 public:
@@ -35,7 +36,7 @@ public:
     return this->M * (18.0 * i * j + this->M * (9.0 * (i + j) + 6.0 * this->M));
   }
 
-  /// By the barycentric coordinates, as if they were independent.
+  /// The derivatives with respect to the barycentric coordinates as independent variables.
   Barycentric GetDerivatives(int k) const
   {
     const double i = this->N[NextCorner(k)];
@@ -65,10 +66,10 @@ private:
 //------------------------------------------------------------------------------
 void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin)
 {
-  this->Now->Elements.emplace_back();
-  Element& made = this->Now->Elements.back();
+  this->Current->Elements.emplace_back();
+  Element& made = this->Current->Elements.back();
   const PlanarPair& pair = this->Template.GetPair();
-  const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Now->Number];
+  const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Current->Number];
   made.Points = points;
   made.Frame = BarycentricFrame(points);
   made.Net = net;
@@ -79,7 +80,7 @@ void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& n
 //------------------------------------------------------------------------------
 void CubicTriangle::Set(int triangle)
 {
-  if (this->Now && this->Now->Number == triangle)
+  if (this->Current && this->Current->Number == triangle)
   {
     return;
   }
@@ -90,32 +91,32 @@ void CubicTriangle::Set(int triangle)
   {
     kept = std::make_unique<Triangle>();
   }
-  this->Now = kept.get();
-  if (this->Now->Number == triangle)
+  this->Current = kept.get();
+  if (this->Current->Number == triangle)
   {
     return;
   }
-  this->Now->Number = triangle;
-  this->Now->Elements.clear();
+  this->Current->Number = triangle;
+  this->Current->Elements.clear();
   const PlanarPair& pair = this->Template.GetPair();
-  this->Now->Affine = this->Template.GetAffine(triangle);
-  this->Now->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
-  if (this->Now->Whole)
+  this->Current->Affine = this->Template.GetAffine(triangle);
+  this->Current->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
+  if (this->Current->Whole)
   {
     this->Make(pair.GetSourceCorners(triangle), this->Bending->Nets[triangle], 0);
     return;
   }
-  this->Now->Cut = this->Template.GetCut(triangle);
-  this->Now->Made.fill(-1);
-  for (EdgeTurn& edge : this->Now->Edges)
+  this->Current->Cut = this->Template.GetCut(triangle);
+  this->Current->Made.fill(-1);
+  for (EdgeTerms& edge : this->Current->Edges)
   {
     edge.IsMade = false;
   }
   for (int c = 0; c < 3; ++c)
   {
-    this->Now->Corners[c].IsMade = false;
-    this->Now->Sides[c][0].IsMade = this->Now->Sides[c][1].IsMade = false;
-    this->Now->InRings[c] =
+    this->Current->Corners[c].IsMade = false;
+    this->Current->Sides[c][0].IsMade = this->Current->Sides[c][1].IsMade = false;
+    this->Current->InRings[c] =
       this->Template.GetKind(pair.Triangles[triangle][c]) != VertexKind::Differentiable;
   }
 }
@@ -123,12 +124,12 @@ void CubicTriangle::Set(int triangle)
 //------------------------------------------------------------------------------
 double CubicTriangle::GetScale() const
 {
-  if (!this->Now->Whole)
+  if (!this->Current->Whole)
   {
-    const std::array<double, 3>& heights = this->Now->Cut.Heights;
+    const std::array<double, 3>& heights = this->Current->Cut.Heights;
     return std::min({ heights[0], heights[1], heights[2] });
   }
-  const std::array<Vector2, 3>& points = this->Now->Elements[0].Points;
+  const std::array<Vector2, 3>& points = this->Current->Elements[0].Points;
   return std::max(
     { std::abs(points[1].x), std::abs(points[1].y), std::abs(points[2].x), std::abs(points[2].y) });
 }
@@ -137,12 +138,12 @@ double CubicTriangle::GetScale() const
 const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point)
 {
   int& number = this->LastElement;
-  if (this->Now->Whole)
+  if (this->Current->Whole)
   {
     number = 0;
-    return &this->Now->Elements[0];
+    return &this->Current->Elements[0];
   }
-  const TriangleCut& cut = this->Now->Cut;
+  const TriangleCut& cut = this->Current->Cut;
   if (!this->Bending)
   {
     number = cut.FindBesideEdges(point);
@@ -150,18 +151,18 @@ const CubicTriangle::Element* CubicTriangle::Find(const Vector2& point)
   }
   number = cut.Find(point);
   const int origin = TriangleCut::GetOrigin(number);
-  if (number < TriangleCut::FirstStrip && this->Now->InRings[origin])
+  if (number < TriangleCut::FirstStrip && this->Current->InRings[origin])
   {
     return nullptr;
   }
-  if (this->Now->Made[number] < 0)
+  if (this->Current->Made[number] < 0)
   {
-    this->Now->Made[number] = static_cast<std::int8_t>(this->Now->Elements.size());
+    this->Current->Made[number] = static_cast<std::int8_t>(this->Current->Elements.size());
     const CubicElement element = this->Bending->GetElement(
-      this->Template.GetPair(), cut, this->Now->Affine, this->Now->Number, number);
+      this->Template.GetPair(), cut, this->Current->Affine, this->Current->Number, number);
     this->Make(element.Points, CubicNet(element), origin);
   }
-  return &this->Now->Elements[this->Now->Made[number]];
+  return &this->Current->Elements[this->Current->Made[number]];
 }
 
 //------------------------------------------------------------------------------
@@ -178,7 +179,7 @@ Vector2 CubicTriangle::Map(const Vector2& point)
 //------------------------------------------------------------------------------
 Matrix2 CubicTriangle::GetTemplateDerivative(const Vector2& point)
 {
-  this->LastElement = this->Now->Cut.FindBesideEdges(point);
+  this->LastElement = this->Current->Cut.FindBesideEdges(point);
   Matrix2 derivative;
   this->MapInClosedForm(point, &derivative);
   return derivative;
@@ -192,7 +193,7 @@ Vector2 CubicTriangle::GetResidual(
   Vector2 residual;
   const int last = this->LastElement;
   const bool isTried = isNear && !this->Bending && last < TriangleCut::FirstMiddle &&
-    !(last < TriangleCut::FirstStrip && this->Now->InRings[TriangleCut::GetOrigin(last)]);
+    !(last < TriangleCut::FirstStrip && this->Current->InRings[TriangleCut::GetOrigin(last)]);
   if (isTried)
   {
     residual = image - this->MapInClosedForm(point, &derivative);
@@ -218,14 +219,14 @@ Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative
 {
   const int number = this->LastElement;
   const int origin = TriangleCut::GetOrigin(number);
-  if (number < TriangleCut::FirstStrip && this->Now->InRings[origin])
+  if (number < TriangleCut::FirstStrip && this->Current->InRings[origin])
   {
     const PlanarPair& pair = this->Template.GetPair();
-    const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Now->Number];
+    const std::array<std::int32_t, 3>& corners = pair.Triangles[this->Current->Number];
     Vector2 image;
     Matrix2 there;
     this->Template.EvaluateRings(
-      this->Now->Number, origin, point - this->Now->Cut.Corners[origin], image, there);
+      this->Current->Number, origin, point - this->Current->Cut.Corners[origin], image, there);
     if (derivative)
     {
       *derivative = there;
@@ -234,9 +235,9 @@ Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative
   }
   if (derivative)
   {
-    *derivative = this->Now->Affine;
+    *derivative = this->Current->Affine;
   }
-  const Vector2 image = this->Now->Affine * point;
+  const Vector2 image = this->Current->Affine * point;
   if (number >= TriangleCut::FirstMiddle)
   {
     return image;
@@ -247,29 +248,29 @@ Vector2 CubicTriangle::MapInClosedForm(const Vector2& point, Matrix2* derivative
 }
 
 //------------------------------------------------------------------------------
-const CubicTriangle::EdgeTurn& CubicTriangle::GetEdge(int k)
+const CubicTriangle::EdgeTerms& CubicTriangle::GetEdge(int k)
 {
-  EdgeTurn& edge = this->Now->Edges[k];
+  EdgeTerms& edge = this->Current->Edges[k];
   if (edge.IsMade)
   {
     return edge;
   }
   edge.IsMade = true;
-  const TriangleCut& cut = this->Now->Cut;
+  const TriangleCut& cut = this->Current->Cut;
   const double height = cut.Heights[k];
   const double strip = cut.Lengths[k] - cut.Radii[NextCorner(k)] - cut.Radii[PreviousCorner(k)];
   edge.InverseHeight = 1.0 / height;
   edge.InverseStrip = 1.0 / strip;
   const double mu = height * edge.InverseStrip;
   edge.StripShare = 1.0 / (1.0 + mu * mu);
-  edge.Turn = {};
-  const int neighbor = this->Template.GetPair().Neighbors[this->Now->Number][k];
+  edge.Jump = {};
+  const int neighbor = this->Template.GetPair().Neighbors[this->Current->Number][k];
   if (neighbor >= 0)
   {
     const Matrix2& across = this->Template.GetAffine(neighbor);
-    const double d = this->Now->Affine.Determinant();
+    const double d = this->Current->Affine.Determinant();
     const double share = d / (d + across.Determinant());
-    edge.Turn = (share * height) * ((across - this->Now->Affine) * Normal(cut.Along[k]));
+    edge.Jump = (share * height) * ((across - this->Current->Affine) * Normal(cut.Along[k]));
   }
   return edge;
 }
@@ -280,8 +281,8 @@ const CubicTriangle::EdgeTurn& CubicTriangle::GetEdge(int k)
 Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2* derivative)
 {
   const int k = (number - TriangleCut::FirstStrip) / 2;
-  const TriangleCut& cut = this->Now->Cut;
-  const EdgeTurn& edge = this->GetEdge(k);
+  const TriangleCut& cut = this->Current->Cut;
+  const EdgeTerms& edge = this->GetEdge(k);
   const Vector2 d = point - cut.Corners[NextCorner(k)];
   const double s = (Dot(cut.Along[k], d) - cut.Radii[NextCorner(k)]) * edge.InverseStrip;
   const double t = Cross(cut.Along[k], d) * edge.InverseHeight;
@@ -301,31 +302,31 @@ Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2*
     const double byT =
       (rest * (1.0 - 3.0 * t) + factor * (isUpper ? first : second)) * edge.InverseHeight;
     *derivative =
-      *derivative + OuterProduct(edge.Turn, byS * cut.Along[k] + byT * Normal(cut.Along[k]));
+      *derivative + OuterProduct(edge.Jump, byS * cut.Along[k] + byT * Normal(cut.Along[k]));
   }
-  return (t * rest * rest + factor * bubbles[1]) * edge.Turn;
+  return (t * rest * rest + factor * bubbles[1]) * edge.Jump;
 }
 
 //------------------------------------------------------------------------------
-const CubicTriangle::CornerTurn& CubicTriangle::GetCorner(int c)
+const CubicTriangle::CornerTerms& CubicTriangle::GetCorner(int c)
 {
-  CornerTurn& corner = this->Now->Corners[c];
+  CornerTerms& corner = this->Current->Corners[c];
   if (corner.IsMade)
   {
     return corner;
   }
   constexpr double eighteenth = 1.0 / 18.0;
   corner.IsMade = true;
-  const TriangleCut& cut = this->Now->Cut;
-  const int id = this->Template.GetPair().Triangles[this->Now->Number][c];
-  const Matrix2 turn = this->Template.GetDerivative(id) - this->Now->Affine;
+  const TriangleCut& cut = this->Current->Cut;
+  const int id = this->Template.GetPair().Triangles[this->Current->Number][c];
+  const Matrix2 difference = this->Template.GetDerivative(id) - this->Current->Affine;
   const Vector2 a = cut.GetNode(9 + 2 * PreviousCorner(c), c);
   const Vector2 b = cut.GetNode(10 + 2 * NextCorner(c), c);
   const double inverse = 1.0 / Cross(a, b);
-  const Vector2 imageOfA = turn * a;
-  const Vector2 imageOfB = turn * b;
+  const Vector2 imageOfA = difference * a;
+  const Vector2 imageOfB = difference * b;
   const double product = 3.0 * Dot(a, b);
-  corner.Turn = turn;
+  corner.Difference = difference;
   corner.ByFirst = { inverse * b.y, -inverse * b.x };
   corner.BySecond = { -inverse * a.y, inverse * a.x };
   corner.BesideFirst = eighteenth * (imageOfB + (2.0 - product / Dot(a, a)) * imageOfA);
@@ -334,49 +335,49 @@ const CubicTriangle::CornerTurn& CubicTriangle::GetCorner(int c)
 }
 
 //------------------------------------------------------------------------------
-const CubicTriangle::SideTurn& CubicTriangle::GetSide(int c, bool isFirst)
+const CubicTriangle::SideTerms& CubicTriangle::GetSide(int c, bool isFirst)
 {
-  SideTurn& side = this->Now->Sides[c][isFirst ? 0 : 1];
+  SideTerms& side = this->Current->Sides[c][isFirst ? 0 : 1];
   if (side.IsMade)
   {
     return side;
   }
   side.IsMade = true;
-  const TriangleCut& cut = this->Now->Cut;
+  const TriangleCut& cut = this->Current->Cut;
   const int k = isFirst ? PreviousCorner(c) : NextCorner(c);
-  const EdgeTurn& edge = this->GetEdge(k);
-  const int id = this->Template.GetPair().Triangles[this->Now->Number][c];
+  const EdgeTerms& edge = this->GetEdge(k);
+  const int id = this->Template.GetPair().Triangles[this->Current->Number][c];
   const Vector2 tangent = (isFirst ? 1.0 : -1.0) * cut.Along[k];
   const Vector2 normal = Normal(cut.Along[k]);
   const double inverseRadius = 1.0 / cut.Radii[c];
   const double mu = cut.Heights[k] * inverseRadius;
   const double share = 1.0 / (1.0 + mu * mu);
-  side.Turn = this->Template.GetDerivative(id) - this->Now->Affine;
-  const Vector2 along = cut.Radii[c] * (side.Turn * tangent);
-  const Vector2 across = cut.Heights[k] * (side.Turn * normal);
+  side.Difference = this->Template.GetDerivative(id) - this->Current->Affine;
+  const Vector2 along = cut.Radii[c] * (side.Difference * tangent);
+  const Vector2 across = cut.Heights[k] * (side.Difference * normal);
   side.ByS = inverseRadius * tangent;
   side.ByT = edge.InverseHeight * normal;
   side.BesideDiagonal = ((mu * mu * share) / 6.0) * along + (1.0 / 9.0 - share / 6.0) * across;
-  side.BesideEdge = (1.0 / 18.0) * (across + edge.Turn);
-  side.OfEdge = edge.Turn;
+  side.BesideEdge = (1.0 / 18.0) * (across + edge.Jump);
+  side.OfEdge = edge.Jump;
   return side;
 }
 
 //------------------------------------------------------------------------------
 // Beside a corner whose derivative differs from L by B, the map is L x + l_0^2 B x with bubbles
-// that make the normal derivatives on the corner's edges linear. Elements with a right angle have
-// the part of the edge besides.
+// that make the normal derivatives on the corner's edges linear. Elements with a right angle
+// also have the term of the edge.
 Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2* derivative)
 {
   const int c = number / 3;
-  const Vector2 x = point - this->Now->Cut.Corners[c];
+  const Vector2 x = point - this->Current->Cut.Corners[c];
   if (number % 3 == 1)
   {
-    const CornerTurn& corner = this->GetCorner(c);
+    const CornerTerms& corner = this->GetCorner(c);
     const double first = Dot(corner.ByFirst, x);
     const double second = Dot(corner.BySecond, x);
     const double l = 1.0 - first - second;
-    const Vector2 linear = corner.Turn * x;
+    const Vector2 linear = corner.Difference * x;
     const EdgeBubbles bubbles({ l, first, second });
     this->LeastCoordinate = bubbles.GetLeastCoordinate();
     if (derivative)
@@ -388,18 +389,18 @@ Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2
         (besideSecond[1] - besideSecond[0]) * corner.BesideSecond;
       const Vector2 bySecond = common + (besideFirst[2] - besideFirst[0]) * corner.BesideFirst +
         (besideSecond[2] - besideSecond[0]) * corner.BesideSecond;
-      *derivative = *derivative + (l * l) * corner.Turn + OuterProduct(byFirst, corner.ByFirst) +
-        OuterProduct(bySecond, corner.BySecond);
+      *derivative = *derivative + (l * l) * corner.Difference +
+        OuterProduct(byFirst, corner.ByFirst) + OuterProduct(bySecond, corner.BySecond);
     }
     return (l * l) * linear + bubbles[2] * corner.BesideFirst + bubbles[1] * corner.BesideSecond;
   }
   // The vertex, the edge point and the inner point are corners 0, 1 and 2; s runs along the edge
   // and t across, from 0 to 1.
-  const SideTurn& side = this->GetSide(c, number % 3 == 0);
+  const SideTerms& side = this->GetSide(c, number % 3 == 0);
   const double s = Dot(side.ByS, x);
   const double t = Dot(side.ByT, x);
   const double l = 1.0 - s;
-  const Vector2 linear = side.Turn * x;
+  const Vector2 linear = side.Difference * x;
   const EdgeBubbles bubbles({ l, s - t, t });
   this->LeastCoordinate = bubbles.GetLeastCoordinate();
   if (derivative)
@@ -413,8 +414,8 @@ Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2
     const Vector2 byT = (diagonal[2] - diagonal[1]) * side.BesideDiagonal +
       (beside[2] - beside[1]) * side.BesideEdge +
       ((s - t) * (s - 3.0 * t) + (1.0 / 9.0) * (across[2] - across[1])) * side.OfEdge;
-    *derivative =
-      *derivative + (l * l) * side.Turn + OuterProduct(byS, side.ByS) + OuterProduct(byT, side.ByT);
+    *derivative = *derivative + (l * l) * side.Difference + OuterProduct(byS, side.ByS) +
+      OuterProduct(byT, side.ByT);
   }
   return (l * l) * linear + bubbles[1] * side.BesideDiagonal + bubbles[2] * side.BesideEdge +
     ((s - t) * (s - t) * t + (1.0 / 9.0) * bubbles[0]) * side.OfEdge;

@@ -46,7 +46,7 @@ public:
   /// The corners of the triangle, relative to corner 0.
   const std::array<Vector2, 3>& GetCorners() const
   {
-    return this->Now->Whole ? this->Now->Elements[0].Points : this->Now->Cut.Corners;
+    return this->Current->Whole ? this->Current->Elements[0].Points : this->Current->Cut.Corners;
   }
   /// The number, in the cut, of the element that contained the last point.
   int GetLastElement() const { return this->LastElement; }
@@ -76,12 +76,12 @@ private:
   };
 
   /// The data of the template's closed form along an edge.
-  struct EdgeTurn
+  struct EdgeTerms
   {
     bool IsMade = false;
     /// w c m: the jump w of the derivative across the edge, times the fraction c of it at the edge
     /// points, times the height m.
-    Vector2 Turn;
+    Vector2 Jump;
     double InverseHeight = 0.0;
     /// The reciprocal of the distance between the edge points, and 1 / (1 + mu^2).
     double InverseStrip = 0.0;
@@ -90,11 +90,11 @@ private:
 
   /// The data of the closed form in the middle element of a corner. The vertex is corner 0 of the
   /// element.
-  struct CornerTurn
+  struct CornerTerms
   {
     bool IsMade = false;
     /// The derivative at the vertex minus the affine one.
-    Matrix2 Turn;
+    Matrix2 Difference;
     /// The gradients of the barycentric coordinates of corners 1 and 2.
     Vector2 ByFirst;
     Vector2 BySecond;
@@ -104,10 +104,10 @@ private:
   };
 
   /// The data of the closed form in an element of a corner with a right angle.
-  struct SideTurn
+  struct SideTerms
   {
     bool IsMade = false;
-    Matrix2 Turn;
+    Matrix2 Difference;
     /// The gradients of s along the edge and t across it, both from 0 to 1.
     Vector2 ByS;
     Vector2 ByT;
@@ -124,9 +124,9 @@ private:
   const Element* Find(const Vector2& point);
   /// The image of a point for which Find returns null. @a derivative may be null.
   Vector2 MapInClosedForm(const Vector2& point, Matrix2* derivative);
-  const EdgeTurn& GetEdge(int k);
-  const CornerTurn& GetCorner(int c);
-  const SideTurn& GetSide(int c, bool isFirst);
+  const EdgeTerms& GetEdge(int k);
+  const CornerTerms& GetCorner(int c);
+  const SideTerms& GetSide(int c, bool isFirst);
   /// The template minus the affine map. Adds its derivative to @a derivative unless that is null.
   Vector2 DeviateInStrip(const Vector2& point, int number, Matrix2* derivative);
   Vector2 DeviateInCorner(const Vector2& point, int number, Matrix2* derivative);
@@ -139,10 +139,10 @@ private:
     Matrix2 Affine;
     TriangleCut Cut;
     std::array<std::uint8_t, 3> InRings{};
-    std::array<EdgeTurn, 3> Edges;
-    std::array<CornerTurn, 3> Corners;
+    std::array<EdgeTerms, 3> Edges;
+    std::array<CornerTerms, 3> Corners;
     /// For each corner, along the edge that starts at it, and along the edge that ends at it.
-    std::array<std::array<SideTurn, 2>, 3> Sides;
+    std::array<std::array<SideTerms, 2>, 3> Sides;
     /// The computed elements (a whole triangle has only one), and for each element of a cut
     /// triangle its index among them, or -1.
     std::vector<Element> Elements;
@@ -158,7 +158,7 @@ private:
   /// Allocated when the first triangle is set: whole triangles are mapped without it.
   std::vector<std::unique_ptr<Triangle>> Triangles;
   std::size_t Kept;
-  Triangle* Now = nullptr;
+  Triangle* Current = nullptr;
 };
 
 } // namespace homeomorphism

@@ -20,7 +20,7 @@ namespace homeomorphism
 namespace
 {
 
-/// The points of a block in runs: points in a row that are in one triangle and no corners of it.
+/// The runs of a block: consecutive points in the same triangle that are not its corners.
 class PointRuns
 {
 public:
@@ -57,8 +57,7 @@ public:
     }
   }
 
-  /// The same, which calls prefetch(begin, triangle) for each run in advance, to hide memory
-  /// latency.
+  /// Also calls prefetch(begin, triangle) for each run in advance, to hide memory latency.
   template <typename Prefetch, typename Use, typename UseOther>
   void ForEach(Prefetch&& prefetch, Use&& use, UseOther&& useOther) const
   {
@@ -104,7 +103,7 @@ struct BlockCoordinates
   std::pair<double, double> Get(int i) const { return { this->Apex[i], this->Second[i] }; }
 };
 
-/// The same of points that the Smooth system has mapped.
+/// The coordinates, as in BlockCoordinates, of points that the Smooth system has mapped.
 struct SmoothCoordinates
 {
   const SmoothBatch& Batch;
@@ -173,8 +172,8 @@ double Determinant(const Differential&, const Differential&, const TriangleShape
   return matrix.Determinant();
 }
 
-// The matrix's own cancels where a triangle or its neighbor is so thin that the columns are almost
-// parallel; those of these charts are products without cancellation.
+// The determinant of the matrix suffers from cancellation if a triangle or its neighbor is so thin
+// that the columns are almost parallel. The determinants of these charts are products.
 double Determinant(const LinearChart::Differential&, const LinearChart::Differential&,
   const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
 {
@@ -207,7 +206,7 @@ std::shared_ptr<const Homeomorphism> Homeomorphism::Make(vtkPolyData* source, vt
   }
 
   std::vector<std::uint8_t> mappedByLinear;
-  // Seen from the incenter every triangle is concordant.
+  // If the center is the incenter, every triangle is concordant.
   if (options.System == CoordinateSystem::Contour && options.Center == CenterPoint::Centroid)
   {
     for (const Domain domain : domains)
@@ -408,7 +407,7 @@ void Homeomorphism::MapByContours(Domain from, PointBlock& block) const
     ContourChart From;
     ContourChart To;
   };
-  // Of the triangles, each point's triangle being one of them.
+  // The charts of each run, at the index of its first point; and for each point, its charts.
   LargeArray<ChartPair> made(block.Count);
   std::array<const ContourChart*, PointBlock::Capacity> froms{};
   std::array<const ContourChart*, PointBlock::Capacity> tos{};
@@ -555,7 +554,7 @@ bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, doub
     return this->MapByCubic(from, surfacePoint, image, nullptr);
   }
   const TriangleIndex t = surfacePoint.Triangle;
-  // Smooth without the charts, of which one strip is needed.
+  // The Smooth system needs only one strip, so no charts are constructed.
   const Vector2 inPlane = this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth
     ? ToFrame(target.GetShape(t), this->MapByStrip(from, surfacePoint))
     : this->MapInFrame(from, t, surfacePoint.Point.InPlane);
@@ -592,7 +591,7 @@ Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle,
     from, triangle, matrix, Determinant(differential, other, shape, otherShape, matrix));
 }
 
-/// The derivative of the Smooth map, without the charts, of which one strip is needed.
+/// The derivative of the Smooth map. Only one strip is needed, so no charts are constructed.
 Jacobian Homeomorphism::DeriveByStrip(
   Domain from, TriangleIndex triangle, int corner, const CornerCoordinates& reference) const
 {
@@ -738,7 +737,7 @@ Jacobian Homeomorphism::FromPlanes(
     const Matrix2 inFrames{ toFrame(inPlanes * frame.Tangent), toFrame(inPlanes * inward) };
     return this->FromFrames(from, triangle, inFrames, inFrames.Determinant());
   }
-  // Powers of two: nothing is rounded.
+  // The scales are powers of two, so nothing is rounded.
   const double rescale = source.GetScale() * target.GetInverseScale();
   const double sense = source.IsColumnar() ? 1.0 : frame.Orientation;
   const double otherSense = target.IsColumnar() ? 1.0 : other.Orientation;
@@ -755,14 +754,14 @@ Jacobian Homeomorphism::FromFrames(
 {
   const MeshGeometry& source = this->Pair->GetGeometry(from);
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  // Powers of two: nothing is rounded.
+  // The scales are powers of two, so nothing is rounded.
   const double rescale = source.GetScale() * target.GetInverseScale();
   Jacobian jacobian;
   jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
     target.GetHandedness(triangle);
   if (source.IsHorizontal() && target.IsHorizontal())
   {
-    // As below, of axes with zeros.
+    // The product below, without the components of the axes that are zero.
     const PlaneFrame& frame = source.GetPlaneFrame(triangle);
     const PlaneFrame& other = target.GetPlaneFrame(triangle);
     const Vector2 inward{ -frame.Orientation * frame.Tangent.y,

@@ -145,7 +145,7 @@ private:
   /// lengths of the input's space, not of either normalized space.
   double OffsetOfImage(Domain from, double offset) const
   {
-    // Powers of two: nothing is rounded.
+    // The scales are powers of two, so nothing is rounded.
     return offset * this->Pair->GetGeometry(from).GetInverseScale() *
       this->Pair->GetGeometry(Opposite(from)).GetScale();
   }

@@ -27,8 +27,8 @@ void* AllocateLarge(std::size_t bytes)
   constexpr std::size_t largePage = std::size_t(1) << 21;
   if (bytes >= largePage / 2)
   {
-    // For the huge pages of which the array is a part, too: arrays often lie side by side. Failure
-    // is harmless.
+    // Include huge pages that contain only a part of the array, because arrays often lie side by
+    // side. Failure is harmless.
     const std::size_t before = reinterpret_cast<std::uintptr_t>(memory) % largePage;
     const std::size_t pages = (before + bytes + largePage - 1) / largePage;
     madvise(static_cast<char*>(memory) - before, pages * largePage, MADV_HUGEPAGE);

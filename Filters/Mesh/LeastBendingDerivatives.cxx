@@ -15,13 +15,14 @@ namespace homeomorphism
 namespace
 {
 
-constexpr int MostSteps = 1000;
-/// Of the squared residual at first, what may still be. It is about the energy that is too much:
-/// far less than is seen, and derivatives are off by about a ten thousandth of what they were at
-/// first. The certificate is that of the derivatives that are found, so it does not depend on this.
+constexpr int MaximumSteps = 1000;
+/// The iteration ends when the squared residual is this share of the initial one. This is about the
+/// relative excess of the energy, which is not visible. The derivatives then have about a ten
+/// thousandth of their initial errors. The certificate is computed from the derivatives that are
+/// found, so it does not depend on this.
 constexpr double EnoughResidual = 1e-10;
 
-/// A matrix by rows, for two derivatives of one component; both components have the same.
+/// A matrix by rows that acts on the two derivatives of a component, the same for both components.
 using Block = std::array<double, 4>;
 
 Matrix2 operator*(const Block& b, const Matrix2& m)
@@ -40,21 +41,21 @@ Block operator*(const Block& a, const Block& b)
     a[2] * b[1] + a[3] * b[3] };
 }
 
-/// Each component scaled by its own number.
+/// Scales each component by its own factor.
 Matrix2 Scaled(const Vector2& s, const Matrix2& m)
 {
   return { { s.x * m.ImageOfX.x, s.y * m.ImageOfX.y }, { s.x * m.ImageOfY.x, s.y * m.ImageOfY.y } };
 }
 
-/// Adds the products of two points' derivatives, each component for itself.
+/// Adds the inner product of two points' derivatives, separately for each component.
 void AddProduct(Vector2& sum, const Matrix2& a, const Matrix2& b)
 {
   sum.x += a.ImageOfX.x * b.ImageOfX.x + a.ImageOfY.x * b.ImageOfY.x;
   sum.y += a.ImageOfX.y * b.ImageOfX.y + a.ImageOfY.y * b.ImageOfY.y;
 }
 
-/// What the points [begin, end) add to the product of two vectors of derivatives, after it has set
-/// the image of one, @a step, by the matrix. The blocks of the points themselves are the identity.
+/// Sets the rows [begin, end) of @a image, the product of the matrix and @a step. Returns their
+/// contribution to the inner product of @a step and @a image. The diagonal blocks are the identity.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 Vector2 Multiply(const std::int32_t* first, const std::int32_t* columns, const Block* blocks,
   const Matrix2* step, Matrix2* image, std::size_t begin, std::size_t end)
@@ -173,12 +174,12 @@ private:
   const ParallelFor& Parallel;
   const std::size_t Count;
   LeastBendingDerivatives Result;
-  /// Of each point, where its neighbors begin among Columns and Blocks.
+  /// For each point, the index of its first neighbor in Columns and Blocks.
   LargeArray<std::int32_t> First;
   LargeArray<std::int32_t> Columns;
   LargeArray<Block> Blocks;
-  /// Of each point, the block of the point itself, and then the block that makes it the identity in
-  /// the directions in which the derivative is unknown, and zero in others.
+  /// The diagonal block of each point. After Normalize, the transformation that makes it the
+  /// identity in the directions in which the derivative is unknown, and zero in other directions.
   LargeArray<Block> Own;
   LargeArray<Matrix2> Residual;
   std::vector<Vector2> Sums;
@@ -303,7 +304,8 @@ void Solver::Assemble()
 }
 
 //------------------------------------------------------------------------------
-// Unknowns in which the block of every point with itself is the identity.
+// Block Jacobi preconditioning: transforms the unknowns so that the diagonal blocks are the
+// identity.
 void Solver::Normalize()
 {
   this->ForAll([this](int point) {
@@ -322,7 +324,7 @@ void Solver::Normalize()
     }
     else
     {
-      // The inverse of Cholesky's factor.
+      // The inverse of the Cholesky factor.
       const double first = std::sqrt(own[0]);
       const double off = own[1] / first;
       const double second = std::sqrt(own[3] - off * off);
@@ -340,7 +342,7 @@ void Solver::Normalize()
 }
 
 //------------------------------------------------------------------------------
-// Both components at once, each with its own steps.
+// Conjugate gradients for both components at once, each with its own step lengths.
 void Solver::Iterate()
 {
   LargeArray<Matrix2> step(this->Count, this->Scratch);
@@ -352,7 +354,7 @@ void Solver::Iterate()
     AddProduct(sum, step[point], step[point]);
   });
   const Vector2 start = product;
-  for (int n = 0; n < MostSteps &&
+  for (int n = 0; n < MaximumSteps &&
        (product.x > EnoughResidual * start.x || product.y > EnoughResidual * start.y);
        ++n)
   {

@@ -20,7 +20,7 @@ namespace homeomorphism
 namespace
 {
 
-/// A cross product as if in doubled precision (Ogita, Rump and Oishi 2005).
+/// A dot product as if in doubled precision (Ogita, Rump and Oishi 2005).
 double AccurateDot3(const Vector3& a, const Vector3& b)
 {
   double sum = 0.0;
@@ -286,7 +286,8 @@ void MeshGeometry::FindPlane(
   {
     return;
   }
-  // A mesh that is not planar to rounding, but to a millionth of its size, was meant to be planar.
+  // A mesh that is planar to a millionth of its size, but not to rounding, was probably meant to be
+  // planar.
   constexpr double nearly = 1e-6;
   double largestDistance = 0.0;
   for (std::size_t i = 0; i < used.size(); ++i)
@@ -307,7 +308,7 @@ void MeshGeometry::FindPlane(
   int main = 0;
   for (const int axis : { 1, 2 })
   {
-    // Rounding does not decide between two equally close axes.
+    // The factor keeps rounding from deciding between two equally close axes.
     main = std::abs(normal[axis]) >= (1.0 - 1e-6) * std::abs(normal[main]) ? axis : main;
   }
   const bool byCompanion =
@@ -339,7 +340,7 @@ void MeshGeometry::FindThickness(
     return greatest - least;
   };
   this->Thickness = thicknessAlong(normal);
-  // A plane parallel to two axes, if there is one almost as near, is the one that was meant.
+  // Prefer a plane parallel to two axes if there is one that is almost as near.
   for (int axis = 0; axis < 3; ++axis)
   {
     Vector3 direction{};
@@ -539,7 +540,7 @@ void MeshGeometry::ComputePlaneFrames(
       continue;
     }
     const int i = t - begin;
-    // Opposite the longest edge, the first of equals.
+    // The corner opposite the longest edge, the first one of equal edges.
     int apex = views[1].Length[i] > views[0].Length[i] ? 1 : 0;
     apex = views[2].Length[i] > views[apex].Length[i] ? 2 : apex;
     const TriangleShape shape =

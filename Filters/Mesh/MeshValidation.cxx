@@ -46,7 +46,7 @@ void Report(MeshDiagnostic::Kind kind, MeshDiagnostic::Mesh where, std::vector<v
   diagnostics.push_back(std::move(diagnostic));
 }
 
-/// Adds a defect of a mesh as a whole, of which two numbers are known.
+/// Adds a defect of a mesh as a whole that is described by two numbers.
 void ReportCounts(MeshDiagnostic::Kind kind, MeshDiagnostic::Mesh where, vtkIdType first,
   vtkIdType second, MeshDiagnostics& diagnostics)
 {
@@ -138,7 +138,7 @@ void ReadPolygons(vtkAOSDataArrayTemplate<Id>* offsetArray,
 
 /// Whether the interiors of two triangles of the plane intersect: they do not if the line through
 /// an edge of one separates them.
-bool InteriorsMeet(const MeshGeometry& geometry, const Triangulation::Corners& first,
+bool InteriorsIntersect(const MeshGeometry& geometry, const Triangulation::Corners& first,
   const Triangulation::Corners& second)
 {
   const auto separates = [&geometry](
@@ -180,7 +180,7 @@ bool HasFold(const Triangulation& triangulation, const MeshGeometry& geometry, T
   return false;
 }
 
-/// Whether there are such triangles.
+/// Whether any triangle has a fold.
 bool HasFolds(const Triangulation& triangulation, const MeshGeometry& geometry)
 {
   if (!triangulation.HasMixedWinding())
@@ -245,8 +245,8 @@ std::vector<BoundarySegment> FindBoundary(
   return boundary;
 }
 
-/// How far one of two triangles whose interiors meet has to be moved until they do not: the least
-/// over all edges of how far the other triangle reaches across the edge.
+/// The penetration depth of two triangles whose interiors intersect: the smallest distance, over
+/// all edges, that the other triangle extends across the edge.
 double DepthOfOverlap(const MeshGeometry& geometry, const Triangulation::Corners& first,
   const Triangulation::Corners& second)
 {
@@ -441,7 +441,8 @@ Overlaps FindOverlapping(
   {
     return overlaps;
   }
-  // Interiors meet: name all triangles concerned. So many overlaps of a triangle are measured.
+  // Interiors intersect, so find all triangles concerned. The depth of at most this many overlaps
+  // of a triangle is measured.
   constexpr int measured = 16;
   const double rounding = geometry.GetRounding();
   const auto areTwins = [&triangulation](TriangleIndex t, TriangleIndex other) {
@@ -460,7 +461,7 @@ Overlaps FindOverlapping(
     int found = 0;
     location.VisitNear(BoxAround(geometry, corners), [&](TriangleIndex other) {
       const Triangulation::Corners& others = triangulation.GetCorners(other);
-      if (other == t || !InteriorsMeet(geometry, corners, others))
+      if (other == t || !InteriorsIntersect(geometry, corners, others))
       {
         return true;
       }

@@ -75,9 +75,10 @@ struct Nearest
   }
 };
 
-/// Sets the members of a block for the points from @a begin on, up to the first that is not for
-/// certain in the interior of a triangle or is higher over the plane than @a highest. Returns the
-/// number of that one, @a end if there is none.
+/// Sets the members of a block for the points from @a begin on that are certainly in the interior
+/// of a triangle and at most @a highest above the plane. Returns the number of the first other
+/// point, or
+/// @a end if there is none.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 int FindRun(const PlaneFrame& frame, const double normalized[3][PointBlock::Size], int begin,
   int end, double highest, PointBlock& block)
@@ -98,7 +99,7 @@ int FindRun(const PlaneFrame& frame, const double normalized[3][PointBlock::Size
     block.Apex[i] = relation.Apex;
     block.First[i] = relation.First;
     block.Second[i] = relation.Second;
-    // A height that is not a number is too high. No branches, which would keep points apart.
+    // A NaN height counts as too high. Branches would prevent vectorization.
     const double margin = std::abs(height[i]) <= highest ? relation.Margin : infinity;
     isIn[i] = relation.Least > margin ? 1 : 0;
   }
@@ -167,7 +168,7 @@ Box<2> PointLocation::PlaneBox(TriangleIndex triangle) const
   return box;
 }
 
-/// The mean width and height of triangles, of a sample of a thousand.
+/// The mean width and height of the triangles in a sample of a thousand.
 Vector2 PointLocation::GetMeanExtent() const
 {
   const TriangleIndex count = this->Topology.GetNumberOfTriangles();
@@ -191,7 +192,7 @@ void PointLocation::PlantSeeds()
   const double width = bounds.Greatest[0] - bounds.Least[0];
   const double height = bounds.Greatest[1] - bounds.Least[1];
   const double cells = 0.5 * static_cast<double>(this->Topology.GetNumberOfTriangles());
-  // Cells are squares, or as long and as wide as triangles that are long.
+  // Cells are squares or, if triangles are elongated, have the proportions of the triangles.
   const Vector2 extent = this->GetMeanExtent();
   const bool isLong = !(std::max(extent.x, extent.y) <= 2.0 * std::min(extent.x, extent.y));
   const double columns = std::sqrt(cells * (width / height) * (isLong ? extent.y / extent.x : 1.0));
@@ -232,7 +233,6 @@ void PointLocation::FillSeeds()
 {
   const auto columns = static_cast<std::size_t>(this->SeedColumns);
   const std::size_t cells = this->Seeds.size();
-  // Where triangles are about as long as wide, few cells are empty.
   const auto empty =
     static_cast<std::size_t>(std::count(this->Seeds.begin(), this->Seeds.end(), -1));
   if (empty == cells)
@@ -241,7 +241,8 @@ void PointLocation::FillSeeds()
   }
   if (4 * empty < cells)
   {
-    // The triangle of the cell before is near enough, in its row or in the row before.
+    // If triangles are not elongated, few cells are empty. The triangle of the previous cell, in
+    // its row or in the previous row, is near enough.
     for (std::size_t row = 0; empty > 0 && row < cells; row += columns)
     {
       TriangleIndex last = -1;
@@ -255,9 +256,9 @@ void PointLocation::FillSeeds()
     }
     return;
   }
-  // Row by row, to and fro, from the first seed to the last row and then to the first one, walks go
-  // to the middle of each empty cell from the cell before or from the one beside it in the row
-  // before. The total number of steps is limited.
+  // Walk to the middle of each empty cell, from the previous cell or from its neighbor in the
+  // previous row. Rows are traversed in alternating directions, from the first seed to the last row
+  // and then back to the first row. The total number of steps is limited.
   std::int64_t steps = std::int64_t(128) * this->Topology.GetNumberOfTriangles();
   const auto cellAt = [columns](std::size_t n) {
     const std::size_t row = n / columns;
@@ -321,7 +322,7 @@ SurfacePoint PointLocation::Find(
 {
   if (hint >= 0 && this->MayWalk(normalized, tolerance) && !this->Topology.IsMasked(hint))
   {
-    // Most points are in the triangle of the last one or near it.
+    // Most points are in or near the triangle of the previous point.
     PlaneRelation relation;
     int steps = this->LongestWalk;
     const TriangleIndex found =
@@ -530,7 +531,7 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
   double normalized[3][PointBlock::Size];
   this->Geometry.ToNormalized(
     block.Points, block.Count, normalized[0], normalized[1], normalized[2]);
-  // What whole vectors read beyond the points.
+  // Whole SIMD vectors read elements beyond the last point.
   for (int i = block.Count; i < block.Count + WidestVector; ++i)
   {
     normalized[0][i] = normalized[1][i] = normalized[2][i] = 0.0;
@@ -603,8 +604,7 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
     }
     last = found >= 0 ? found : last;
     ++i;
-    // Points in a row are often in one triangle: as many are tried as there were last time, and
-    // more.
+    // Consecutive points are often in the same triangle. Try twice as many as in the last run.
     while (isInside && i < block.Count && (hint.RunLength > 2 || run > 2))
     {
       const int end =
@@ -621,7 +621,7 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
       i = inside;
       if (inside < end)
       {
-        // The next point is elsewhere: beyond which edge is known already.
+        // The next point is in another triangle. The edge that it lies beyond is known already.
         relation.Apex = block.Apex[i];
         relation.First = block.First[i];
         relation.Second = block.Second[i];
@@ -635,8 +635,8 @@ int PointLocation::FindBlock(PointBlock& block, double tolerance, LocationHint& 
   return outside;
 }
 
-/// Finds points far from each other. All of them take a step at a time, so that the memory of many
-/// triangles is prefetched together.
+/// Finds points that are far from each other. Their walks advance together, step by step, so that
+/// the memory of many triangles is prefetched at the same time.
 template <typename Search>
 void PointLocation::FindScattered(PointBlock& block, const double normalized[3][PointBlock::Size],
   double tolerance, Search&& search) const
@@ -711,7 +711,7 @@ void PointLocation::FindScattered(PointBlock& block, const double normalized[3][
   }
 }
 
-/// Sets a point of a block that is for certain in the interior of a triangle.
+/// Sets a point of a block that is certainly in the interior of a triangle.
 void PointLocation::SetPoint(PointBlock& block, int i, TriangleIndex triangle,
   const PlaneRelation& relation, const Vector3& normalized) const
 {

@@ -48,12 +48,13 @@ struct PlaneRelation
     double least = this->Apex < this->First ? this->Apex : this->First;
     least = least < this->Second ? least : this->Second;
     this->Least = least * frame.Height;
-    // With u half an ulp of 1, the error of y is at most 5 u |d| (a rounded difference, a tangent
-    // rounded twice, a product, a sum), hence that of the apex' coordinate, with the height's 8 u,
-    // 13 u |d| / height; that of the second at most 30 u |d| / height (x, the apex' coordinate, and
-    // 8 u base of the apex' position), since base > height; that of the first the sum, |d| being at
-    // least the distance of the opposite edge, which is more than the height, where it is zero.
-    // Products near the least normal number are not rounded relatively.
+    // Let u be half an ulp of 1. The error of y is at most 5 u |d| (a rounded difference, a tangent
+    // rounded twice, a product, a sum). With the height's 8 u, the error of the apex' coordinate is
+    // at most 13 u |d| / height. That of the second coordinate is at most 30 u |d| / height (x, the
+    // apex' coordinate, and 8 u base of the apex' position), because base > height. That of the
+    // first is at most the sum of both, because |d|, where this coordinate is zero, is at least the
+    // distance of the opposite edge, which is more than the height. Products near the least normal
+    // number have absolute errors, which the constant covers.
     constexpr double u = 0.5 * std::numeric_limits<double>::epsilon();
     this->Margin = 64.0 * u * (std::abs(d.x) + std::abs(d.y)) + 1e-290;
   }

@@ -103,7 +103,8 @@ private:
     return true;
   }
 
-  /// A surface that was meant to be planar is accepted, but its tolerance should be known.
+  /// Reports a surface that was probably meant to be planar, and the tolerance that it needs. The
+  /// surface is accepted.
   void ReportNearlyPlanar(int domain)
   {
     const MeshGeometry& geometry = *this->Pair->Geometries[domain];
@@ -116,7 +117,7 @@ private:
     diagnostic.Where = this->Names[domain];
     diagnostic.Result = MeshDiagnostic::Outcome::Accepted;
     diagnostic.Size = geometry.GetThickness() / geometry.GetScale();
-    // A power of ten, with room for the rounding of points.
+    // A power of ten, with a margin for the rounding of points.
     diagnostic.Tolerance =
       std::pow(10.0, std::ceil(std::log10(2.0 * geometry.GetThickness() / geometry.GetDiagonal())));
     this->Diagnostics.push_back(diagnostic);

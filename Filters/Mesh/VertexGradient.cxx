@@ -18,7 +18,7 @@ namespace
 using Complex = std::complex<double>;
 
 constexpr double Pi = 3.141592653589793;
-// A derivative with this margin is taken without looking for a better one.
+// A derivative with this margin is accepted without a search for a better one.
 constexpr double GoodMargin = 0.02;
 
 Complex ToComplex(const Vector2& v)
@@ -55,7 +55,7 @@ double LeastCoefficient(const CubicElement& element)
   return least;
 }
 
-// The integer turn that keeps an angle within half a turn of a reference.
+// Adds the multiple of 2 pi to an angle that brings it within half a turn of a reference.
 double Near(double angle, double reference)
 {
   return angle - 2.0 * Pi * std::round((angle - reference) / (2.0 * Pi));
@@ -151,8 +151,8 @@ Matrix2 GetMeanDerivative(const VertexFan& fan)
   return (1.0 / total) * mean;
 }
 
-// The fit, of what remains after the mean of the sectors' derivatives if that is close to them all:
-// affine pairs are then reproduced to rounding.
+// The linear map that fits the fan best. If the mean of the sectors' derivatives is close to all of
+// them, the remainder is fitted, so that affine pairs are reproduced up to rounding.
 Matrix2 FitLinear(const VertexFan& fan)
 {
   const Matrix2 mean = GetMeanDerivative(fan);
@@ -421,9 +421,9 @@ void TryDerivative(const VertexFan& fan, const std::vector<Matrix2>& rayGradient
   }
 }
 
-// A way between two stars: the images of the rays as logarithms, so that their order and lengths
-// greater than zero are kept.
-struct StarWay
+// A path between two stars. The images of the rays are given by logarithms, so their cyclic order
+// is preserved and their lengths remain positive.
+struct StarPath
 {
   std::vector<Complex> Start;
   std::vector<Complex> End;
@@ -439,17 +439,18 @@ struct StarWay
   }
 };
 
-// The star and the map's derivatives at an outline. @a rate is the share's derivative by the
-// logarithm of the radius.
-VertexRings::Outline GetOutline(const VertexFan& fan, const StarWay& way, double share, double rate)
+// The star and the map's derivatives at an outline. @a rate is the derivative of @a share with
+// respect to the logarithm of the radius.
+VertexRings::Outline GetOutline(
+  const VertexFan& fan, const StarPath& path, double share, double rate)
 {
   const std::size_t n = fan.Sectors.size();
   std::vector<Vector2> images(n + 1);
   std::vector<Vector2> changes(n + 1);
   for (std::size_t i = 0; i <= n; ++i)
   {
-    const Complex difference = way.End[i] - way.Start[i];
-    const Complex image = std::exp(way.Start[i] + share * difference);
+    const Complex difference = path.End[i] - path.Start[i];
+    const Complex image = std::exp(path.Start[i] + share * difference);
     const Complex change = rate * image * difference;
     images[i] = { image.real(), image.imag() };
     changes[i] = { change.real(), change.imag() };
@@ -527,8 +528,8 @@ Matrix2 FitBoundary(const VertexFan& fan)
   const Vector2 imageOfStart = first.Affine * start;
   if (!fan.Straight)
   {
-    // The stretches along the two edges that bring the map closest to those of the sectors: where
-    // the boundary is almost straight, unequal ones would shear.
+    // The stretches along the two edges for which the map is closest to the sectors' maps. Where
+    // the boundary is almost straight, unequal stretches would result in a shear.
     const std::vector<Matrix2> basis = GetBasis(fan);
     const Vector2 imageOfEnd = last.Affine * Normalized(last.End);
     const auto product = [](const Matrix2& a, const Matrix2& b) {
@@ -747,10 +748,10 @@ VertexRings::Outline GetHomogeneousOutline(const VertexFan& fan)
 namespace
 {
 
-// Adds rings along a way, at rest at both ends: faster and faster, as long as they are certified.
-// Ends, and returns true, where the star has a derivative; or else at the way's end, or where no
-// ring is certified.
-bool FollowWay(const VertexFan& fan, const StarWay& way, double fastest, VertexRings& rings)
+// Adds rings along a path. The rate of change from ring to ring is zero at both ends and increases
+// as long as the rings are certified. Returns true as soon as the star has a certified derivative,
+// and false at the end of the path or if no next ring is certified.
+bool FollowPath(const VertexFan& fan, const StarPath& path, double fastest, VertexRings& rings)
 {
   const double ratioLogarithm = std::log(VertexRings::Ratio);
   // The innermost outline must stay well above what coordinates beside the vertex can represent.
@@ -760,7 +761,7 @@ bool FollowWay(const VertexFan& fan, const StarWay& way, double fastest, VertexR
     {
       return false;
     }
-    rings.Outlines.push_back(GetOutline(fan, way, share, rate / ratioLogarithm));
+    rings.Outlines.push_back(GetOutline(fan, path, share, rate / ratioLogarithm));
     const VertexRings::Outline* const inner = &rings.Outlines.back();
     const bool certified = IsRingCertified(fan, inner[-1], inner[0]);
     if (!certified)
@@ -769,7 +770,7 @@ bool FollowWay(const VertexFan& fan, const StarWay& way, double fastest, VertexR
     }
     return certified;
   };
-  // The share of the way, and by how much it grows from ring to ring.
+  // The share of the path that has been covered, and its increase from ring to ring.
   double share = 0.0;
   double rate = 0.0;
   bool isLast = false;
@@ -784,7 +785,7 @@ bool FollowWay(const VertexFan& fan, const StarWay& way, double fastest, VertexR
       }
       rings.Outlines.pop_back();
     }
-    // From where the next ring would come to rest at the end.
+    // If the next ring has this rate, the one after it can end the path with rate zero.
     const double last = 1.0 - share - 0.5 * rate;
     bool isCertified = false;
     for (double factor : { 1.6, 1.2, 1.0, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005 })
@@ -813,7 +814,7 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
 {
   const RayLogarithms logarithms(fan);
   const std::size_t rays = logarithms.Source.size();
-  // First the rays' images become equally long and keep their directions, then they turn.
+  // First, the images of the rays become equally long and keep their directions. Then they turn.
   double shortest = std::numeric_limits<double>::infinity();
   double longest = -shortest;
   double turn = 0.0;
@@ -823,12 +824,12 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
     longest = std::max(longest, logarithms.Image[i].real());
     turn += (logarithms.Image[i] - logarithms.Source[i]).imag() / static_cast<double>(rays);
   }
-  StarWay stretch{ logarithms.Image, logarithms.Image };
+  StarPath stretch{ logarithms.Image, logarithms.Image };
   for (Complex& end : stretch.End)
   {
     end.real(0.5 * (shortest + longest));
   }
-  StarWay turning{ stretch.End, stretch.End };
+  StarPath turning{ stretch.End, stretch.End };
   const Matrix2 boundary = fan.Closed ? Matrix2{} : FitBoundary(fan);
   for (std::size_t i = 0; i < rays; ++i)
   {
@@ -843,15 +844,15 @@ bool FindVertexRings(const VertexFan& fan, VertexRings& rings)
     end = std::log(ToComplex(boundary * (i + 1 < rays ? sector.Start : sector.End)));
     end.imag(Near(end.imag(), i > 0 ? turning.End[i - 1].imag() + 0.5 * Pi : angle));
   }
-  // By how much, at most, logarithms change from ring to ring: half of the radius's logarithm, or
-  // less.
+  // The largest change of a logarithm from ring to ring: half the change of the radius's logarithm,
+  // or less.
   for (double speed : { 0.35, 0.2, 0.1 })
   {
     rings.Outlines.assign(1, GetHomogeneousOutline(fan));
     bool hasDerivative = false;
-    for (const StarWay* way : { &stretch, &turning })
+    for (const StarPath* path : { &stretch, &turning })
     {
-      hasDerivative = hasDerivative || FollowWay(fan, *way, speed / way->GetLength(), rings);
+      hasDerivative = hasDerivative || FollowPath(fan, *path, speed / path->GetLength(), rings);
     }
     if (hasDerivative)
     {
