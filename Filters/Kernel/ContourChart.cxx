@@ -31,8 +31,8 @@ double ArcTangentRatio(double z)
   return z != 0.0 ? std::atan(z) / z : 1.0;
 }
 
-/// The derivative of atan(z) / z, (1 / (1 + z^2) - atan(z) / z) / z. A series replaces it where it
-/// cancels.
+/// The derivative of atan(z) / z, (1 / (1 + z^2) - atan(z) / z) / z. For small z, where the formula
+/// suffers from cancellation, a series is used.
 double ArcTangentRatioDerivative(double z)
 {
   if (z > 0.25)
@@ -48,7 +48,8 @@ double ArcTangentRatioDerivative(double z)
   return -z * sum;
 }
 
-/// (sin x - x cos x) / x^2. A series replaces it where it cancels.
+/// (sin x - x cos x) / x^2. For small x, where the formula suffers from cancellation, a series is
+/// used.
 double SineMinusCosineRatio(double x)
 {
   if (x > 0.5)
@@ -203,7 +204,7 @@ struct ThroughEquation : RootBatch<Width, true>
   }
 };
 
-/// Batches of equations. Elements after the last equation are filled up to whole vectors.
+/// Batches of equations. The elements after the last equation are filled up to whole vectors.
 struct ThroughBatch
 {
   static constexpr int Capacity = 256;

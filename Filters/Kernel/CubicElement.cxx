@@ -12,7 +12,7 @@ namespace homeomorphism
 namespace
 {
 
-// The same formulas serve doubles and doubles with error bounds.
+// The same formulas are used for doubles and for doubles with error bounds.
 template <typename T>
 struct Vector
 {
@@ -69,9 +69,9 @@ Vector<T> Apply(const Matrix2& m, const Vector<T>& v)
     T(m.ImageOfX.y) * v.x + T(m.ImageOfY.y) * v.y };
 }
 
-// The corners of an element and D's derivatives there, in the plane's axes or in the frame of the
-// right angle: in a thin element, the plane's coordinates would round the direction of the short
-// leg.
+// The corners of an element and the derivatives of D there, in the axes of the plane or in the
+// frame of the right angle. In a thin element, coordinates of the plane would round the direction
+// of the short leg.
 struct ElementFrame
 {
   std::array<Vector2, 3> Points;
@@ -118,8 +118,9 @@ Matrix<T> operator*(const T& s, const Matrix<T>& m)
   return { s * m.First, s * m.Second };
 }
 
-// D' is continuous and quadratic in each piece. Its Bernstein ordinates: at the corners, in the
-// middle of the edges, in the middle of the segments from the corners to the centroid, and there.
+// The Bernstein ordinates of D', which is continuous and quadratic in each piece: at the corners,
+// in the middle of the edges, in the middle of the segments from the corners to the centroid, and
+// at the centroid.
 template <typename T>
 struct DerivativeOrdinates
 {
@@ -135,9 +136,10 @@ void FinishDerivative(DerivativeOrdinates<T>& d)
   d.Center = T(1.0) / T(3.0) * (d.Spoke[0] + d.Spoke[1] + d.Spoke[2]);
 }
 
-// Along an edge D' takes the edge to the derivative of a cubic, and the normal to the mean of the
-// ends' normal derivatives. Beside a corner i, D' e = G_i e + (E - G_i) o for both edges e at i,
-// with E the ordinate in the middle of e, and o from i to the centroid.
+// In the middle of an edge, the ordinate E of D' maps the edge to that of the derivative of a cubic
+// and the normal to the mean of the normal derivatives at the ends. The ordinate S beside a corner
+// i satisfies S e = G_i e + (E - G_i) o for both edges e at i, where o is the vector from i to the
+// centroid.
 template <typename T>
 DerivativeOrdinates<T> MakeDerivative(const CubicElement& element)
 {
@@ -182,9 +184,9 @@ DerivativeOrdinates<T> MakeDerivative(const CubicElement& element)
   return d;
 }
 
-// The same in the frame of a right angle, worked out by hand: with P the start, R the right angle
-// and S the third corner, mu = |RS| / |PR|. The differences that a thin triangle divides by mu are
-// divided before they are taken.
+// MakeDerivative, simplified by hand for the frame of a right angle. P is the start, R the corner
+// with the right angle, S the third corner, and mu = |RS| / |PR|. In a thin triangle, differences
+// would be divided by the small mu, so their terms are divided before they are subtracted.
 template <typename T>
 DerivativeOrdinates<T> MakeRightDerivative(const CubicElement& element)
 {
@@ -242,7 +244,7 @@ constexpr int QuadraticWeights[6][3] = { { 2, 0, 0 }, { 1, 1, 0 }, { 0, 2, 0 }, 
   { 0, 1, 1 }, { 0, 0, 2 } };
 constexpr double QuadraticMultiplicity[6] = { 1.0, 2.0, 1.0, 2.0, 2.0, 1.0 };
 
-// Row by row of equal weight of the centroid, so that a row is a polynomial of the edge.
+// Rows have equal exponents of the centroid, so a row is a polynomial on the edge.
 constexpr int QuarticNumber(int end, int centroid)
 {
   return 5 * centroid - centroid * (centroid - 1) / 2 + end;
@@ -310,8 +312,8 @@ void MakeDeterminant(const CubicElement& element, std::array<T, 45>& coefficient
 
 using Quartic = std::array<RunningError, 15>;
 
-// The two halves of a quartic triangle, cut from the middle of its edge from start to end to the
-// third corner; each is turned so that a different edge is cut next.
+// Bisects a quartic triangle from the middle of its edge from start to end to the third corner.
+// Numbers the corners of the halves so that another edge is bisected next.
 std::array<Quartic, 2> Bisect(const Quartic& quartic)
 {
   std::array<Quartic, 2> halves;
@@ -323,10 +325,11 @@ std::array<Quartic, 2> Bisect(const Quartic& quartic)
     {
       row[end] = quartic[QuarticNumber(end, centroid)];
     }
-    // de Casteljau: the start's half has the weights (start, middle, centroid).
+    // By de Casteljau's algorithm, the half at the start has the corners (start, middle, centroid).
     for (int step = 0; step <= degree; ++step)
     {
-      // Turned: start's half as (centroid, start, middle), end's half as (end, centroid, middle).
+      // Rotated, the half at the start is (centroid, start, middle), the other one (end, centroid,
+      // middle).
       const int middle = step;
       halves[0][QuarticNumber(degree - middle, middle)] = row[0];
       halves[1][QuarticNumber(centroid, middle)] = row[degree - step];
@@ -351,7 +354,8 @@ double LeastOf(const Quartic& quartic, double enough, int subdivisions)
   {
     return least;
   }
-  // The corners' coefficients are values of the determinant: nothing raises them.
+  // The coefficients at the corners are values of the determinant, so subdivision does not raise
+  // them.
   for (int corner : { QuarticNumber(0, 0), QuarticNumber(4, 0), QuarticNumber(0, 4) })
   {
     if (quartic[corner].LowerBound() <= least)
@@ -368,9 +372,10 @@ double LeastOf(const Quartic& quartic, double enough, int subdivisions)
   return std::max(least, std::min(first, LeastOf(halves[1], enough, subdivisions - 1)));
 }
 
-// A lower bound of the determinant if D' is so small beside L that rounding cannot matter, else
-// minus infinity. With N = L^-1 D', each coefficient is det L times a mean of mixed determinants of
-// I + N at two ordinates, 1 + (tr N_i + tr N_j) / 2 + ..., which are at least 1 - 2 |N| - |N|^2.
+// A lower bound of the determinant if D' is so small compared with L that rounding is negligible,
+// otherwise minus infinity. With N = L^-1 D', each coefficient is det L times a mean of mixed
+// determinants of I + N at two ordinates, 1 + (tr N_i + tr N_j) / 2 + ..., which are at least 1 - 2
+// |N| - |N|^2.
 double BoundByNorms(const CubicElement& element)
 {
   constexpr double greatest = 0.15;
@@ -378,7 +383,7 @@ double BoundByNorms(const CubicElement& element)
   constexpr double rounding = 1e-6;
   constexpr double none = -std::numeric_limits<double>::infinity();
   const bool isRight = element.Right.Corner >= 0;
-  // Far above what underflow adds to products of two such numbers.
+  // Products of two numbers above this are far greater than errors by underflow.
   constexpr double leastSquare = 1e-250;
   const double squares = SquaredNorm(element.Affine);
   const double determinant = element.Affine.Determinant();
@@ -406,7 +411,7 @@ double BoundByNorms(const CubicElement& element)
   {
     longest = std::max({ longest, norm(d.Corner[i]), norm(d.Edge[i]), norm(d.Spoke[i]) });
   }
-  // The Frobenius norm of L^-1 is that of L over the determinant.
+  // The Frobenius norm of L^-1 is that of L divided by the determinant.
   const double ratio = std::sqrt(longest) * (std::sqrt(squares) / determinant);
   return ratio < greatest ? determinant * (1.0 - ratio * (2.0 + ratio) - rounding) : none;
 }
@@ -462,7 +467,7 @@ CubicNet::CubicNet(const CubicElement& element)
     images[i] = element.Affine * element.Points[i];
   }
   const Vector2 center = (1.0 / 3.0) * (images[0] + images[1] + images[2]);
-  // Three times the point a third of the way from one point to another.
+  // Three times the point at a third of the way from one point to another.
   const auto third = [](const Vector2& from, const Vector2& to) { return 2.0 * from + to; };
   const auto set = [this](double(Component::*member)[3], int i, const Vector2& ordinate) {
     (this->X.*member)[i] = ordinate.x;
@@ -643,7 +648,7 @@ double LeastDeterminant(const CubicElement& element, double enough, int subdivis
     const double here = LeastOf(quartic, enough, subdivisions);
     least = here < least || std::isnan(here) ? here : least;
   }
-  // What is not a number certifies nothing.
+  // NaN does not certify anything.
   return std::isnan(least) ? -std::numeric_limits<double>::infinity() : least;
 }
 
@@ -668,7 +673,7 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
 {
   constexpr int count = 9;
   constexpr int pairs = (count + 1) / 2;
-  // Two basis functions at a time, as the components of one map.
+  // Two basis functions are evaluated at a time, as the components of one map.
   std::array<CubicOrdinates<Vector2>, pairs> basis;
   for (int n = 0; n < count; n += 2)
   {
@@ -724,7 +729,8 @@ BendingMatrix GetBendingMatrix(const std::array<Vector2, 3>& points)
         hessians[corner][2][2 * pair + 1] = yy.y;
       }
     }
-    // Second derivatives are linear in a piece: the midpoints of its edges integrate their squares.
+    // Second derivatives are linear in a piece, so quadrature at the midpoints of its edges is
+    // exact for their squares.
     for (int corner = 0; corner < 3; ++corner)
     {
       for (int part = 0; part < 3; ++part)

@@ -136,7 +136,7 @@ public:
   /// 1 to the smallest relevant root, the cube of an ulp of 1.
   HOMEOMORPHISM_ALWAYS_INLINE bool IsDone(int steps) const
   {
-    // Of integers, so that it vectorizes.
+    // The flags are integers, so that the loop vectorizes.
     std::int64_t done = 1;
     for (int index = 0; index < Width; ++index)
     {

@@ -60,7 +60,7 @@ inline RunningError operator-(const RunningError& a, const RunningError& b)
 inline RunningError operator*(const RunningError& a, const RunningError& b)
 {
   const double value = a.Value * b.Value;
-  // The last term is for products that underflow: the value, and three in its bound.
+  // The last term is for products that underflow: the value, and three products in its bound.
   return { value,
     a.Error * std::abs(b.Value) + (std::abs(a.Value) + a.Error) * b.Error +
       RunningError::Unit * std::abs(value) + 4.0 * std::numeric_limits<double>::denorm_min() };
@@ -74,7 +74,7 @@ inline RunningError operator/(const RunningError& a, const RunningError& b)
   {
     return { value, std::numeric_limits<double>::infinity() };
   }
-  // What underflows in the numerator of the bound is divided, too.
+  // Underflow in the numerator of the bound is divided, too.
   const double underflow =
     b.Error > 0.0 && std::abs(value) < 1.0 ? std::numeric_limits<double>::denorm_min() : 0.0;
   return { value,

@@ -51,7 +51,7 @@ struct StripFunction
     this->ShareNext = next * this->OverSum;
     this->SharePrevious = previous * this->OverSum;
     this->OverWidth = sum * sum * over;
-    // The first product does not wait for the division.
+    // The first product is computed in parallel with the division.
     Real u = k * (sum * sum) * over;
     // At a corner u is NaN, and there is no strip.
     u = u < 1.0f ? u : 1.0f;
@@ -123,17 +123,17 @@ struct StripFunction
 
 /// The equations of strips. From affine = l + d B(l) and beta = B(l) follows beta = B(affine - d
 /// beta). The difference of both sides increases with beta, because its slope is the determinant
-/// ratio. Three steps of Halley's method from 0 solve it beside most triangles. The first needs
-/// few digits, and the third uses the curvature of the second. Only where these two are not short
-/// are further steps bracketed.
+/// ratio. In most triangles, three steps of Halley's method from 0 solve the equation. The first
+/// step is computed in single precision, and the third uses the curvature of the second. Bracketed
+/// steps follow only if the second or the third step is too long.
 template <int Width>
 struct StripEquation : RootBatch<Width, false>
 {
   /// The error after a whole step is at most about 8 times its cube, in units of the root, so this
   /// is a fraction of the rounding error of a barycentric coordinate.
   static constexpr double Enough = 0x1p-18;
-  /// The same of two steps with one curvature: the error is about the length of the first times
-  /// the square of the second.
+  /// The largest lengths of two consecutive steps with one curvature that are accepted: the error
+  /// is about the length of the first times the square of the second.
   static constexpr double EnoughBefore = 0x1p-5;
   static constexpr double EnoughAfter = 0x1p-24;
 
@@ -265,7 +265,7 @@ SmoothStrips MakeSmoothStrips(const EdgeViews& views, const std::array<Neighbor,
 namespace
 {
 
-/// For few points, this loads less of the strips than the vectorized loops do.
+/// For few points, this reads less of the strips than the vectorized loops do.
 void SetSmoothPoint(SmoothBatch& batch, int i, const double* const coordinates[3],
   const SmoothStripsView& source, const SmoothStripsView& target)
 {

@@ -66,8 +66,8 @@ struct SmoothStrip
     const double otherShare = neighbor.Height / sum;
     this->OffsetNext = ownShare * neighbor.Foot - otherShare * (1.0 - own.Foot);
     this->OffsetPrevious = ownShare * (1.0 - neighbor.Foot) - otherShare * own.Foot;
-    // Restore a sum of 0, which cancellation spoils for far feet. Otherwise barycentric coordinates
-    // would not sum to 1, and round trips would lose the difference.
+    // Restore a sum of 0, which is inexact by cancellation if a foot is far away. Otherwise
+    // barycentric coordinates would not sum to 1, and round trips would lose the difference.
     const double excess = this->OffsetNext + this->OffsetPrevious + (otherShare - ownShare);
     this->OffsetNext -= 0.5 * excess;
     this->OffsetPrevious -= 0.5 * excess;

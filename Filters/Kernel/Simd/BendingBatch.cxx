@@ -13,7 +13,7 @@ namespace
 
 constexpr int N = BendingBatch::Size;
 
-// Where the entry of two functions is in the lower triangle of a symmetric matrix.
+// The index of the entry of two functions in the lower triangle of a symmetric matrix.
 constexpr int Entry(int m, int n)
 {
   return m < n ? n * (n + 1) / 2 + m : m * (m + 1) / 2 + n;
@@ -33,11 +33,11 @@ void BendingBatch::SetCorners(int number, const std::array<Vector2, 3>& points)
 }
 
 //------------------------------------------------------------------------------
-// The functions 2c and 2c + 1 are zero at the corners, with one derivative that is not zero: from
-// corner c towards the next corner, or towards the previous one, along the whole edge. Their
-// ordinates (see CubicOrdinates) are the same numbers in all triangles, but for the place of the
-// centroid along the edges. The second derivatives in a piece are taken in the axes along its edge
-// and across.
+// The basis functions 2c and 2c + 1 are zero at the corners, and all but one of their derivatives
+// are zero there: that at corner c along the whole edge to the next or to the previous corner.
+// Their ordinates (see CubicOrdinates) are the same numbers in all triangles, except for the
+// position of the centroid along the edges. The second derivatives in a piece are those along its
+// edge and across it.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 void BendingBatch::SetMatrices()
 {
@@ -46,10 +46,10 @@ void BendingBatch::SetMatrices()
   const double(&x2)[N] = this->Corners[1][0];
   const double(&y2)[N] = this->Corners[1][1];
   double edges[3][2][N];
-  // Of the centroid, from the start of an edge along it.
+  // The position of the centroid along each edge, from its start.
   double along[3][N];
-  // What makes second derivatives of second differences, times the root of the weight of a point of
-  // the quadrature.
+  // The factors from second differences to second derivatives, times the square root of the weight
+  // of a quadrature point.
   double scales[3][3][N];
   HOMEOMORPHISM_SIMD
   for (int l = 0; l < N; ++l)
@@ -71,7 +71,8 @@ void BendingBatch::SetMatrices()
     HOMEOMORPHISM_SIMD
     for (int l = 0; l < N; ++l)
     {
-      // Two thirds of the edge and a third of the next one lead from the start to the centroid.
+      // The vector from the start to the centroid is two thirds of the edge plus a third of the
+      // next edge.
       const double toCentroid = third * (x[l] * nextX[l] + y[l] * nextY[l]);
       const double squared = x[l] * x[l] + y[l] * y[l];
       const double cross = third * (x[l] * nextY[l] - y[l] * nextX[l]);
@@ -82,8 +83,8 @@ void BendingBatch::SetMatrices()
       scales[k][2][l] = root * squared / (cross * cross);
     }
   }
-  // Ordinates by function. Inner ordinates are a ninth for both functions of their corner, those on
-  // an edge a third for the derivative along it.
+  // The ordinates of each function. Inner ordinates are 1/9 for both functions of their corner.
+  // Ordinates on an edge are 1/3 for the derivative along it.
   constexpr double ninth = 1.0 / 9.0;
   double middle[3][6][N] = {};
   double spoke[3][6][N];
@@ -140,8 +141,8 @@ void BendingBatch::SetMatrices()
         const double m = middle[k][f][l];
         const double start = spoke[i][f][l];
         const double end = spoke[j][f][l];
-        // Twice along the edge, mixed, twice towards the centroid: at the start, the end, and the
-        // centroid.
+        // Second differences along the edge (EE), mixed (EC), and towards the centroid (CC): at the
+        // start, at the end, and at the centroid.
         const double startEE = before - 2.0 * after;
         const double startEC = m - after - innerStart;
         const double startCC = start - 2.0 * innerStart;
@@ -185,7 +186,7 @@ void BendingBatch::SetMatrices()
       }
     }
   }
-  // From derivatives along the edges to those by x and y.
+  // Convert derivatives along the edges to those by x and y.
   for (int c = 0; c < 3; ++c)
   {
     const double(&nextX)[N] = edges[PreviousCorner(c)][0];
@@ -211,8 +212,9 @@ void BendingBatch::SetMatrices()
   }
   for (int k = 0; k < 3; ++k)
   {
-    // At the start the edge leads to the next corner, and the one before it to the previous; at the
-    // end the next edge leads to the next corner, and this one to the previous.
+    // At the start of the edge, the edge leads to the next corner and the previous edge to the
+    // previous corner. At its end, the next edge leads to the next corner and the edge to the
+    // previous corner.
     const int i = 2 * NextCorner(k);
     const int j = 2 * PreviousCorner(k);
     const double(&x)[N] = edges[k][0];

@@ -61,19 +61,19 @@ void MapMiddle(const std::array<Vector2, 3>& corners, const std::array<double, 3
 namespace
 {
 
-// Half the second derivatives of an element by barycentric coordinates, over its least stretch, are
-// seldom more.
+// Half the second derivatives of an element by barycentric coordinates, divided by its least
+// stretch, rarely exceed this.
 constexpr double MostBending = 10.0;
 constexpr int MostSteps = 12;
 
-// So little outside an element, its own map differs from that of the next one, which has the same
-// value and derivative, by less than rounding.
+// Points may be outside an element by this much. The map of the neighboring element has the same
+// values and derivatives on the edge, so the difference is below rounding there.
 constexpr double LeastCoordinate = -1e-9;
 
-// Farther outside, the interpolant is not trusted.
+// Farther outside, the value of the interpolant is not used.
 constexpr double LeastStart = -0.3;
 
-// The number whose mask is -1, the other masks being 0. Without branches, so that loops vectorize.
+// The number whose mask is -1; the other masks are 0. Branch-free, so that loops vectorize.
 HOMEOMORPHISM_ALWAYS_INLINE double Choose(std::int64_t isFirst, double first, std::int64_t isSecond,
   double second, std::int64_t isThird, double third)
 {
@@ -87,9 +87,9 @@ HOMEOMORPHISM_ALWAYS_INLINE double Choose(std::int64_t isFirst, double first, st
   return number;
 }
 
-// The inverse at the corners, in the source's barycentric coordinates of corners 1 and 2: from
-// corner i, the derivative towards the image of corner NextCorner(i), and of the one before it,
-// less that of the piecewise linear map.
+// The derivatives of the inverse at the corners, minus those of the piecewise linear map, for the
+// source's barycentric coordinates of corners 1 and 2: at corner i, towards the images of the next
+// and of the previous corner.
 struct InverseHermite
 {
   double Next[2][3];
@@ -157,7 +157,7 @@ void StartByNet(const CubicNet& net, int begin, int end, CubicWalkers& walkers)
     const double to0 = 1.0 - to1 - to2;
     const double lesser = to1 < to0 ? to1 : to0;
     const double least = to2 < lesser ? to2 : lesser;
-    // Those after the last keep their coordinates.
+    // Elements after the last one keep their coordinates.
     const bool isNear = (least > LeastStart) & (i < end);
     walkers.L[0][i] = isNear ? to0 : a;
     walkers.L[1][i] = isNear ? to1 : b;
@@ -170,8 +170,8 @@ void StartByNet(const CubicNet& net, int begin, int end, CubicWalkers& walkers)
 namespace
 {
 
-// One step of Chebyshev's method of a vector of walkers: Newton's, less what second derivatives
-// make of it.
+// One step of Chebyshev's method for a vector of walkers: Newton's step with a correction by second
+// derivatives.
 HOMEOMORPHISM_ALWAYS_INLINE void StepVector(const CubicNet::Component& netX,
   const CubicNet::Component& netY, double tolerance, int begin, CubicWalkers& walkers)
 {
@@ -181,13 +181,13 @@ HOMEOMORPHISM_ALWAYS_INLINE void StepVector(const CubicNet::Component& netX,
     const double l0 = walkers.L[0][i];
     const double l1 = walkers.L[1][i];
     const double l2 = walkers.L[2][i];
-    // The piece: as in FindPiece, whose formulas these are.
+    // The piece that contains the point, by the formulas of FindPiece.
     const double lesser = l1 < l0 ? l1 : l0;
     const double least = l2 < lesser ? l2 : lesser;
     const std::int64_t is2 = -std::int64_t(l2 < lesser);
     const std::int64_t is1 = -std::int64_t(l1 < l0) & ~is2;
     const std::int64_t is0 = ~(is1 | is2);
-    // Of corner k, and of corners NextCorner(k) and PreviousCorner(k).
+    // Select the value of corner k, and those of corners NextCorner(k) and PreviousCorner(k).
     const auto opposite = [is0, is1, is2](double of0, double of1, double of2) {
       return Choose(is0, of0, is1, of1, is2, of2);
     };
@@ -253,8 +253,8 @@ HOMEOMORPHISM_ALWAYS_INLINE void StepVector(const CubicNet::Component& netX,
       return greatest(third * byW, third * byW - byV - byW, third * byW + byV);
     };
     const double length = measure(newtonV, newtonW);
-    // Of second order in the move d, f misses by the sum of l_c times its derivative by l_c at d,
-    // and of third order by f at d.
+    // In the move d, the second-order residual of f is the sum of l_c times its derivative by l_c
+    // at d, and the third-order residual is f at d.
     derive(netX, newtonU, newtonV, newtonW, xU, xV, xW);
     derive(netY, newtonU, newtonV, newtonW, yU, yV, yW);
     const double missX = atU * xU + atV * xV + atW * xW;
@@ -284,14 +284,14 @@ HOMEOMORPHISM_ALWAYS_INLINE void StepVector(const CubicNet::Component& netX,
     const bool isActive = state == CubicWalkers::OnTheWay;
     const bool isWorse = !(now < lastResidual);
     const bool isThere = now <= 0.5 * tolerance;
-    // Within one piece, little is left but terms of third order. They may be small by chance: the
-    // step must be short beside the element, too.
+    // Within one piece, the residual consists mainly of terms of third order. They can be small by
+    // chance, so the step must also be short compared with the element.
     const bool isInPiece =
       (atU - moveV - moveW >= 0.0) & (atV + moveV >= 0.0) & (atW + moveW >= 0.0);
     const bool isLastInPiece = isInPiece & isSmall & (thirdOrder <= 0.05 * tolerance * length) &
       (2.0 * MostBending * MostBending * now * length * length <= tolerance);
-    // Elsewhere second derivatives jump, and the error is a constant times the square of the
-    // length, about that of the last step.
+    // Across pieces, second derivatives jump. The error is then a constant times the square of the
+    // length, with about the constant of the last step.
     const double known = walkers.SecondOrder[i];
     const double missed = now > known ? now : known;
     const bool isLastAcross = (missed * length * length <= 0.05 * tolerance * lastMove * lastMove) &
@@ -321,7 +321,7 @@ HOMEOMORPHISM_ALWAYS_INLINE void StepVector(const CubicNet::Component& netX,
 
 } // anonymous namespace
 
-// One step of all that are on the way, vector by vector. Returns whether any still is.
+// Moves all walkers that are on the way by one step. Returns whether any is still on the way.
 HOMEOMORPHISM_FOR_WIDE_VECTORS
 static bool StepByNet(
   const CubicNet& net, double tolerance, int begin, int stop, CubicWalkers& walkers)
@@ -349,7 +349,7 @@ static bool StepByNet(
 
 void WalkByNet(const CubicNet& net, double tolerance, int begin, int end, CubicWalkers& walkers)
 {
-  // Those after the last are not on the way for now.
+  // Stop the walkers after the last one meanwhile.
   const int stop = begin + InWholeVectors(end - begin);
   std::int64_t states[WidestVector];
   std::copy(walkers.States + end, walkers.States + stop, states);
