@@ -58,8 +58,8 @@ LineCrossing EdgeCrossings::GetCrossing(
   {
     const Vector3 toApex = source.GetVector(edge.Points[0], edge.Apexes[side]);
     crossing.Inward[side] = UnitAcross(start, crossing.Tangent, toApex);
-    // The perpendicular leaves the triangle through the edge to the apex from the start, or that
-    // from the end.
+    // The perpendicular leaves the triangle through the edge from the start to the apex or through
+    // the edge from the end to the apex.
     const double foot = Dot3(toApex, crossing.Tangent);
     const double height = Dot3(toApex, crossing.Inward[side]);
     const double along = proportion * length;

@@ -17,7 +17,7 @@ Vector2 Unit(const Vector2& a)
   return (1.0 / std::hypot(a.x, a.y)) * a;
 }
 
-/// Barycentric coordinates of any point of the plane.
+/// Barycentric coordinates of any point of the plane, inside or outside the triangle.
 Barycentric ToBarycentricAnywhere(const TriangleShape& shape, const Vector2& point)
 {
   Barycentric l = shape.VectorToBarycentric(point - shape.Corner(0));

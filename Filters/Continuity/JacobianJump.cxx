@@ -25,8 +25,8 @@ Vector3 InAxes(const Vector3& v, const std::array<Vector3, 3>& axes)
   return result;
 }
 
-/// The noise of a function's values: their fourth differences over steps so small that the function
-/// itself has none.
+/// The noise of a function's values: their fourth differences over steps so small that those of a
+/// smooth function vanish.
 template <typename Function>
 double Noise(Function&& function, double length)
 {
@@ -46,7 +46,7 @@ double Noise(Function&& function, double length)
       difference[axis] = values[i][axis] - 4.0 * values[i + 1][axis] + 6.0 * values[i + 2][axis] -
         4.0 * values[i + 3][axis] + values[i + 4][axis];
     }
-    // The norm of the coefficients is 8.4.
+    // The norm of the coefficients 1, -4, 6, -4, 1 is 8.4.
     noise = std::max(noise, Length(difference) / 4.0);
   }
   return noise;

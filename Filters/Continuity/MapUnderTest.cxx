@@ -73,7 +73,7 @@ MapUnderTest MakeMapUnderTest(const Homeomorphism& map)
       }
       if (deepest < 0.0)
       {
-        // Rounding has taken a point of an edge out of the triangle.
+        // By rounding, a point of an edge is outside the triangle.
         const TriangleShape shape = source.GetShape(found);
         inFrame = shape.FromBarycentric(shape.ToBarycentric(inFrame));
       }

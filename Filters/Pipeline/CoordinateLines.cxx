@@ -157,7 +157,7 @@ void MakeCoordinateLines(vtkAlgorithm* self, const Homeomorphism& map,
       }
       else
       {
-        // The guides of the equilateral triangle, mapped by the barycentric reference.
+        // The guides of the equilateral triangle, mapped by the chart.
         AddGuides(lines, t, ContourChart::Equilateral(), ContourChart::EquilateralShape(),
           options.Resolution, [&chart](const Vector2& point) {
             return chart.ToPoint(ContourChart::EquilateralShape().ToBarycentric(point));

@@ -212,7 +212,7 @@ void ImageSampling::Sample(const double (*points)[3], const bool* wanted, int co
           double sum = 0.0;
           for (int k = 0; k < size; ++k)
           {
-            // A value that is NaN does not count where its weight is zero.
+            // Skip zero weights, so that NaN values with zero weight do not affect the sum.
             if (stencil.Weights[k] != 0.0)
             {
               sum += stencil.Weights[k] *

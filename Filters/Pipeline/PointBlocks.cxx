@@ -21,7 +21,7 @@ namespace homeomorphism
 namespace
 {
 
-/// The doubles in a line of the processor's cache.
+/// The number of doubles in a cache line.
 constexpr int DoublesInLine = 64 / sizeof(double);
 
 } // namespace
@@ -46,7 +46,7 @@ void ReadPoints(vtkDataArray* array, vtkIdType first, PointBlock& block)
   {
     const double* values = doubles->GetPointer(3 * first);
     block.Points = reinterpret_cast<const double(*)[3]>(values);
-    // The next block, to hide memory latency.
+    // Prefetch the next block, to hide memory latency.
     const vtkIdType end =
       std::min(6 * vtkIdType(block.Count), doubles->GetNumberOfValues() - 3 * first);
     for (vtkIdType i = 3 * vtkIdType(block.Count); i < end; i += DoublesInLine)

@@ -30,7 +30,7 @@ void WarnOfPointsOffSurface(vtkObject* self, const Homeomorphism& map, Domain do
     return;
   }
   std::vector<vtkIdType> outside;
-  // Hidden points count as outside wherever they are.
+  // Exclude hidden points, which count as outside regardless of their positions.
   vtkUnsignedCharArray* ghosts = GhostsOf(data->GetPointData(), mask->GetNumberOfTuples());
   for (vtkIdType i = 0; i < mask->GetNumberOfTuples(); ++i)
   {

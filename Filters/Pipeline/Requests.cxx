@@ -91,7 +91,7 @@ void RequestWhole(vtkInformation* info)
   info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
   info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
   info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  // The extent there is that of the output, which is undefined for this input.
+  // The extent in the request is that of the output, which has no meaning for this input.
   if (info->Has(Pipeline::WHOLE_EXTENT()))
   {
     info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
