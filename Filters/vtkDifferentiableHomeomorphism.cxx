@@ -222,7 +222,8 @@ private:
           }
         }
       });
-    // Aborted: points that were not reached keep their coordinates and are marked as outside.
+    // After an abort, points that were not processed keep their coordinates and are marked as
+    // outside.
     for (vtkIdType i = done; i < this->NumberOfPoints; ++i)
     {
       outPoints->SetPoint(i, this->Input->GetPoint(i));
@@ -289,8 +290,8 @@ private:
         double tolerance = pointTolerance;
         for (vtkIdType k = 0; k < count && !geometry.IsColumnar(); ++k)
         {
-          // The mean of points of a surface lies off it, but not farther than they are from each
-          // other.
+          // The mean of points of a surface may lie off the surface, by at most its distance from
+          // the points.
           double point[3];
           this->Input->GetPoint(ids->GetId(k), point);
           tolerance = std::max(tolerance,
@@ -476,7 +477,7 @@ void vtkDifferentiableHomeomorphism::Internals::Measure(vtkDifferentiableHomeomo
     const vtkNew<vtkPolyData> colored;
     const bool complete = this->Continuity->Measure(
       self, self->Inverse ? map->Inverted() : map, nullptr, mesh, this->Measured, colored);
-    // The result of an aborted run must not be mistaken for a complete one.
+    // Do not store the result of an aborted run as a complete one.
     this->MeasuredMap = complete ? map : nullptr;
     this->MeasuredInverse = self->Inverse;
     this->MeasuredTime = time;
@@ -497,7 +498,7 @@ vtkMTimeType vtkDifferentiableHomeomorphism::GetMTime()
 namespace
 {
 
-/// Where the map is certified and where it has no derivative, on a mesh.
+/// Adds arrays to a mesh: where the map is certified, and where it has no derivative.
 void AddCubicArrays(const Homeomorphism& map, vtkPointSet* mesh)
 {
   const Triangulation& triangulation = map.GetPair().GetTriangulation();

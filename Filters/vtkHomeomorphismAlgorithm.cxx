@@ -109,7 +109,7 @@ void vtkHomeomorphismAlgorithm::CheckInputTypes(vtkInformationVector** inputs)
   {
     if (!IsAcceptedType(this->GetInputPortInformation(port), vtkDataObject::GetData(inputs[port])))
     {
-      // The executive reports it.
+      // The executive reports the error.
       this->Fail(port < this->NumberOfMeshPorts ? MESHES_REFUSED : DATA_REFUSED);
     }
   }
@@ -205,7 +205,7 @@ std::shared_ptr<const Homeomorphism> vtkHomeomorphismAlgorithm::GetMap(
   if (map && map->GetCubic())
   {
     cubic = map->GetCubic()->GetMap().GetStatistics();
-    // Of second derivatives, times the root of an area.
+    // The scale of second derivatives times the square root of an area.
     scale = map->GetPair().GetGeometry(Domain::Target).GetInverseScale() *
       map->GetPair().GetGeometry(Domain::Source).GetScale();
     if (cubic.UncertifiedTriangles > 0)

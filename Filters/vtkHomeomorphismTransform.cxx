@@ -41,7 +41,7 @@ public:
                      : SurfacePoint{};
   }
 
-  /// Maps a point, one of a row if callers ask for the points of rows one by one.
+  /// Maps a point. If callers request the points of a row one by one, the row is mapped in blocks.
   template <typename Real>
   void MapPoint(Domain from, const Real in[3], Real out[3]) const
   {
@@ -53,7 +53,7 @@ public:
       !this->Map ? -1 : row->Find(point, key, [this, from](PointBlock& block, LocationHint& hint) {
         this->Map->LocateBlock(from, block, this->GetTolerance<Real>(from), hint);
         this->Map->MapBlock(from, block);
-        // The thread's block must not keep a map that the transform has given up.
+        // The thread's block must not keep a map after the transform has released it.
         block.PreparedCubics.reset();
         block.Cubic.reset();
       });

@@ -32,8 +32,7 @@ vtkStandardNewMacro(vtkInBetweenTriangulation);
 namespace
 {
 
-/// The two axes of the planes of both meshes if they are parallel to the same
-/// two.
+/// The two axes of the planes of both meshes if both planes are parallel to the same two axes.
 std::optional<std::array<int, 2>> FindPlaneAxes(vtkPolyData* source, vtkPolyData* target)
 {
   double bounds[2][6];
@@ -200,7 +199,7 @@ int vtkInBetweenTriangulation::Execute(
                                   : (1.0 - time) * from[axis] + time * to[axis];
     }
   };
-  // So that the threads only read.
+  // The first call of GetPoint may change internal data, so call it before the threads do.
   double first[3];
   if (numberOfPoints > 0)
   {

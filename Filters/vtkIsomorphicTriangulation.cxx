@@ -70,9 +70,9 @@ namespace
 
 using Point3 = std::array<double, 3>;
 
-/// The plane of a figure: parallel to two axes, whose coordinates are then used unrounded, or any
-/// other. Coordinates in the plane are normalized, as those of MeshGeometry: times a power of two,
-/// which brings the largest of them close to 1.
+/// The plane of a figure. If it is parallel to two axes, their coordinates are used without
+/// rounding. Coordinates in the plane are normalized as in MeshGeometry: they are multiplied by a
+/// power of two that makes the largest of them close to 1.
 class Plane
 {
 public:
@@ -118,7 +118,8 @@ public:
         return -1;
       }
     }
-    // Farthest point from the first, then farthest from their line: the axes.
+    // The axes are given by the point farthest from the first one, and the point farthest from the
+    // line through both.
     this->Origin = points[0];
     const std::size_t far = this->Farthest(points, [&](const Point3& p) { return Norm(p); });
     this->X = Scaled(Subtract(points[far], this->Origin));
@@ -159,7 +160,7 @@ public:
     return Multiplied(q, this->InverseScale);
   }
 
-  /// Normalized coordinates over the figure's, and the inverse.
+  /// The ratio of normalized coordinates to those of the figure, and its inverse.
   double GetScale() const { return this->Scale; }
   double GetInverseScale() const { return this->InverseScale; }
 
@@ -206,7 +207,8 @@ private:
   double InverseScale = 1.0;
 };
 
-/// The points of cells; -1 for those that do not exist, like point @a count and those after it.
+/// The points of cells; -1 for points that do not exist, because their ids are negative or at least
+/// @a count.
 std::vector<std::vector<int>> Cells(vtkCellArray* array, vtkIdType count)
 {
   std::vector<std::vector<int>> cells;
@@ -309,7 +311,7 @@ bool HaveSameCells(vtkPolyData* source, vtkPolyData* target)
     Cells(source->GetPolys(), count) == Cells(target->GetPolys(), count);
 }
 
-/// Whether the offsets of the cells fit their points.
+/// Whether the offsets of the cell arrays are valid.
 bool IsSound(vtkPolyData* figure)
 {
   return figure->GetVerts()->IsValid() && figure->GetLines()->IsValid() &&
@@ -574,7 +576,7 @@ int vtkIsomorphicTriangulation::RequestData(
   MeshDiagnostics problems;
   if (!TriangulationPair::Read(meshes[0], meshes[1], false, problems))
   {
-    // Only the turn of a figure into its plane rounds.
+    // This is possible only by rounding, in the rotation of a figure into its plane.
     note(FigureProblem::Kind::Precision, -1, {});
     return refuse();
   }

@@ -38,7 +38,7 @@ vtkStandardNewMacro(vtkJacobianContinuity);
 class vtkJacobianContinuity::Internals
 {
 public:
-  /// Of a transform, which has options of its own.
+  /// The cache for the map of a transform, which has its own options.
   HomeomorphismCache Cache;
   /// Edges on the boundary, then features by type and verdict; the largest jump.
   ProcessStatistics Own{ std::vector<double>(1 + (VERTEX + 1) * (UNDECIDED + 1)), { 0.0 } };
@@ -76,7 +76,7 @@ public:
     this->Triangles->SetNumberOfTuples(features.GetNumberOfFeatures());
   }
 
-  /// @a samples are what was measured at the feature: none if there is nothing to compare.
+  /// @a samples are the measurements at the feature; empty if there is nothing to compare.
   void Set(vtkIdType index, const std::vector<Sample>& samples)
   {
     const MeasuredFeature& feature = this->Features.GetFeature(index);
@@ -121,7 +121,7 @@ private:
   void SetMeasured(vtkIdType index, const std::vector<Sample>& samples)
   {
     const auto largest = [&samples](JacobianJump Sample::*which) {
-      // NaN, where the map could not be evaluated, counts as more than anything.
+      // NaN, which means that the map could not be evaluated, counts as the largest value.
       return *std::max_element(
         samples.begin(), samples.end(), [which](const Sample& a, const Sample& b) {
           return (a.*which).Jump < (b.*which).Jump ||
@@ -154,7 +154,8 @@ private:
     }
   }
 
-  /// One crease makes the feature a crease; it is differentiable only if it is at all samples.
+  /// The feature is a crease if it is one at any sample, and differentiable if it is at all
+  /// samples.
   static int Conclude(const std::vector<Sample>& samples, JacobianJump Sample::*which)
   {
     const auto count = [&samples, which](JumpVerdict verdict) {
@@ -274,8 +275,8 @@ int vtkJacobianContinuity::Execute(
   else
   {
     this->Transform->Update();
-    // A homeomorphism of the very triangulation has a closed form; of another map's domain, only
-    // the edges are wanted here.
+    // If the transform is a homeomorphism of this very triangulation, the jumps have a closed form.
+    // For other transforms, only the edges of the triangulation are needed.
     auto* ours = vtkHomeomorphismTransform::SafeDownCast(this->Transform);
     const bool known = ours && !ours->GetInverseFlag() && ours->GetTarget() && ours->GetSource() &&
       ours->GetSource()->GetPoints() == source->GetPoints() &&
@@ -332,7 +333,7 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
   vtkPolyData* mesh, vtkPolyData* lines, vtkPolyData* colored)
 {
   this->ResetStatistics();
-  // A transform that is this map needs no coordinates far from the origin.
+  // A transform that is this map is evaluated relative to a local origin.
   const bool unknown = transform && !map->GetPair().HasTarget();
   const bool planar = map->GetPair().HasTarget()
     ? map->GetPair().GetGeometry(Domain::Source).IsColumnar()
@@ -394,7 +395,7 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
     1 << 11);
   if (done < count)
   {
-    // Aborted: a part must not look like the whole.
+    // After an abort, do not output a part as if it were the whole result.
     return false;
   }
 
@@ -421,7 +422,7 @@ bool vtkJacobianContinuity::Measure(vtkAlgorithm* algorithm,
       continue;
     }
     const double jump = featureArrays.GetJump(index);
-    // What is not a number counts for nothing, as where a mesh's array starts from.
+    // NaN values are ignored. The arrays are initialized with NaN.
     const auto raise = [jump](vtkDoubleArray* array, vtkIdType id) {
       array->SetValue(id, std::fmax(array->GetValue(id), jump));
     };

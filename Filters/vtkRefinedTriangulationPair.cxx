@@ -30,7 +30,7 @@ vtkStandardNewMacro(vtkRefinedTriangulationPair);
 namespace
 {
 
-/// The attributes without arrays of another length, from which VTK would read out of bounds.
+/// The attributes without arrays of a different length, in which VTK would read out of bounds.
 template <typename Attributes>
 vtkSmartPointer<Attributes> Complete(Attributes* attributes, vtkIdType tuples)
 {

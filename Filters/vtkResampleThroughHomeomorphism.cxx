@@ -155,7 +155,7 @@ std::string DescribeArrays(
 /// none.
 std::string DescribeDefects(vtkDataSet* data)
 {
-  // With the least number of points of such a cell.
+  // The cell arrays, each with the least number of points of its cells.
   std::vector<std::pair<vtkCellArray*, vtkIdType>> arrays;
   if (auto* mesh = vtkPolyData::SafeDownCast(data))
   {
@@ -438,7 +438,8 @@ int vtkResampleThroughHomeomorphism::Execute(
     output->Initialize();
     return 0;
   }
-  // Of accepted meshes only: VTK does not check the points of cells when it computes bounds.
+  // Only after the meshes have been accepted, because VTK does not check the points of cells when
+  // it computes bounds.
   if (grid)
   {
     output->CopyStructure(grid);

@@ -98,14 +98,15 @@ double SmallestAngle(const EdgeViews& views)
   {
     shortest = views[k].Length < views[shortest].Length ? k : shortest;
   }
-  // From another edge: the height of its opposite corner over the distance of the foot.
+  // The tangent of the angle is the height of the corner opposite another edge, divided by the
+  // distance of its foot from the start of that edge. The edge starts at the corner opposite the
+  // shortest edge.
   const EdgeView& beside = views[PreviousCorner(shortest)];
-  // That edge starts at the corner after it, which is opposite the shortest edge.
   return vtkMath::DegreesFromRadians(std::atan2(beside.Height, beside.Foot * beside.Length));
 }
 
-/// The least distance of a foot of the centroid from an end of its edge, over the length of the
-/// edge.
+/// The least distance of a foot of the centroid from an end of its edge, divided by the length of
+/// the edge.
 double ConcordanceMargin(const EdgeViews& views)
 {
   double margin = 1.0;

@@ -93,7 +93,7 @@ void AddCellArray(vtkPolyData* mesh, const Triangulation& triangulation, const c
   mesh->GetCellData()->AddArray(array);
 }
 
-/// What the Cubic system knows of its map.
+/// The statistics of the Cubic map.
 struct CubicStatistics
 {
   double BendingEnergy = None;
@@ -108,7 +108,7 @@ CubicStatistics MeasureCubic(const Homeomorphism& map)
   const CubicMapStatistics& known = map.GetCubic()->GetMap().GetStatistics();
   const Triangulation& triangulation = map.GetPair().GetTriangulation();
   CubicStatistics statistics;
-  // The energy of normalized coordinates, in those of the input.
+  // Convert the energy from normalized coordinates to those of the input.
   const double rescale = map.GetPair().GetGeometry(Domain::Source).GetScale() /
     map.GetPair().GetGeometry(Domain::Target).GetScale();
   statistics.BendingEnergy = known.Bending.Energy * rescale * rescale;
@@ -128,7 +128,7 @@ CubicStatistics MeasureCubic(const Homeomorphism& map)
   return statistics;
 }
 
-/// What vtkJacobianContinuity finds.
+/// The results of vtkJacobianContinuity.
 struct Continuity
 {
   vtkIdType DifferentiableEdges = -1;
@@ -194,7 +194,7 @@ int vtkTriangulationPairReport::Execute(
     vtkPolyData::GetData(inputs[1]) };
   this->Valid = false;
 
-  // Leaving invalid triangles out finds all kinds of defects, and lets the rest be measured.
+  // If invalid triangles are left out, all kinds of defects are found and the rest can be measured.
   MeshDiagnostics defects;
   HomeomorphismOptions options;
   options.System = homeomorphism::CoordinateSystem::Linear;
@@ -295,7 +295,7 @@ int vtkTriangulationPairReport::Execute(
   {
     copies[side]->ShallowCopy(meshes[side]);
   }
-  // What is left out is in the table of defects: no warnings.
+  // Suppress warnings about triangles that are left out; they are in the table of defects.
   vtkNew<vtkCallbackCommand> ignore;
   ignore->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
   const bool hasCubic = pair.GetGeometry(Domain::Source).IsPlanar() &&
