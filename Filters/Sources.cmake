@@ -1,10 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Differentiable Homeomorphism authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# The files of the library, also used by the tests: the kernel's are compiled into KernelTests.
-# Paths are relative to this folder.
+# The source files of the library, and compiler options. Paths are relative to this folder.
 
-# Pure mathematics: nothing of VTK may be included here.
+# Mathematics. These files must not include VTK.
 set(kernel_sources
   Kernel/ContourChart.cxx
   Kernel/CubicElement.cxx
@@ -29,7 +28,7 @@ set(kernel_headers
   Kernel/Simd/Vectorize.h
   Kernel/SmoothChart.h)
 
-# The cubic map of a planar pair given as plain arrays: nothing of VTK either.
+# The cubic map of a planar pair, which is given as plain arrays. These files must not include VTK.
 set(cubic_sources
   Mesh/BendingSolve.cxx
   Mesh/CubicMap.cxx
@@ -96,7 +95,7 @@ set(continuity_headers
   Continuity/OneSidedDerivative.h
   Continuity/RayFans.h)
 
-# Pairs made from others, and what there is to know about a pair.
+# Pairs that are derived from other pairs, and statistics of pairs.
 set(construction_sources
   Construction/InBetweenPath.cxx
   Construction/MapStatistics.cxx
@@ -108,7 +107,7 @@ set(construction_headers
   Construction/PairRefinement.h
   Construction/PairStatistics.h)
 
-# Pairs made from landmarks and outlines: nothing of VTK here either.
+# Pairs that are constructed from landmarks and outlines. These files must not include VTK.
 set(figure_sources
   Construction/CommonMap.cxx
   Construction/ConstrainedTriangulation.cxx
@@ -138,7 +137,7 @@ set(figure_headers
   Construction/PairQuality.h
   Construction/RegionRefilling.h)
 
-# What the VTK classes share.
+# Code shared by the VTK classes.
 set(pipeline_sources
   Pipeline/AttributeTransformation.cxx
   Pipeline/CoordinateLines.cxx
@@ -167,13 +166,12 @@ set(pipeline_headers
   Pipeline/Requests.h
   Pipeline/VTKVersions.h)
 
-# Products and sums are not fused into one rounding where the compiler prefers it, because results
-# would differ between machines. Floating-point exceptions and errno are not used; without them,
-# loops over several points are vectorized.
+# Products and sums are not contracted to fused operations, because results would differ between machines.
+# Floating-point exceptions and errno are not used, and loops over several points are vectorized only without them.
 set(floating_point_options
   $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off;-fno-trapping-math;-fno-math-errno>)
 
-# Only if this project is built alone: inside VTK, VTK sets the warnings.
+# Inside VTK, VTK sets the warnings.
 set(warning_options)
 if (CMAKE_PROJECT_NAME STREQUAL "DifferentiableHomeomorphism")
   set(warning_options

@@ -23,7 +23,7 @@ run("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${SOURCE_DIR}" -B "${WORK_DIR}/buil
   "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${WORK_DIR}/bin$<0:>")
 run("${CMAKE_COMMAND}" --build "${WORK_DIR}/build" --config "${CONFIG}")
 
-# Installed libraries find each other by themselves.
+# Check that installed libraries find each other by their RUNPATH.
 file(GLOB_RECURSE libraries "${WORK_DIR}/prefix/*.so" "${WORK_DIR}/prefix/bin/*")
 foreach (library IN LISTS libraries)
   if (NOT READELF OR IS_DIRECTORY "${library}")
@@ -46,7 +46,7 @@ if (NOT output MATCHES "is mapped to \\(0.4, [0-9.]*\\) and back to \\(0.4, 0.5\
   message(FATAL_ERROR "The point does not return.")
 endif ()
 
-# A square of two triangles; in the target it is twice as high on the left.
+# A square of two triangles. In the target, it is twice as high on the left.
 function (write_square file height)
   file(WRITE "${file}" "<VTKFile type=\"PolyData\" version=\"0.1\"><PolyData>
 <Piece NumberOfPoints=\"4\" NumberOfPolys=\"2\">
