@@ -22,7 +22,7 @@ y = random.integers(1, int(TOP * UNIT), COUNT) * random.choice([-1, 1], COUNT)
 outside_circles = lambda x: (
     ((x - UNIT) * (x - 2 * UNIT) + y * y > 0) & ((x - UNIT) * (2 * x - UNIT) + 2 * y * y > 0))
 expected = (x > -UNIT) & (x < 2 * UNIT) & outside_circles(x) & outside_circles(UNIT - x)
-# At integers, as a row.
+# Values at the integers, as a row.
 points = numpy.zeros((COUNT, 3, 2))
 points[:, 1, 0], points[:, 2] = 1, numpy.column_stack((x, y)) / UNIT
 points[:, :, 0] += 5.0 * numpy.arange(COUNT)[:, None]

@@ -143,7 +143,7 @@ def _read_xmorph(files, options):
                 file.fail(str(error))
         end = xmorph.extent(grid) if xmorph.fills_picture(grid) else None
         if options.working_size:
-            # In tenths of pixels.
+            # Coordinates of meshes are in tenths of pixels.
             end = 10.0 * (numpy.array(options.working_size) - 1)
         extents.append(end)
         # Let y point upwards.

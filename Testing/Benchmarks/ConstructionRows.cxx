@@ -82,7 +82,7 @@ void AddConstructionRows(const Workload& workload, Rows& rows)
   auto locator = std::make_shared<vtkSmartPointer<vtkStaticCellLocator>>();
   Row& row = rows["construct/vtkStaticCellLocator"];
   row.Before = [locator, &workload](Task&) {
-    // Part of the mesh, which vtkPolyData builds when its cells are first used.
+    // The cells are part of the mesh; vtkPolyData builds them when they are first used.
     workload.Source->BuildCells();
     *locator = vtkSmartPointer<vtkStaticCellLocator>::New();
     (*locator)->SetDataSet(workload.Source);

@@ -38,7 +38,7 @@ const std::array<System, 5> systems{ { { "Linear", CoordinateSystem::Linear, {} 
   { "CubicLocal", CoordinateSystem::Cubic, CubicBending::Local },
   { "CubicLeast", CoordinateSystem::Cubic, CubicBending::Least } } };
 
-/// Made at first use, for both directions.
+/// A homeomorphism that is constructed at its first use, for both directions.
 class LazyHomeomorphism
 {
 public:
@@ -71,7 +71,7 @@ private:
   std::shared_ptr<const Homeomorphism> Map;
 };
 
-/// With the Jacobians or without.
+/// Maps points one by one, with or without the Jacobians.
 template <bool WithJacobian>
 void MapPointByPoint(const Homeomorphism& map, Domain from, Task& task)
 {

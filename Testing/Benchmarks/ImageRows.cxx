@@ -82,7 +82,8 @@ void AddImageRows(const Workload& workload, Rows& rows)
 {
   for (const NamedSystem& system : systems)
   {
-    // Backwards: Cubic's inverse is not the map from the target mesh to the source mesh.
+    // The meshes are exchanged, because the inverse of Cubic is not the map from the target mesh to
+    // the source mesh.
     vtkNew<vtkHomeomorphismTransform> transform;
     transform->SetSource(workload.Target);
     transform->SetTarget(workload.Source);

@@ -51,14 +51,14 @@ def make_workloads(part, settings, folder):
 def compare(program, other, settings, folder, parts):
     """Prints a table of nanoseconds an item and ratios. Returns the rows that are too slow."""
     slow = []
-    # All programs on one processor, since those of a virtual machine differ in speed by up to a third for minutes.
+    # Run all programs on one processor: those of a virtual machine can differ in speed by a third for minutes.
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     print("| | row | other build, ns | this build, ns | ratio | other against itself |")
     print("|---|---|---:|---:|---:|---:|")
     for part in (p for p in parts if p in PARTS):
         workload, orders = make_workloads(part, settings, folder)
         with contextlib.ExitStack() as stack:
-            # The other build twice: how far its own medians differ.
+            # Time the other build twice, to know how much its own medians differ.
             builds = [stack.enter_context(Program(p, workload)) for p in (other, program, other)]
             known = set.intersection(*(set(b.names()) for b in builds))
             for title, (points, count) in orders.items():

@@ -27,7 +27,7 @@ from workloads import (Workload, displaced_mesh, fan_mesh, few_lines, grid_in_sc
                        random_points, sliver_mesh)
 
 SYSTEMS = ("Linear", "Contour", "Smooth")
-# The two maps of the Cubic system, on small meshes only: its pairs at random bend least after many rounds.
+# The two maps of the Cubic system, on small meshes only: random pairs take many rounds of minimization.
 CUBIC = ("CubicLocal", "CubicLeast")
 PARTS = ("small", "large", "thin", "threads", "image", "construction", "cubic")
 
@@ -35,7 +35,7 @@ FULL = {"small": 21, "large": 1000, "thin": 224, "side": 800, "many": (4000, 250
         "construction": (100, 316, 1000), "cubic": (316, 1000), "repetitions": (5, 15)}
 QUICK = {"small": 21, "large": 300, "thin": 50, "side": 400, "many": (1000, 1000), "dense": (1000, 1000), "image": 512,
          "construction": (30, 95, 300), "cubic": (95, 300), "repetitions": (3, 5)}
-# Tens of rounding errors at the width of the domain: agreement to the last digits.
+# Some tens of rounding errors at the width of the domain.
 TOLERANCE = 1e-13
 
 

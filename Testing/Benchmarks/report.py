@@ -136,7 +136,7 @@ def goals(r):
 
 
 def agreement(checks):
-    """What computes the same is compared: by part how often, and how well it agrees; what differs by itself."""
+    """A table of the comparisons between equivalent rows, by part, and a line for each comparison that failed."""
     lines = ["## Agreement", "", "Rows that compute the same, and points with their round trips. Tolerances are 1e-13 times the "
              "width of the domain, ten times that for round trips, nothing where bits must be equal, and a gray level for images.",
              "", "| | comparisons | equal bit for bit | largest share of the tolerance | too different |", "|---|---:|---:|---:|---:|"]

@@ -78,7 +78,7 @@ vtkSmartPointer<vtkCellArray> RawCells(Input& input, int count, int points)
         points == 0 || input.Chance(64) ? input.Byte() - 8 : input.Below(points));
     }
     const auto end = static_cast<int>(connectivity->GetNumberOfValues());
-    // Invalid offsets are often wrong by little.
+    // Invalid offsets often differ only slightly from valid ones.
     const int wrong = sound || input.Chance(2) ? 0 : input.Below(5) - 2;
     offsets->InsertNextValue(sound || wrong != 0 ? end + wrong : input.Byte() - 8);
   }
@@ -178,8 +178,8 @@ std::shared_ptr<const homeomorphism::Homeomorphism> MakeMap(vtkPolyData* source,
   return homeomorphism::Homeomorphism::Make(source, target, options, problems);
 }
 
-/// Whether rounding may move an image out of the domain: not for a point of the mesh, but for a
-/// point equally far from a plane that is not parallel to two axes.
+/// Whether rounding may move an image out of the domain. This is possible far from the origin, if
+/// the rounding error of the image exceeds the tolerance of the domain.
 bool IsFarBeside(
   const homeomorphism::Homeomorphism& map, homeomorphism::Domain domain, const double image[3])
 {
@@ -188,7 +188,8 @@ bool IsFarBeside(
   return 4.0 * HalfUlp * largest * scale > map.GetAbsoluteTolerance(domain, 0.0, HalfUlp);
 }
 
-/// An image of a point is finite, like its determinant, and found in the other domain.
+/// Fails unless an image is finite, its determinant is not NaN, and the image is found in the other
+/// domain.
 void CheckImage(const homeomorphism::Homeomorphism& map, homeomorphism::Domain from,
   const double image[3], double determinant, bool isFound)
 {
@@ -206,7 +207,7 @@ void CheckImage(const homeomorphism::Homeomorphism& map, homeomorphism::Domain f
   }
 }
 
-/// Below the filters, which is far faster.
+/// Maps the points without the filters, which is far faster.
 void MapDirectly(
   vtkPolyData* source, vtkPolyData* target, vtkPoints* points, const Setting& setting, bool tame)
 {

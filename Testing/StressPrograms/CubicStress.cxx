@@ -152,7 +152,9 @@ void RunNeedles()
 void RunStars()
 {
   Random random(3);
-  // By whether the rays turn within 90 degrees: stars, with a derivative at once, in rings, none.
+  // Row 0 is for stars whose rays turn by less than 90 degrees, row 1 for others. The columns count
+  // all stars, those with a derivative without rings, those with a derivative inside rings, and
+  // those without a derivative.
   int numbers[2][4] = {};
   int uncertified = 0;
   std::vector<int> rings;
@@ -232,7 +234,8 @@ void RunFar()
   Print("graded, LOCAL", result);
 }
 
-/// Root mean square of the second differences at a step of a tenth of an edge, edges being 1.
+/// The root mean square of the second differences at a step of a tenth of an edge, with the edge as
+/// the unit of length.
 double SecondDifferences(const CubicMap& map, bool linear, int cells)
 {
   const PlanarPair& pair = map.GetPair();

@@ -23,14 +23,13 @@ struct TestedSystem
   const char* Name;
   homeomorphism::CoordinateSystem System;
   homeomorphism::CenterPoint Center;
-  /// Power of ten of the least height over base that the system accepts.
+  /// The decimal exponent of the least ratio of height to base that the system accepts.
   double Thinnest;
-  /// Factor of the exponents of all shapes: less than 1 for a system that accepts
-  /// less.
-  double Malice;
+  /// The factor of the exponents of all shapes, less than 1 for a system that accepts fewer shapes.
+  double Difficulty;
 
   /// Whether all triangles must be concordant.
-  bool IsChoosy() const
+  bool RequiresConcordance() const
   {
     return this->System == homeomorphism::CoordinateSystem::Contour &&
       this->Center == CenterPoint::Centroid;
@@ -90,7 +89,7 @@ enum class Shape
 };
 
 /// The apex of a triangle over the edge from (0, 0) to (1, 0).
-inline Vector2 AnyApex(Random& random, Shape shape, double malice, double thinnest)
+inline Vector2 AnyApex(Random& random, Shape shape, double difficulty, double thinnest)
 {
   switch (shape)
   {
@@ -98,22 +97,22 @@ inline Vector2 AnyApex(Random& random, Shape shape, double malice, double thinne
       return { random.Uniform(-0.3, 1.3), random.Uniform(0.3, 1.5) };
     case Shape::Ratio:
       return { random.Chance(0.5) ? random.Uniform()
-                                  : random.Uniform(-20.0 * malice, 1.0 + 20.0 * malice),
-        random.PowerOfTen(-6.0 * malice, 6.0 * malice) };
+                                  : random.Uniform(-20.0 * difficulty, 1.0 + 20.0 * difficulty),
+        random.PowerOfTen(-6.0 * difficulty, 6.0 * difficulty) };
     default:
       return { random.Proportion(),
-        random.Chance(0.3) ? random.PowerOfTen(0.0, 15.0 * malice)
+        random.Chance(0.3) ? random.PowerOfTen(0.0, 15.0 * difficulty)
                            : random.PowerOfTen(thinnest, 0.0) };
   }
 }
 
 /// Two triangles with a common edge.
 inline std::vector<Vector2> TwoTriangles(
-  Random& random, Shape shape, double malice, double thinnest, bool concordant)
+  Random& random, Shape shape, double difficulty, double thinnest, bool concordant)
 {
   const auto apex = [&]() {
     return concordant ? ConcordantApex(random, shape != Shape::Fair)
-                      : AnyApex(random, shape, malice, thinnest);
+                      : AnyApex(random, shape, difficulty, thinnest);
   };
   const Vector2 left = apex();
   const Vector2 right = apex();
@@ -121,16 +120,16 @@ inline std::vector<Vector2> TwoTriangles(
 }
 
 /// A triangle and its three neighbors. If they overlap, the mesh is refused.
-inline std::vector<Vector2> Cluster(Random& random, Shape shape, double malice)
+inline std::vector<Vector2> Cluster(Random& random, Shape shape, double difficulty)
 {
   std::vector<Vector2> points{ { 0.0, 0.0 }, { 1.0, 0.0 },
-    AnyApex(random, shape, malice, -15.0 * malice) };
+    AnyApex(random, shape, difficulty, -15.0 * difficulty) };
   for (int k = 0; k < 3; ++k)
   {
     const Vector2 start = points[NextCorner(k)];
     const Vector2 edge = points[PreviousCorner(k)] - start;
     const double height =
-      shape == Shape::Fair ? random.Uniform(0.1, 0.8) : random.PowerOfTen(-12.0 * malice, 0.0);
+      shape == Shape::Fair ? random.Uniform(0.1, 0.8) : random.PowerOfTen(-12.0 * difficulty, 0.0);
     points.push_back(
       start + random.Uniform(0.05, 0.95) * edge + height * Vector2{ edge.y, -edge.x });
   }
@@ -138,22 +137,23 @@ inline std::vector<Vector2> Cluster(Random& random, Shape shape, double malice)
 }
 
 /// A vertex with @a count triangles around it.
-inline std::vector<Vector2> Fan(Random& random, Shape shape, double malice, int count)
+inline std::vector<Vector2> Fan(Random& random, Shape shape, double difficulty, int count)
 {
   std::vector<double> angles(count);
   double sum = 0.0;
   for (double& angle : angles)
   {
     angle =
-      shape == Shape::Thin ? random.PowerOfTen(-12.0 * malice, 0.0) : random.Uniform(0.2, 1.0);
+      shape == Shape::Thin ? random.PowerOfTen(-12.0 * difficulty, 0.0) : random.Uniform(0.2, 1.0);
     sum += angle;
   }
   std::vector<Vector2> points{ { 0.0, 0.0 } };
   double at = 0.0;
   for (const double angle : angles)
   {
-    const double radius = shape == Shape::Fair ? random.Uniform(0.5, 1.5)
-                                               : random.PowerOfTen(-3.0 * malice, 3.0 * malice);
+    const double radius = shape == Shape::Fair
+      ? random.Uniform(0.5, 1.5)
+      : random.PowerOfTen(-3.0 * difficulty, 3.0 * difficulty);
     points.push_back({ radius * std::cos(at), radius * std::sin(at) });
     at += 6.283185307179586 * angle / sum;
   }
@@ -192,8 +192,8 @@ inline Triangles GridCells()
   return cells;
 }
 
-/// Transforms a mesh according to its family: rotation, scale, translation, rounding.
-inline void Put(Random& random, int family, bool turn, std::vector<Vector2>& points)
+/// Transforms a mesh according to its family, by rotation, scaling, translation and rounding.
+inline void TransformMesh(Random& random, int family, bool turn, std::vector<Vector2>& points)
 {
   double size = 0.0;
   for (const Vector2& p : points)
@@ -245,8 +245,8 @@ inline PlanePair AnyPair(Random& random, int family, const TestedSystem& system)
   constexpr std::array<Shape, 3> shapes{ Shape::Fair, Shape::Ratio, Shape::Thin };
   const Shape shape = family <= NEEDLES ? shapes[family] : shapes[random.Below(3)];
   PlanePair pair;
-  const bool concordant = system.IsChoosy();
-  const double malice = system.Malice;
+  const bool concordant = system.RequiresConcordance();
+  const double difficulty = system.Difficulty;
   const int kind = concordant ? (shape == Shape::Fair ? random.Below(2) : 0) : random.Below(4);
   const int count = random.Integer(3, 24);
   for (int side = 0; side < 2; ++side)
@@ -258,18 +258,19 @@ inline PlanePair AnyPair(Random& random, int family, const TestedSystem& system)
     {
       case 0:
         points = TwoTriangles(
-          random, shape, malice, extreme ? system.Thinnest : -15.0 * malice, concordant);
+          random, shape, difficulty, extreme ? system.Thinnest : -15.0 * difficulty, concordant);
         break;
       case 1:
-        points = shape == Shape::Fair ? Grid(random, concordant) : Cluster(random, shape, malice);
+        points =
+          shape == Shape::Fair ? Grid(random, concordant) : Cluster(random, shape, difficulty);
         break;
       case 2:
-        points = Cluster(random, shape, malice);
+        points = Cluster(random, shape, difficulty);
         break;
       default:
-        points = Fan(random, shape, malice, count);
+        points = Fan(random, shape, difficulty, count);
     }
-    Put(random, family, turn, points);
+    TransformMesh(random, family, turn, points);
   }
   if (kind == 0)
   {

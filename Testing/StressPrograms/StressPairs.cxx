@@ -134,7 +134,8 @@ void Table()
   Row("national grid, float", Scaled(Noise(500, 0.3, 3), 3.5e6, 6.7e6, 1e5, true));
 }
 
-/// For one number of landmarks, so that the largest memory is its own.
+/// Prints the row of one number of landmarks and the peak memory of the process, which should run
+/// nothing else.
 void Growth(int number)
 {
   Row("smooth", Smooth(number, 4));
@@ -143,7 +144,7 @@ void Growth(int number)
   std::printf("%d smooth landmarks: at most %.0f MB\n", number, usage.ru_maxrss / 1e3);
 }
 
-/// Of the inside of an outline, or of landmarks in a frame.
+/// Prints the curve for the interior of an outline, or for landmarks in a frame.
 int Curve(const std::string& name, int maximum, int step)
 {
   const bool isOutline = name == "letters-U-S" || name == "outlines-37";

@@ -211,8 +211,8 @@ private:
     return l[0] * corners[0] + l[1] * corners[1] + l[2] * corners[2];
   }
 
-  /// A point in coordinates of the input: anywhere, on and within a few ulp of the lines where
-  /// formulas change.
+  /// A random point in coordinates of the input: anywhere, or on or within a few ulp of the lines
+  /// at which formulas change.
   Vector3 AnyPoint(Domain domain, TriangleIndex triangle)
   {
     Random& random = this->Numbers;
@@ -296,7 +296,7 @@ private:
       domain, point.data(), this->Map->GetAbsoluteTolerance(domain, 0.0, HalfUlp), hint);
   }
 
-  /// Of the derivative in normalized coordinates.
+  /// The norm and the determinant of the derivative in normalized coordinates.
   struct Derivative
   {
     double Norm;
@@ -327,7 +327,8 @@ private:
     return size;
   }
 
-  /// The stretch of the reference by the chart of a triangle, over its longest edge; at least 1.
+  /// The stretch of the reference by the chart of a triangle, divided by its longest edge; at
+  /// least 1.
   double StretchAt(Domain domain, const SurfacePoint& surfacePoint, const Barycentric& l) const
   {
     return Magnification(this->Map->GetCharts(domain).GetSmoothChart(surfacePoint.Triangle),
@@ -573,7 +574,7 @@ private:
       {
         return;
       }
-      // Almost affine: the image is nearly the same for each of the derivatives.
+      // The map is almost affine if the images under all derivatives are nearly the same.
       const double predicted = Cross(derivatives[0] * first, derivatives[0] * second);
       bool tame = predicted > 0.0;
       double longest = 0.0;
@@ -617,7 +618,7 @@ private:
   const bool Log;
 };
 
-/// The options of the command line with their defaults. Empty names are those of all.
+/// The options of the command line with their defaults. An empty name selects all.
 std::map<std::string, std::string> Options{ { "--points", "0" }, { "--seed", "1" },
   { "--system", "" }, { "--family", "" }, { "--case", "-1" },
   { "--threads", std::to_string(std::max(1u, std::thread::hardware_concurrency())) } };
