@@ -246,8 +246,8 @@ std::string DescribeDefects(vtkDataObject* data)
   return text;
 }
 
-/// Points of its own for a copy: vtkPoints stores its bounds when they are computed, and another
-/// thread may use the original at the same time.
+/// A copy of the points. vtkPoints stores its bounds when they are computed, and another thread may
+/// use the original at the same time.
 vtkSmartPointer<vtkPoints> CopyPoints(vtkPointSet* data)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();

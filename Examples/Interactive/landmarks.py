@@ -76,7 +76,7 @@ class Session:
             widget = set_up(vtk.vtkHandleWidget(), Representation=(vtk.vtkPointHandleRepresentation2D(),),
                             Interactor=(self.interactor,), DefaultRenderer=(self.renderers[side],),
                             CurrentRenderer=(self.renderers[side],))
-            # While dragging, the first pair found is taken, with as many points as it needs; then one with few.
+            # While dragging, use the first pair found, with as many points as it needs. Afterwards, find one with few.
             widget.AddObserver("InteractionEvent", lambda *_, side=side: self.drag(side, 1000))
             widget.AddObserver("EndInteractionEvent", lambda *_, side=side: self.drag(side, -1))
             self.widgets.append(widget)
@@ -125,7 +125,7 @@ class Session:
         areas = [numpy.cross(p[cells[:, 1]] - p[cells[:, 0]], p[cells[:, 2]] - p[cells[:, 0]]) for p in points]
         self.folded = cells[areas[0] * areas[1] <= 0]
         self.folds.GetMapper().SetInputData(make_mesh(points[1], self.folded))
-        # Landmarks outside of the frame or on each other: the last pair stays.
+        # If landmarks are outside of the frame or coincide, keep the last pair.
         valid = self.maker.GetNumberOfProblems() == 0
         for side in (0, 1) if valid else ():
             self.pair[side].ShallowCopy(self.maker.GetOutput(side))

@@ -39,7 +39,7 @@ public:
   struct Answer
   {
     Refusal Why = Refusal::None;
-    /// In which domain, or -1.
+    /// The domain of the obstacle, or -1 if the two domains disagree.
     int Domain = -1;
     /// The ends of the constrained edge that is crossed, the vertex that is met (twice), or
     /// vertices on different sides.

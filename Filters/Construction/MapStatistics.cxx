@@ -174,7 +174,7 @@ SecondDifference MeasureSecondDifference(
     static_cast<vtkIdType>(std::min(1e6, std::max(5e4, 16.0 * static_cast<double>(valid.size()))));
   const double tolerance =
     map.GetAbsoluteTolerance(Domain::Source, 0.0, 0.5 * std::numeric_limits<double>::epsilon());
-  // In normalized coordinates.
+  // The step in normalized coordinates.
   const double step = 0.1 * meanSourceEdge * geometry.GetScale();
   const double height = std::sqrt(0.75) * step;
   const std::array<Vector2, 3> directions{ Vector2{ step, 0.0 }, Vector2{ 0.5 * step, height },

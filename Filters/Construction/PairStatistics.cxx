@@ -68,7 +68,7 @@ void ForEachTriangle(const Triangulation& triangulation, Work&& work)
   });
 }
 
-/// From a boundary edge of a triangle and one of its ends, the next boundary edge around that end.
+/// Moves from a boundary edge of a triangle to the next boundary edge around one of its ends.
 void StepAlongBoundary(
   const Triangulation& triangulation, TriangleIndex& triangle, int& edge, std::int32_t& end)
 {

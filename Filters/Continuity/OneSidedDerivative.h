@@ -140,7 +140,7 @@ private:
     {
       return std::ldexp(1.0, -i);
     }
-    // To 2^-10 / 4000 in six more steps, then to 2^-10 / 8e8 in five.
+    // The steps decrease to 2^-10 / 4000 in six steps, then to 2^-10 / 8e8 in five.
     constexpr std::array<double, MaximumSteps - HalvedSteps> rest{ 0.27, 0.07, 0.019, 5e-3, 1.3e-3,
       2.5e-4, 4e-5, 3e-6, 2e-7, 1.7e-8, 1.25e-9 };
     return std::ldexp(rest[i - HalvedSteps], 1 - HalvedSteps);

@@ -131,8 +131,8 @@ RayFan RayFans::GetAroundVertex(std::int32_t point) const
       static_cast<int>(std::find(corners.begin(), corners.end(), point) - corners.begin());
     this->AddRays(fan, triangle, shape.Corner(NextCorner(corner)) - shape.Corner(corner),
       shape.Corner(PreviousCorner(corner)) - shape.Corner(corner), [&](const Vector2& direction) {
-        // Through the opposite edge, because rounding must not let a ray along an edge leave
-        // through that edge.
+        // The length up to the opposite edge. By rounding, a ray along an edge could otherwise
+        // leave through that edge.
         return -1.0 / shape.VectorToBarycentric(direction)[corner];
       });
   }

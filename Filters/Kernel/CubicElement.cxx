@@ -75,7 +75,7 @@ Vector<T> Apply(const Matrix2& m, const Vector<T>& v)
 struct ElementFrame
 {
   std::array<Vector2, 3> Points;
-  /// By the axes.
+  /// The derivatives along the axes.
   std::array<Matrix2, 3> Gradients;
 
   explicit ElementFrame(const CubicElement& element)
@@ -549,9 +549,9 @@ CubicOrdinates<Vector2> GetOrdinates(const CubicElement& element)
     const Vector2 slopes = frame.Gradients[i] * edge + frame.Gradients[j] * edge;
     b.AfterStart[k] = b.Corner[i] + third * (frame.Gradients[i] * edge);
     b.BeforeEnd[k] = b.Corner[j] - third * (frame.Gradients[j] * edge);
-    // From the edge's midpoint to the centroid. In this direction the derivative at the midpoint is
-    // the mean of the normal derivatives at the ends plus the cubic's own derivative along the
-    // edge.
+    // The vector from the edge's midpoint to the centroid. In this direction, the derivative at the
+    // midpoint is the mean of the normal derivatives at the ends plus the cubic's own derivative
+    // along the edge.
     const Vector2 toMiddle = toCentroid[i] - half * edge;
     const double along = Dot(toMiddle, edge) / Dot(edge, edge);
     b.Middle[k] = half * (b.AfterStart[k] + b.BeforeEnd[k]) +
@@ -581,7 +581,7 @@ Matrix2 Derive(const CubicElement& element, const Barycentric& l)
     weights[2] * d.Corner[j] + weights[3] * d.Spoke[i] + weights[4] * d.Spoke[j] +
     weights[5] * d.Center;
   const Matrix2 derivative{ { sum.First.x, sum.First.y }, { sum.Second.x, sum.Second.y } };
-  // From the frame's axes to the plane's.
+  // Convert from the axes of the frame to those of the plane.
   return isRight ? OuterProduct(derivative.ImageOfX, element.Right.Tangent) +
       OuterProduct(derivative.ImageOfY, element.Right.Normal)
                  : derivative;

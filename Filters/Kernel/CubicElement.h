@@ -258,7 +258,7 @@ public:
   {
     const auto [lesser, n0, n1, n2, w] = InPiece(l0, l1, l2);
     const double ww = w * w;
-    // By n_0, n_1, n_2 and w.
+    // The derivatives by n_0, n_1, n_2 and w.
     const double by0 =
       n0 * (3.0 * n0 * b.Corner[0] + 2.0 * (n1 * b.Next[0] + n2 * b.Previous[0] + w * b.Inner[0])) +
       n2 * n2 * b.Next[2] + n1 * n1 * b.Previous[1] +

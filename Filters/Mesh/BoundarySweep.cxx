@@ -40,8 +40,8 @@ struct Crossed
   int CoverAbove;
 };
 
-/// From bottom to top along the sweep line, for segments that do not cross. Segments on one line
-/// are equivalent.
+/// The order from bottom to top along the sweep line, for segments that do not cross. Segments on
+/// one line are equivalent.
 struct BottomToTop
 {
   using is_transparent = void;

@@ -91,7 +91,7 @@ private:
       ViewFromEdges(this->Starts, this->Ends, this->Opposites, count, this->Views);
       for (int i = 0; i < count; ++i)
       {
-        // As Reversed does.
+        // The same operations as in Reversed.
         this->Unfolded.Length[i] = this->Views.Length[i];
         this->Unfolded.Foot[i] = turned[i] ? 1.0 - this->Views.Foot[i] : this->Views.Foot[i];
         this->Unfolded.Height[i] = this->Views.Height[i];

@@ -308,7 +308,7 @@ CubicTemplate::CubicTemplate(
       this->Derivatives[point] = total > 0.0 ? (1.0 / total) * mean : Matrix2{};
     }
   });
-  // Of the points, those that are not differentiable.
+  // The data of points that are not Differentiable; null for others.
   LargeVector<std::unique_ptr<Exception>> exceptions(static_cast<std::size_t>(points));
   LargeVector<std::int32_t> changed;
   LargeVector<std::int32_t> triangles;

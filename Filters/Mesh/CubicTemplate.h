@@ -114,7 +114,7 @@ public:
   /// their coordinates.
   bool IsStraight(int point) const { return this->Boundary[point] == 2; }
   double GetRadius(int point) const { return this->Radii[point]; }
-  /// Those of a triangle's cut.
+  /// The heights of the inner points in a triangle's cut.
   const std::array<double, 3>& GetHeights(int triangle) const { return this->Heights[triangle]; }
   /// The derivative at a point that is differentiable.
   const Matrix2& GetDerivative(int point) const { return this->Derivatives[point]; }

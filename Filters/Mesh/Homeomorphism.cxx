@@ -123,16 +123,16 @@ struct SmoothCoordinates
   }
 };
 
-/// From barycentric coordinates to the plane of a triangle's frame, as
+/// Converts barycentric coordinates to the plane of a triangle's frame, as
 /// TriangleShape::FromBarycentric and PlaneFrame::FromFrame.
 HOMEOMORPHISM_ALWAYS_INLINE Vector2 ToPlane(const PlaneFrame& frame, double apex, double second)
 {
   return frame.FromFrame({ frame.Base * second + frame.ApexX * apex, frame.Height * apex });
 }
 
-/// From barycentric coordinates of a run to its images, in a plane parallel to the x and y axes at
-/// a distance from the origin. Offsets times @a slope are in the units of the input, as the images
-/// are. Overwrites up to WidestVector - 1 images after the last.
+/// Converts barycentric coordinates of a run to its images, in a plane parallel to the x and y axes
+/// at a distance from the origin. Offsets times @a slope are in the units of the input, as the
+/// images are. Overwrites up to WidestVector - 1 images after the last.
 template <typename Coordinates>
 HOMEOMORPHISM_FOR_WIDE_VECTORS void ToHorizontalPlane(const PlaneFrame& frame, double slope,
   double distance, double scale, double inverseScale, int begin, int end,
@@ -495,7 +495,7 @@ int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
   return missing;
 }
 
-/// From barycentric coordinates in the target's affine chart of a triangle to its points.
+/// Converts barycentric coordinates in the target's affine chart of a triangle to its points.
 template <typename Coordinates>
 void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin, int end,
   const Coordinates& coordinates, PointBlock& block) const

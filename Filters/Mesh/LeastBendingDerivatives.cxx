@@ -64,7 +64,7 @@ Vector2 Multiply(const std::int32_t* first, const std::int32_t* columns, const B
   for (std::size_t point = begin; point < end; ++point)
   {
     const Matrix2 own = step[point];
-    // By x in x and y, by y in x and y.
+    // The x and y components of the derivative by x, then those of the derivative by y.
     double total[4] = { own.ImageOfX.x, own.ImageOfX.y, own.ImageOfY.x, own.ImageOfY.y };
     for (std::int32_t at = first[point]; at < first[point + 1]; ++at)
     {

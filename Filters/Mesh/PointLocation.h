@@ -41,7 +41,7 @@ struct PlaneRelation
   {
     const Vector2 d = point - frame.Origin;
     this->InPlane = { Dot(d, frame.Tangent), frame.Orientation * Cross(frame.Tangent, d) };
-    // As in TriangleShape::ToBarycentric.
+    // The same formulas as in TriangleShape::ToBarycentric.
     this->Apex = this->InPlane.y / frame.Height;
     this->Second = (this->InPlane.x - frame.ApexX * this->Apex) / frame.Base;
     this->First = 1.0 - this->Apex - this->Second;

@@ -208,7 +208,7 @@ inline void TransformMesh(Random& random, int family, bool turn, std::vector<Vec
   switch (family)
   {
     case SURVEY:
-      // From a few meters to a country.
+      // Sizes from a few meters to a country.
       scale = random.PowerOfTen(0.5, 5.5) / size;
       shift = { random.Uniform(3.2e6, 3.9e6), random.Uniform(5.2e6, 6.1e6) };
       grain = 1000.0;
