@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -151,27 +152,15 @@ inline std::vector<Vector2> Circle(int corners, double radius = 1.0, Vector2 cen
 inline FigurePair Annulus(int corners, double turn, bool island)
 {
   FigurePair figure;
-  for (int d = 0; d < 2; ++d)
+  for (int circle = 0; circle < (island ? 3 : 2); ++circle)
   {
-    figure.Points[d] = Circle(corners, 4.0);
-    for (const double radius : { 2.0, 1.0 })
+    figure.Loops.push_back(Range(circle * corners, (circle + 1) * corners));
+    const double a = circle == 0 ? 0.0 : turn;
+    for (const Vector2& p : Circle(corners, std::ldexp(4.0, -circle)))
     {
-      for (const Vector2& p : Circle(corners, radius))
-      {
-        const double a = d * turn;
-        figure.Points[d].push_back(
-          { std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y });
-      }
+      Add(figure, p,
+        { std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y });
     }
-    if (!island)
-    {
-      figure.Points[d].resize(static_cast<std::size_t>(2 * corners));
-    }
-  }
-  figure.Loops = { Range(0, corners), Range(corners, 2 * corners) };
-  if (island)
-  {
-    figure.Loops.push_back(Range(2 * corners, 3 * corners));
   }
   return figure;
 }
@@ -255,11 +244,7 @@ inline bool Read(const std::string& name, FigurePair& figure, bool withLines)
   while (withLines && std::getline(lines, line))
   {
     std::istringstream words(line);
-    std::vector<int> ids;
-    for (int id; words >> id;)
-    {
-      ids.push_back(id);
-    }
+    const std::vector<int> ids(std::istream_iterator<int>(words), {});
     if (ids.size() > 1)
     {
       figure.Lines.push_back(ids);

@@ -70,21 +70,16 @@ void ExpectConforming(vtkPolyData* mesh, double size)
   }
 }
 
-/// A square of four triangles whose center is moved.
-MeshPair MakeSquare()
-{
-  const auto make = [](double x, double y) {
-    return MakeMesh({ { 0, 0, 0 }, { 3, 0, 0 }, { 3, 3, 0 }, { 0, 3, 0 }, { x, y, 0 } },
-      { { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 } });
-  };
-  return { make(1.5, 1.5), make(2.1, 1.8) };
-}
-
 TEST(RefinedTriangulationPair, KeepsTheMaximumErrorPointsAndAreas)
 {
   using Filter = vtkRefinedTriangulationPair;
   const MeshPair planar = MakePlanarPair(4, 23);
-  const MeshPair upright = MakeSquare();
+  // Four triangles whose common corner is moved.
+  const auto square = [](double x, double y) {
+    return MakeMesh({ { 0, 0, 0 }, { 3, 0, 0 }, { 3, 3, 0 }, { 0, 3, 0 }, { x, y, 0 } },
+      { { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 } });
+  };
+  const MeshPair upright{ square(1.5, 1.5), square(2.1, 1.8) };
   const auto turn = [](const Point& p) {
     return Point{ 100.0 + 0.8 * p[0] - 0.7 * p[1], 0.6 * p[0] + 0.9 * p[1], 0.0 };
   };

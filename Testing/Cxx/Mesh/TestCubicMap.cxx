@@ -133,18 +133,6 @@ void ExpectRoundTrip(const CubicMap& map, int count, double deviation = 1e300)
   }
 }
 
-/// A grid, and its image by a smooth map.
-PlanarPair SmoothPair(int cells, double jitter, double size)
-{
-  Random random(31);
-  PlanarPair pair = JitteredGrid(random, cells, jitter);
-  for (Vector2& p : pair.Target)
-  {
-    p = p + size * std::sin(3.0 * p.x) * Vector2{ std::sin(4.0 * p.y), std::cos(2.0 * p.x) };
-  }
-  return pair;
-}
-
 /// A grid, and its image by a smooth map that keeps the square: all vertices of the boundary but
 /// the corners are straight.
 PlanarPair DisplacedGrid(int cells)
@@ -174,9 +162,7 @@ PlanarPair Wheel(const LargeVector<Vector2>& source, const LargeVector<Vector2>&
 
 } // anonymous namespace
 
-class CubicMaps : public testing::TestWithParam<CubicBending>
-{
-};
+using CubicMaps = testing::TestWithParam<CubicBending>;
 
 INSTANTIATE_TEST_SUITE_P(
   Bending, CubicMaps, testing::Values(CubicBending::Local, CubicBending::Least));
@@ -513,8 +499,13 @@ TEST(CubicMap, BoundsOfSmoothPairsAreBelowAllCoefficients)
 {
   for (double size : { 0.02, 0.1, 0.2 })
   {
-    const CubicMap map(SmoothPair(40, 0.3, size), Options(CubicBending::Local));
-    const PlanarPair& pair = map.GetPair();
+    Random random(31);
+    PlanarPair pair = JitteredGrid(random, 40, 0.3);
+    for (Vector2& p : pair.Target)
+    {
+      p = p + size * std::sin(3.0 * p.x) * Vector2{ std::sin(4.0 * p.y), std::cos(2.0 * p.x) };
+    }
+    const CubicMap map(pair, Options(CubicBending::Local));
     int bounded = 0;
     for (int t = 0; t < pair.GetNumberOfTriangles(); ++t)
     {

@@ -143,17 +143,11 @@ User MakeTransformUser(const MeshPair& pair)
 
 using MakeAUser = User (*)(const MeshPair&);
 
-std::string NameOfUser(const ::testing::TestParamInfo<MakeAUser>& info)
-{
-  return info.param(MakeTwoSquares()).Name;
-}
-
-class ChangedMeshes : public ::testing::TestWithParam<MakeAUser>
-{
-};
+using ChangedMeshes = ::testing::TestWithParam<MakeAUser>;
 
 INSTANTIATE_TEST_SUITE_P(Users, ChangedMeshes,
-  ::testing::Values(&MakeFilterUser, &MakeCoordinatesUser, &MakeTransformUser), NameOfUser);
+  ::testing::Values(&MakeFilterUser, &MakeCoordinatesUser, &MakeTransformUser),
+  [](const ::testing::TestParamInfo<MakeAUser>& one) { return one.param(MakeTwoSquares()).Name; });
 
 TEST_P(ChangedMeshes, GiveTheAnswersOfNewMeshes)
 {
