@@ -26,21 +26,17 @@ std::vector<CommonMap::Face> FacesOf(const CommonMap& map)
   return faces;
 }
 
-/// Draws an outline through the first points. False if it is not simple.
-bool DrawOutline(CommonMap& map, int m)
+/// Draws an outline through the first points.
+void DrawOutline(CommonMap& map, int m)
 {
   std::vector<std::array<int, 2>> edges;
   for (int i = 0; i < m; ++i)
   {
     edges.push_back({ i + ConstrainedTriangulation::BoxCorners,
       (i + 1) % m + ConstrainedTriangulation::BoxCorners });
-    if (map.Add(edges.back()[0], edges.back()[1]).Why != CommonMap::Refusal::None)
-    {
-      return false;
-    }
+    EXPECT_EQ(CommonMap::Refusal::None, map.Add(edges.back()[0], edges.back()[1]).Why);
   }
   map.MarkOutside(edges);
-  return true;
 }
 
 /// The only face of a map whose only edges are those of an outline.
@@ -52,7 +48,7 @@ struct OnlyFace
   explicit OnlyFace(const FigurePair& figure)
   {
     CommonMap map(figure.Points);
-    EXPECT_TRUE(DrawOutline(map, static_cast<int>(figure.Points[0].size())));
+    DrawOutline(map, static_cast<int>(figure.Points[0].size()));
     const std::vector<CommonMap::Face> faces = FacesOf(map);
     EXPECT_EQ(1u, faces.size());
     this->Triangles = faces.at(0).Triangles;
@@ -147,7 +143,7 @@ TEST(FaceFilling, PartsOfLargeFacesHaveFewerCrossings)
   std::rotate(moved.begin(), moved.begin() + 150, moved.end());
   const FigurePair figure = Outline(band, moved);
   CommonMap map(figure.Points);
-  ASSERT_TRUE(DrawOutline(map, 600));
+  DrawOutline(map, 600);
   const auto crossings = [&]() {
     int sum = 0;
     for (const CommonMap::Face& face : FacesOf(map))
@@ -465,7 +461,7 @@ TEST(FaceFilling, BridgesAreStraightWherePossible)
   // The inner circle is turned so that some edges of the source would have to bend in the target.
   const FigurePair figure = Annulus(8, 0.8, false);
   CommonMap map(figure.Points);
-  ASSERT_TRUE(DrawOutline(map, 8));
+  DrawOutline(map, 8);
   for (int i = 0; i < 8; ++i)
   {
     map.Add(12 + i, 12 + (i + 1) % 8);

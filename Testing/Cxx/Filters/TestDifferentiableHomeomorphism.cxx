@@ -144,8 +144,7 @@ TEST_P(FilterInEverySystem, AffineMapsAreReproduced)
     const std::vector<MeshPoint> samples = RandomSamples(source, 10000, 8);
     const auto cloud = MakeCloud(source, samples);
     const auto filter = MakeFilter(GetParam(), { source, target }, cloud);
-    filter->ComputeJacobianOn();
-    filter->ComputeJacobianDeterminantOn();
+    ComputeEverything(filter);
     vtkPointSet* output = Output(filter);
     EXPECT_EQ(filter->GetNumberOfOutsidePoints(), 0);
     for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)

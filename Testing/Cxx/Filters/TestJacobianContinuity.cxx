@@ -38,9 +38,8 @@ std::vector<double> CellValues(Continuity* filter, const char* name)
 
 std::pair<vtkIdType, vtkIdType> TrianglesAt(Continuity* filter, vtkIdType cell)
 {
-  double triangles[2];
-  CellArray(filter->GetOutput(), "EdgeTriangles")->GetTuple(cell, triangles);
-  return { static_cast<vtkIdType>(triangles[0]), static_cast<vtkIdType>(triangles[1]) };
+  const Point ids = VectorOf(CellArray(filter->GetOutput(), "EdgeTriangles"), cell);
+  return { static_cast<vtkIdType>(ids[0]), static_cast<vtkIdType>(ids[1]) };
 }
 
 std::vector<vtkIdType> CellsOf(Continuity* filter, int featureType)

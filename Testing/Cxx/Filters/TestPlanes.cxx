@@ -95,8 +95,7 @@ void ExpectHeightsKept(
     }
     const auto filter = MakeFilter(system, pair, MakeCloud(samples));
     filter->SetInverse(inverse);
-    filter->ComputeJacobianOn();
-    filter->ComputeJacobianDeterminantOn();
+    ComputeEverything(filter);
     vtkPointSet* output = Output(filter);
     ASSERT_EQ(filter->GetNumberOfOutsidePoints(), 0);
     for (std::size_t i = 0; i < samples.size(); ++i)

@@ -113,8 +113,7 @@ TEST(Resample, ImagesAreSampledAtPreimages)
 {
   const MeshPair pair = MakePair();
   const auto filter = MakeResample(pair, MakeImage());
-  filter->Update();
-  auto* image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* image = vtkImageData::SafeDownCast(Output(filter.Get()));
   ASSERT_TRUE(image);
   EXPECT_EQ(image->GetDimensions()[0], 50);
   EXPECT_EQ(image->GetDimensions()[1], 40);
@@ -142,8 +141,7 @@ TEST(Resample, AnyGridAndAnyDataAreSupported)
     points.push_back({ random.Uniform(-1.0, 16.0), random.Uniform(-1.0, 7.0), 0.0 });
   }
   filter->SetGridData(MakeCloud(points));
-  filter->Update();
-  auto* cloud = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* cloud = vtkPolyData::SafeDownCast(Output(filter.Get()));
   ASSERT_TRUE(cloud);
   ExpectPulledBack(cloud, pair);
 
@@ -172,9 +170,8 @@ TEST(Resample, PiecesFormTheWhole)
 {
   const MeshPair pair = MakePair();
   const auto whole = MakeResample(pair, MakeImage());
-  whole->Update();
   const auto pieces = MakeResample(pair, MakeImage());
-  auto* expected = vtkImageData::SafeDownCast(whole->GetOutputDataObject(0));
+  auto* expected = vtkImageData::SafeDownCast(Output(whole.Get()));
   for (int piece = 0; piece < 3; ++piece)
   {
     pieces->UpdatePiece(piece, 3, 0);

@@ -106,7 +106,8 @@ inline Reading ReadMasked(const MeshPair& pair)
 }
 
 /// The meshes are refused with these defects, each of which has the remedy that belongs to it.
-inline void ExpectRefused(const Reading& reading, const std::vector<Defect>& defects, Remedy remedy)
+inline void ExpectRefused(
+  const Reading& reading, const std::vector<Defect>& defects, Remedy remedy = Remedy::RepairOrMask)
 {
   EXPECT_FALSE(reading.Map);
   EXPECT_EQ(reading.Defects(), defects);

@@ -72,14 +72,11 @@ void CompareTable(const std::string& name, std::size_t least, MakeChart makeChar
       { row.at("J12"), row.at("J22") } };
     // The point is known to an ulp of the coordinates of its triangle. The map transforms this
     // error.
-    double extent = 0.0;
-    double imageExtent = 0.0;
-    for (int k = 0; k < 3; ++k)
-    {
-      extent = std::max(extent, Norm(p.Corners[k]));
-      imageExtent = std::max(imageExtent, Norm(q.Corners[k]));
-    }
-    const double mapped = extent * Norm(expectedDerivative) + imageExtent;
+    const auto extentOf = [](const PlaneTriangle& t) {
+      return std::max({ Norm(t.Corners[0]), Norm(t.Corners[1]), Norm(t.Corners[2]) });
+    };
+    const double extent = extentOf(p);
+    const double mapped = extent * Norm(expectedDerivative) + extentOf(q);
     EXPECT_LT(Norm(image - expectedImage), 2e-15 * mapped) << Description(p, point);
 
     const Matrix2 derivative = InPlane(p, q, MapDerivative(chartP, chartQ, reference));

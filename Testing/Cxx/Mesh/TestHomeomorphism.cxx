@@ -4,11 +4,7 @@
 // Mapping points in blocks gives the same results, bit for bit, as mapping each point alone, for
 // any order of the points.
 
-#include "Fixtures/FilterRuns.h"
-
-#include "Mesh/Homeomorphism.h"
-
-#include <memory>
+#include "Fixtures/Defects.h"
 
 namespace
 {
@@ -19,11 +15,10 @@ using namespace fixtures;
 std::shared_ptr<const Homeomorphism> Make(
   const MeshPair& pair, homeomorphism::CoordinateSystem system)
 {
-  MeshDiagnostics problems;
   HomeomorphismOptions options;
   options.System = system;
   options.DiscordantByLinear = true;
-  return Homeomorphism::Make(pair.Source, pair.Target, options, problems);
+  return Read(pair, options).Map;
 }
 
 /// Equal to the last bit, including the sign of zero and NaN.

@@ -241,9 +241,8 @@ TEST(MeshValidation, RepeatedCorner)
     triangles[10] = { 7, 7, 7 };
     const MeshPair pair = WithTriangles(MakePlanarPair(4, 19), triangles);
     const std::vector<Defect> defects{ { Kind::RepeatedCorner, Where::Source, { 9, 10 } } };
-    ExpectRefused(Read(pair), defects, Remedy::RepairOrMask);
-    ExpectRefused(Read(pair.Target), { { Kind::RepeatedCorner, Where::Triangulation, { 9, 10 } } },
-      Remedy::RepairOrMask);
+    ExpectRefused(Read(pair), defects);
+    ExpectRefused(Read(pair.Target), { { Kind::RepeatedCorner, Where::Triangulation, { 9, 10 } } });
     ExpectMasked(pair, defects);
   }
 }
@@ -272,8 +271,7 @@ TEST(MeshValidation, NotFinite)
   }
   const auto nowhere =
     MakeMesh(std::vector<Point>(4, { NotANumber, Infinity, 0.0 }), GridTriangles(1));
-  ExpectRefused(
-    Read(nowhere), { { Kind::NotFinite, Where::Triangulation, { 0, 1 } } }, Remedy::RepairOrMask);
+  ExpectRefused(Read(nowhere), { { Kind::NotFinite, Where::Triangulation, { 0, 1 } } });
 }
 
 TEST(MeshValidation, UnusedPointsMayBeAnywhere)
@@ -335,7 +333,7 @@ TEST(MeshValidation, DegenerateTrianglesInSpace)
       std::vector<Point>(3, { 1, 2, 3 }), std::vector<Point>(3, { 0, 0, 0 }) })
   {
     ExpectRefused(Read(MakeMesh(points, { { 0, 1, 2 } })),
-      { { Kind::DegenerateTriangle, Where::Triangulation, { 0 } } }, Remedy::RepairOrMask);
+      { { Kind::DegenerateTriangle, Where::Triangulation, { 0 } } });
   }
 }
 
@@ -353,8 +351,7 @@ TEST(MeshValidation, DefectsOfBothMeshesAreReportedWithTheirPositions)
   const Reading reading = Read(pair);
   ExpectRefused(reading,
     { { Kind::DegenerateTriangle, Where::Source, { 5, 6 } },
-      { Kind::DegenerateTriangle, Where::Target, { 31, 32 } } },
-    Remedy::RepairOrMask);
+      { Kind::DegenerateTriangle, Where::Target, { 31, 32 } } });
   // The first corner of the first triangle.
   EXPECT_EQ(reading.Diagnostics[0].Position, (Point{ 1.0, 1.0, 0.0 }));
   EXPECT_EQ(reading.Diagnostics[1].Position, PointOf(pair.Target, GridTriangles(4)[30][0]));
@@ -375,10 +372,8 @@ TEST(MeshValidation, NonManifoldEdges)
     SetTriangles(mesh, triangles);
   }
   const Ids cells{ 0, 1, 16, 17, 18, 19 };
-  ExpectRefused(
-    Read(pair), { { Kind::NonManifoldEdge, Where::Source, cells } }, Remedy::RepairOrMask);
-  ExpectRefused(Read(pair.Target), { { Kind::NonManifoldEdge, Where::Triangulation, cells } },
-    Remedy::RepairOrMask);
+  ExpectRefused(Read(pair), { { Kind::NonManifoldEdge, Where::Source, cells } });
+  ExpectRefused(Read(pair.Target), { { Kind::NonManifoldEdge, Where::Triangulation, cells } });
   ExpectMasked(pair, { { Kind::NonManifoldEdge, Where::Source, cells } });
 }
 
@@ -437,8 +432,7 @@ TEST(MeshValidation, Overlaps)
   MovePoint(folded.Target, 24, { 2.9, 3.5, 0.0 });
   ExpectRefused(Read(folded),
     { { Kind::Overlapping, Where::Source, { 28, 30, 31 } },
-      { Kind::Overlapping, Where::Target, { 28, 30, 31 } } },
-    Remedy::RepairOrMask);
+      { Kind::Overlapping, Where::Target, { 28, 30, 31 } } });
 
   // Two single triangles that touch, and that overlap.
   const auto apart =
@@ -453,8 +447,7 @@ TEST(MeshValidation, Overlaps)
 
   const auto twice =
     MakeMesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 }, { 2, 0, 1 } });
-  ExpectRefused(
-    Read(twice), { { Kind::Overlapping, Where::Triangulation, { 0, 1 } } }, Remedy::RepairOrMask);
+  ExpectRefused(Read(twice), { { Kind::Overlapping, Where::Triangulation, { 0, 1 } } });
 }
 
 TEST(MeshValidation, SurfacesMayPassThroughThemselves)

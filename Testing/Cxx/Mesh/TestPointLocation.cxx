@@ -4,10 +4,8 @@
 // Exactly the points of the closed domain are found, and the result depends only on the point: not
 // on the hint, the order, or the size of the coordinates.
 
-#include "Fixtures/FilterRuns.h"
+#include "Fixtures/Defects.h"
 #include "Fixtures/Triangulations.h"
-
-#include "Mesh/Homeomorphism.h"
 
 namespace
 {
@@ -21,12 +19,11 @@ using homeomorphism::TriangleIndex;
 
 std::shared_ptr<const Homeomorphism> Make(const MeshPair& pair)
 {
-  homeomorphism::MeshDiagnostics problems;
   homeomorphism::HomeomorphismOptions options;
   options.System = homeomorphism::CoordinateSystem::Linear;
-  auto map = Homeomorphism::Make(pair.Source, pair.Target, options, problems);
-  EXPECT_TRUE(map && problems.empty());
-  return map;
+  const Reading reading = Read(pair, options);
+  ExpectAccepted(reading);
+  return reading.Map;
 }
 
 SurfacePoint Locate(
