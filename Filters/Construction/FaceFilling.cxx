@@ -40,8 +40,7 @@ bool Cross(const Chord& a, const Chord& b)
 class ChordTriangulation
 {
 public:
-  ChordTriangulation(const CornerTriangles& triangles, int corners)
-    : Corners(corners)
+  explicit ChordTriangulation(const CornerTriangles& triangles)
   {
     for (const auto& t : triangles)
     {
@@ -100,7 +99,6 @@ private:
     return this->Apexes.at(chord)[IsBetween(corner, chord) ? 0 : 1];
   }
 
-  int Corners;
   std::map<Chord, std::array<int, 2>> Apexes;
 };
 
@@ -494,10 +492,10 @@ bool FindBestStarCenter(const std::vector<Vector2>& polygon, Vector2& center)
   return true;
 }
 
-int CountCrossings(const std::array<CornerTriangles, 2>& triangulations, int corners)
+int CountCrossings(const std::array<CornerTriangles, 2>& triangulations)
 {
-  const ChordTriangulation source(triangulations[0], corners);
-  const std::vector<Chord> others = ChordTriangulation(triangulations[1], corners).Diagonals();
+  const ChordTriangulation source(triangulations[0]);
+  const std::vector<Chord> others = ChordTriangulation(triangulations[1]).Diagonals();
   int count = 0;
   for (const Chord& chord : source.Diagonals())
   {
@@ -511,8 +509,8 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
   CornerTriangles& triangles)
 {
   const int m = static_cast<int>(polygons[0].size());
-  std::array<ChordTriangulation, 2> chords{ { ChordTriangulation(own[0], m),
-    ChordTriangulation(own[1], m) } };
+  std::array<ChordTriangulation, 2> chords{ { ChordTriangulation(own[0]),
+    ChordTriangulation(own[1]) } };
   LowerCrossings(polygons, chords);
   const std::array<std::vector<Chord>, 2> diagonals{ { chords[0].Diagonals(),
     chords[1].Diagonals() } };

@@ -54,7 +54,7 @@ bool FillByOverlay(const PolygonPair& polygons, const std::array<CornerTriangles
   CornerTriangles& triangles);
 
 /// The number of crossings between the diagonals of two triangulations of a polygon.
-int CountCrossings(const std::array<CornerTriangles, 2>& triangulations, int corners);
+int CountCrossings(const std::array<CornerTriangles, 2>& triangulations);
 
 } // namespace homeomorphism
 

@@ -113,8 +113,7 @@ struct Overlay : OnlyFace
   {
     EXPECT_TRUE(FillByOverlay(this->Polygons, this->Triangles, PairQuality::MinimumAngle,
       this->AddedPoints, this->Filling));
-    EXPECT_LE(static_cast<int>(this->AddedPoints[0].size()),
-      CountCrossings(this->Triangles, static_cast<int>(this->Polygons[0].size())));
+    EXPECT_LE(static_cast<int>(this->AddedPoints[0].size()), CountCrossings(this->Triangles));
     EXPECT_EQ("", CheckFilling(this->Polygons, this->AddedPoints, this->Filling));
   }
 };
@@ -148,7 +147,7 @@ TEST(FaceFilling, PartsOfLargeFacesHaveFewerCrossings)
     int sum = 0;
     for (const CommonMap::Face& face : FacesOf(map))
     {
-      sum += CountCrossings(face.Triangles, static_cast<int>(face.Walks[0].size()));
+      sum += CountCrossings(face.Triangles);
     }
     return sum;
   };
