@@ -15,12 +15,13 @@ using namespace fixtures;
 using Continuity = vtkJacobianContinuity;
 
 vtkSmartPointer<Continuity> Measure(
-  vtkPolyData* source, vtkAbstractTransform* transform, bool secondDerivatives = false)
+  vtkPolyData* source, vtkAbstractTransform* transform,
+  const std::function<void(Continuity*)>& change = [](Continuity*) {})
 {
   auto filter = vtkSmartPointer<Continuity>::New();
   filter->SetSourceData(source);
   filter->SetTransform(transform);
-  filter->SetSecondDerivatives(secondDerivatives);
+  change(filter);
   filter->Update();
   return filter;
 }
@@ -272,13 +273,13 @@ TEST(JacobianContinuity, CreasesOfTransformsAreFoundByTheirValues)
   map->Amount = 0.1;
   map->Exponent = 2;
   map->Modified();
-  const auto once = Measure(RegularGrid(14), map, true);
+  const auto once = Measure(RegularGrid(14), map, &Continuity::SecondDerivativesOn);
   EXPECT_EQ(once->GetNumberOfDifferentiableEdges(), once->GetOutput()->GetNumberOfCells());
   ExpectCreasesOnTheLineOnly(once, "SecondDerivativeVerdict");
 
   map->Exponent = 3;
   map->Modified();
-  const auto twice = Measure(RegularGrid(14), map, true);
+  const auto twice = Measure(RegularGrid(14), map, &Continuity::SecondDerivativesOn);
   for (const double verdict : CellValues(twice, "SecondDerivativeVerdict"))
   {
     EXPECT_EQ(verdict, Continuity::DIFFERENTIABLE);
@@ -288,20 +289,13 @@ TEST(JacobianContinuity, CreasesOfTransformsAreFoundByTheirValues)
 TEST(JacobianContinuity, AnyTransformIsMeasuredAtAllFeatures)
 {
   const MeshPair pair = MakePlanarPair(8, 9, 0.15);
-  vtkNew<Continuity> filter;
-  filter->SetSourceData(pair.Source);
-  filter->SetTransform(MakeThinPlateSpline(pair, 7));
-  ListEverything(filter);
-  filter->Update();
-  ExpectAllDifferentiable(filter);
+  ExpectAllDifferentiable(Measure(pair.Source, MakeThinPlateSpline(pair, 7), ListEverything));
 
   // A crease along a line of the grid, hence at the points on it, also at the ends of the line,
   // where half of the directions are inside.
   vtkNew<PiecewiseMap> pieces;
   pieces->Amount = 0.2;
-  filter->SetSourceData(RegularGrid(9));
-  filter->SetTransform(pieces);
-  filter->Update();
+  const auto filter = Measure(RegularGrid(9), pieces, ListEverything);
   for (int type = 0; type <= Continuity::VERTEX; ++type)
   {
     const vtkIdType creases = type == Continuity::EDGE ? 9 : type == Continuity::VERTEX ? 10 : 0;
@@ -520,8 +514,8 @@ TEST(JacobianContinuity, TheHomeomorphismFilterMeasuresTheSame)
     map->MeasureContinuityOn();
     map->GetJacobianContinuity()->SpokesOn();
     map->Update();
-    const auto alone = Measure(inverse ? MeshPair{ pair.Target, pair.Source } : pair, Contour,
-      [](Continuity* filter) { filter->SpokesOn(); });
+    const auto alone = Measure(
+      inverse ? MeshPair{ pair.Target, pair.Source } : pair, Contour, &Continuity::SpokesOn);
     auto* measured = vtkPolyData::SafeDownCast(map->GetOutputDataObject(1));
     EXPECT_TRUE(
       IsSame(CellArray(measured, "JacobianJump"), CellArray(alone->GetOutput(), "JacobianJump")));

@@ -383,15 +383,13 @@ inline void ListEverything(vtkJacobianContinuity* filter)
 }
 
 /// Measures the edges, unless something else is changed before.
-inline vtkSmartPointer<vtkJacobianContinuity> Measure(const MeshPair& pair, const System& system,
-  const std::function<void(vtkJacobianContinuity*)>& change = {})
+inline vtkSmartPointer<vtkJacobianContinuity> Measure(
+  const MeshPair& pair, const System& system,
+  const std::function<void(vtkJacobianContinuity*)>& change = [](vtkJacobianContinuity*) {})
 {
   auto filter = MakeAlgorithm<vtkJacobianContinuity>(pair);
   SetSystem(filter.Get(), system);
-  if (change)
-  {
-    change(filter);
-  }
+  change(filter);
   filter->Update();
   return filter;
 }

@@ -292,23 +292,19 @@ TEST_F(Builds, OneForEachOptionOfTheMap)
 {
   using Algorithm = vtkDifferentiableHomeomorphism;
   using Change = std::function<void(Algorithm*)>;
-  const std::vector<Change> changes{ { [](Algorithm* f) { f->SetCoordinateSystemToLinear(); } },
-    [](Algorithm* f) { f->SetCoordinateSystemToContour(); },
+  const std::vector<Change> changes{ &Algorithm::SetCoordinateSystemToLinear,
+    &Algorithm::SetCoordinateSystemToContour,
     [](Algorithm* f) { f->SetCenterPoint(Algorithm::INCENTER); },
     [](Algorithm* f) { f->SetDiscordantTriangles(Algorithm::REFUSE); },
-    [](Algorithm* f) { f->SetCoordinateSystemToSmooth(); },
-    [](Algorithm* f) { f->MaskInvalidTrianglesOn(); },
+    &Algorithm::SetCoordinateSystemToSmooth, &Algorithm::MaskInvalidTrianglesOn,
     // These do not affect the map itself, but the output.
-    [](Algorithm* f) { f->SetTolerance(0.125); }, [](Algorithm* f) { f->ComputeTriangleIdOn(); },
-    [](Algorithm* f) { f->ComputeJacobianOn(); },
-    [](Algorithm* f) { f->ComputeJacobianDeterminantOn(); },
-    [](Algorithm* f) { f->TransformActiveAttributesOff(); },
-    [](Algorithm* f) { f->TransformAllInputVectorsOn(); },
+    [](Algorithm* f) { f->SetTolerance(0.125); }, &Algorithm::ComputeTriangleIdOn,
+    &Algorithm::ComputeJacobianOn, &Algorithm::ComputeJacobianDeterminantOn,
+    &Algorithm::TransformActiveAttributesOff, &Algorithm::TransformAllInputVectorsOn,
     [](Algorithm* f) { f->SetAttributeTransformation("Any", Algorithm::NO_TRANSFORMATION); },
-    [](Algorithm* f) { f->ClearAttributeTransformations(); },
-    [](Algorithm* f) { f->BlankOutsideOff(); },
+    &Algorithm::ClearAttributeTransformations, &Algorithm::BlankOutsideOff,
     [](Algorithm* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); },
-    [](Algorithm* f) { f->InverseOn(); },
+    &Algorithm::InverseOn,
     [](Algorithm* f) {
       f->SetDataObject(MakeCloud({ { 0.5, 0.5, 0.0 } }));
     } };
