@@ -204,7 +204,9 @@ PEERS = (("LinearNDInterpolator", "SciPy LinearND (C⁰)"), ("tinshift", "PROJ t
          ("PiecewiseAffineTransform", "scikit-image piecewise affine (C⁰)"),
          ("vtkThinPlateSplineTransform", "VTK thin plate spline (C¹)"))
 OURS = (("transform/Linear", "Linear (C⁰)"), ("transform/Smooth", "Smooth (C², with its inverse)"),
-        ("transform/Contour", "Contour (C⁰)"))
+        ("transform/Contour", "Contour (C⁰)"), ("transform/CubicLeast", "Cubic, least bending (C¹, with its inverse)"),
+        ("transform/CubicLocal", "Cubic, local bending (C¹, with its inverse)"))
+HIGHLIGHTED = ("transform/Smooth", "transform/CubicLeast")
 
 
 def plot(results, path):
@@ -224,8 +226,9 @@ def plot(results, path):
             value = r.median(part, f"{name}/forward")
             if value:
                 ours = name.startswith("transform")
-                color = "#1b6ca8" if name == "transform/Smooth" else ("#8fbcd9" if ours else ("#d8d8d8" if name == "affine" else "#c7a76c"))
-                bars.append((value, label, color, name == "transform/Smooth"))
+                color = ("#1b6ca8" if name in HIGHLIGHTED else "#8fbcd9" if ours
+                         else "#d8d8d8" if name == "affine" else "#c7a76c")
+                bars.append((value, label, color, name in HIGHLIGHTED))
         bars.sort(key=lambda bar: bar[0], reverse=True)
         positions = range(len(bars))
         axis.barh(positions, [b[0] for b in bars], color=[b[2] for b in bars])
