@@ -203,7 +203,7 @@ int vtkTriangulationPairReport::Execute(
   options.Cubic = GetOptions(this).Cubic;
   const std::shared_ptr<const Homeomorphism> linear =
     Homeomorphism::Make(meshes[0], meshes[1], options, defects);
-  // Diagnostics of accepted meshes are remarks.
+  // Diagnostics of accepted meshes are information, not errors.
   this->Valid = linear && std::all_of(defects.begin(), defects.end(), [](const auto& defect) {
     return defect.Result == MeshDiagnostic::Outcome::Accepted;
   });

@@ -176,50 +176,33 @@ bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Bar
   const Vector2& inFrame, Vector2& image, Matrix2* derivative) const
 {
   CubicTriangle prepared = this->Map->Prepare();
+  int number = this->Numbers[triangle];
+  const bool isReversed = this->Reversed[number] != 0;
+  const Barycentric turned{ l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] };
+  Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
+  bool exists;
+  image = {};
   if (from == Domain::Source)
   {
-    const std::int32_t number = this->Numbers[triangle];
-    const bool exists = this->Map->IsCertified(number);
-    const Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
-    image = {};
+    exists = this->Map->IsCertified(number);
     if (exists)
     {
-      const bool isReversed = this->Reversed[number] != 0;
-      image = this->Map->MapPoint(
-        number, { l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] }, point, prepared);
+      image = this->Map->MapPoint(number, turned, point, prepared);
       image.x = this->IsMirrored ? -image.x : image.x;
     }
-    if (derivative)
-    {
-      *derivative = this->Derive(from, exists ? number : -1, point, prepared);
-    }
-    return exists;
   }
-  CubicBatch batch;
-  batch.Count = 1;
-  double coordinates[5][WidestVector];
-  for (int i = 0; i < WidestVector; ++i)
+  else
   {
-    for (int k = 0; k < 3; ++k)
-    {
-      coordinates[k][i] = l[k];
-    }
-    coordinates[3][i] = inFrame.x;
-    coordinates[4][i] = inFrame.y;
+    point.x = this->IsMirrored ? -point.x : point.x;
+    exists = this->Map->FindPreimage(point, turned, number, image, prepared) &&
+      this->Map->IsCertified(number);
   }
-  const double* const arrays[3] = { coordinates[0], coordinates[1], coordinates[2] };
-  const double* const frames[2] = { coordinates[3], coordinates[4] };
-  this->SetPoints(from, triangle, 0, 1, arrays, frames, batch);
-  this->MapPoints(from, batch, prepared);
-  image = { batch.ImageX[0], batch.ImageY[0] };
   if (derivative)
   {
-    Vector2 point;
-    int number;
-    this->GetSourcePoints(from, &triangle, batch, &point.x, &point.y, &number);
-    *derivative = this->Derive(from, number, point, prepared);
+    *derivative =
+      this->Derive(from, exists ? number : -1, from == Domain::Source ? point : image, prepared);
   }
-  return batch.Triangles[0] >= 0;
+  return exists;
 }
 
 Matrix2 CubicHomeomorphism::Derive(

@@ -208,6 +208,16 @@ bool Subdivide(
   return false;
 }
 
+// Barycentric coordinates of a point relative to corner 0, faster than ToBarycentric, but
+// inaccurate in thin triangles.
+Barycentric ToBarycentricByAreas(const std::array<Vector2, 3>& corners, const Vector2& point)
+{
+  const double scale = 1.0 / Cross(corners[1], corners[2]);
+  const double first = scale * Cross(point, corners[2]);
+  const double second = scale * Cross(corners[1], point);
+  return { 1.0 - first - second, first, second };
+}
+
 Vector2 Solve(const Matrix2& m, const Vector2& v)
 {
   const double d = m.Determinant();
@@ -516,9 +526,7 @@ Matrix2 CubicMap::GetDerivative(int triangle, const Vector2& point, CubicTriangl
   const Vector2 local = point - pair.Source[pair.Triangles[child][0]];
   const std::array<Vector2, 3> corners = pair.GetSourceCorners(child);
   const double area = Cross(corners[1], corners[2]);
-  const double first = Cross(local, corners[2]) / area;
-  const double second = Cross(corners[1], local) / area;
-  const Barycentric l{ 1.0 - first - second, first, second };
+  const Barycentric l = ToBarycentricByAreas(corners, local);
   if (this->IsWhole(child))
   {
     // The rounding errors of the net's ordinates are proportional to the longest edge.
@@ -689,17 +697,15 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
   };
   const auto enter = [&](int i, int triangle, const Vector2& point) {
     // Rounding errors of these coordinates are corrected by Newton's method.
-    const std::array<Vector2, 3> corners = pair.GetSourceCorners(triangle);
-    const double scale = 1.0 / Cross(corners[1], corners[2]);
-    const double first = scale * Cross(point, corners[2]);
-    const double second = scale * Cross(corners[1], point);
+    const Barycentric l = ToBarycentricByAreas(pair.GetSourceCorners(triangle), point);
     const int number = walkers.Numbers[i];
     const Vector2 image =
       Vector2{ batch.X[number], batch.Y[number] } - pair.Target[pair.Triangles[triangle][0]];
     walkers.Triangles[i] = triangle;
-    arrays.L[0][i] = 1.0 - first - second;
-    arrays.L[1][i] = first;
-    arrays.L[2][i] = second;
+    for (int k = 0; k < 3; ++k)
+    {
+      arrays.L[k][i] = l[k];
+    }
     arrays.X[i] = image.x;
     arrays.Y[i] = image.y;
     arrays.Move[i] = arrays.SecondOrder[i] = 0.0;
@@ -824,14 +830,12 @@ void CubicMap::FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const
 }
 
 //------------------------------------------------------------------------------
-bool CubicMap::FindPreimage(
-  const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const
+bool CubicMap::FindPreimage(const Vector2& image, const Barycentric& l, int& triangle,
+  Vector2& point, CubicTriangle& prepared) const
 {
   CubicBatch batch;
   batch.Count = 1;
   batch.Triangles[0] = triangle;
-  const Barycentric l = ToBarycentric(this->Pair.GetTargetCorners(triangle),
-    image - this->Pair.Target[this->Pair.Triangles[triangle][0]]);
   for (int k = 0; k < 3; ++k)
   {
     std::fill_n(batch.L[k], WidestVector, l[k]);

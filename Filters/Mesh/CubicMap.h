@@ -114,9 +114,18 @@ public:
 
   /// The point that is mapped to @a image, and its triangle. On input, @a triangle is that of the
   /// preimage under the piecewise linear map. Returns false if no preimage is found, which happens
-  /// only outside the target's domain.
+  /// only outside the target's domain. With the barycentric coordinates @a l of the image in the
+  /// target's triangle, the preimage is the same, bit for bit, as that of FindPreimages.
+  bool FindPreimage(const Vector2& image, const Barycentric& l, int& triangle, Vector2& point,
+    CubicTriangle& prepared) const;
   bool FindPreimage(
-    const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const;
+    const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const
+  {
+    return this->FindPreimage(image,
+      ToBarycentric(this->Pair.GetTargetCorners(triangle),
+        image - this->Pair.Target[this->Pair.Triangles[triangle][0]]),
+      triangle, point, prepared);
+  }
   bool FindPreimage(const Vector2& image, int& triangle, Vector2& point) const
   {
     CubicTriangle prepared = this->Prepare();

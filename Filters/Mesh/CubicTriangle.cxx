@@ -179,7 +179,7 @@ Vector2 CubicTriangle::Map(const Vector2& point)
 //------------------------------------------------------------------------------
 Matrix2 CubicTriangle::GetTemplateDerivative(const Vector2& point)
 {
-  this->LastElement = this->Current->Cut.FindBesideEdges(point);
+  this->Find(point);
   Matrix2 derivative;
   this->MapInClosedForm(point, &derivative);
   return derivative;

@@ -729,12 +729,8 @@ Jacobian Homeomorphism::FromPlanes(
   const PlaneFrame& other = target.GetPlaneFrame(triangle);
   if (!source.IsHorizontal() || !target.IsHorizontal())
   {
-    const auto toFrame = [&other](const Vector2& v) {
-      return Vector2{ Dot(other.Tangent, v), other.Orientation * Cross(other.Tangent, v) };
-    };
-    const Vector2 inward{ -frame.Orientation * frame.Tangent.y,
-      frame.Orientation * frame.Tangent.x };
-    const Matrix2 inFrames{ toFrame(inPlanes * frame.Tangent), toFrame(inPlanes * inward) };
+    const Matrix2 inFrames{ other.VectorToFrame(inPlanes * frame.Tangent),
+      other.VectorToFrame(inPlanes * frame.GetInward()) };
     return this->FromFrames(from, triangle, inFrames, inFrames.Determinant());
   }
   // The scales are powers of two, so nothing is rounded.
@@ -764,10 +760,8 @@ Jacobian Homeomorphism::FromFrames(
     // The product below, without the components of the axes that are zero.
     const PlaneFrame& frame = source.GetPlaneFrame(triangle);
     const PlaneFrame& other = target.GetPlaneFrame(triangle);
-    const Vector2 inward{ -frame.Orientation * frame.Tangent.y,
-      frame.Orientation * frame.Tangent.x };
-    const Vector2 otherInward{ -other.Orientation * other.Tangent.y,
-      other.Orientation * other.Tangent.x };
+    const Vector2 inward = frame.GetInward();
+    const Vector2 otherInward = other.GetInward();
     const Vector2 alongTangent =
       rescale * (inFrames.ImageOfX.x * other.Tangent + inFrames.ImageOfX.y * otherInward);
     const Vector2 alongInward =

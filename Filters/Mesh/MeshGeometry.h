@@ -46,11 +46,17 @@ struct alignas(64) PlaneFrame
 
   TriangleShape Shape() const { return { this->Base, this->ApexX, this->Height, this->Apex }; }
 
-  Vector2 ToFrame(const Vector2& point) const
+  /// The unit vector from the longest edge towards the apex: the second axis of the frame.
+  Vector2 GetInward() const
   {
-    const Vector2 d = point - this->Origin;
-    return { Dot(d, this->Tangent), this->Orientation * Cross(this->Tangent, d) };
+    return { -this->Orientation * this->Tangent.y, this->Orientation * this->Tangent.x };
   }
+
+  Vector2 VectorToFrame(const Vector2& vector) const
+  {
+    return { Dot(vector, this->Tangent), this->Orientation * Cross(this->Tangent, vector) };
+  }
+  Vector2 ToFrame(const Vector2& point) const { return this->VectorToFrame(point - this->Origin); }
 
   Vector2 FromFrame(const Vector2& point) const
   {

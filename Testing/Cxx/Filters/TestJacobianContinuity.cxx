@@ -474,7 +474,8 @@ TEST(JacobianContinuity, VerticesOfSurfacesAreNotMeasured)
 
 TEST(JacobianContinuity, TrianglesAndPointsHaveTheLargestJumpOfTheirEdges)
 {
-  const auto filter = Measure(MakePlanarPair(6, 2), Linear);
+  const MeshPair pair = MakePlanarPair(6, 2);
+  const auto filter = Measure(pair, Linear);
   auto* colored = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
   std::vector<double> largest(colored->GetNumberOfCells(), 0.0);
   for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
@@ -487,6 +488,8 @@ TEST(JacobianContinuity, TrianglesAndPointsHaveTheLargestJumpOfTheirEdges)
   }
   EXPECT_EQ(ValuesOf(CellArray(colored, "JacobianJump")), largest);
   EXPECT_EQ(PointArray(colored, "JacobianJump")->GetRange()[1], filter->GetLargestJump());
+  EXPECT_EQ(filter->GetOutput()->GetNumberOfCells() * 2 + filter->GetNumberOfBoundaryEdges(),
+    3 * pair.Source->GetNumberOfCells());
 }
 
 TEST(JacobianContinuity, ResultsDoNotDependOnThreads)
