@@ -128,6 +128,7 @@ TEST(PointBlocks, BlocksEqualSinglePoints)
   const MeshPair plane = MakePlanarPair(9, 21);
   const std::vector<Pairing> pairings{ { "a plane", plane },
     { "two triangles", MakePlanarPair(1, 22) },
+    { "a mirrored plane", { plane.Source, fixtures::Mirrored(plane.Target) } },
     { "tilted planes", fixtures::Moved(plane, sloping) },
     { "a closed surface", MakeClosedPair(3, 24) },
     { "a surface", { plane.Source, fixtures::Moved(plane.Target, curved) } } };
