@@ -813,7 +813,10 @@ void CubicMap::FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const
       {
         int triangle = t;
         Vector2 point = batch.L[1][i] * edges[1] + batch.L[2][i] * edges[2];
+        prepared.Set(t);
+        const bool isInside = batch.L[0][i] >= 0.0 && batch.L[1][i] >= 0.0 && batch.L[2][i] >= 0.0;
         const bool found =
+          (isInside && !this->Bending && prepared.FindDirectly(point, this->ResidualTolerance)) ||
           this->FindByWalking({ batch.X[i], batch.Y[i] }, triangle, point, prepared);
         const Vector2 preimage = pair.Source[pair.Triangles[triangle][0]] + point;
         batch.Triangles[i] = found ? triangle : -1;
@@ -850,6 +853,13 @@ bool CubicMap::FindPreimage(const Vector2& image, const Barycentric& l, int& tri
   triangle = batch.Triangles[0];
   point = { batch.ImageX[0], batch.ImageY[0] };
   return true;
+}
+
+//------------------------------------------------------------------------------
+double CubicMap::GetTolerance(int fineTriangle) const
+{
+  return std::max(
+    this->ResidualTolerance, ResidualUlps * this->Template->GetRounding(fineTriangle));
 }
 
 //------------------------------------------------------------------------------
@@ -953,7 +963,8 @@ bool CubicMap::FindByWalking(
       done = !better;
     }
   }
-  if (!(size <= this->ResidualTolerance))
+  const double tolerance = this->GetTolerance(t);
+  if (!(size <= tolerance))
   {
     // Newton's method has stalled, or the image is outside the target's domain.
     int found = t;
@@ -967,7 +978,7 @@ bool CubicMap::FindByWalking(
   }
   triangle = t;
   point = x;
-  return size <= this->ResidualTolerance;
+  return size <= tolerance;
 }
 
 //------------------------------------------------------------------------------
@@ -991,7 +1002,7 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
           return;
         }
         const Vector2 local = (1.0 / factor) * (image - targetOrigin);
-        const double tolerance = this->ResidualTolerance / factor;
+        const double tolerance = this->GetTolerance(t) / factor;
         const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
         for (const CubicPatch& patch : GetPatches(element))
         {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace homeomorphism
 {
@@ -61,6 +62,99 @@ private:
   std::array<double, 3> N;
 };
 
+/// The solution x of m x = v.
+Vector2 Solve(const Matrix2& m, const Vector2& v)
+{
+  const double inverse = 1.0 / m.Determinant();
+  return { inverse * Cross(v, m.ImageOfY), inverse * Cross(m.ImageOfX, v) };
+}
+
+/// Barycentric coordinates in the upper or the lower element of a strip. The ends of the diagonal
+/// are corners 0 and 2.
+Barycentric GetStripCoordinates(bool isUpper, double s, double t)
+{
+  return isUpper ? Barycentric{ 1.0 - t, t - s, s } : Barycentric{ 1.0 - s, s - t, t };
+}
+
+/// The factor g of the jump in a strip along a line: t (1 - t)^2 plus the diagonal's bubble. It is
+/// a cubic polynomial where the line is in one piece of the bubble.
+class StripLine
+{
+public:
+  /// The line from (s, t) along (ds, dt). @a share is that of EdgeTerms.
+  StripLine(double s, double t, double ds, double dt, double share)
+    : Piece(FindPiece(s, t))
+  {
+    const bool isUpper = IsUpper(s, t);
+    const Barycentric l = GetStripCoordinates(isUpper, s, t);
+    const Barycentric d =
+      isUpper ? Barycentric{ -dt, dt - ds, ds } : Barycentric{ -ds, ds - dt, dt };
+    const int least = this->Piece % 3;
+    const double m = l[least];
+    const double i = l[0] - m;
+    const double j = l[2] - m;
+    const double dm = d[least];
+    const double di = d[0] - dm;
+    const double dj = d[2] - dm;
+    const double sum = i + j;
+    const double dSum = di + dj;
+    const double turn = di * j + i * dj;
+    const double factor = (isUpper ? 1.0 : -1.0) / 6.0 * share;
+    const double rest = 1.0 - t;
+    this->Value = t * rest * rest + factor * (m * (18.0 * i * j + m * (9.0 * sum + 6.0 * m)));
+    this->Slope = rest * (1.0 - 3.0 * t) * dt +
+      factor * (18.0 * (dm * i * j + m * (turn + dm * (sum + m))) + 9.0 * m * m * dSum);
+    this->HalfCurvature = (3.0 * t - 2.0) * dt * dt +
+      factor * (18.0 * (dm * (turn + m * (dSum + dm)) + m * di * dj) + 9.0 * dm * dm * sum);
+    this->Third = dt * dt * dt + factor * (dm * (18.0 * di * dj + dm * (9.0 * dSum + 6.0 * dm)));
+  }
+
+  /// A number of the piece of the bubble that contains a point.
+  static int FindPiece(double s, double t)
+  {
+    const bool isUpper = IsUpper(s, t);
+    const Barycentric l = GetStripCoordinates(isUpper, s, t);
+    const int lesser = l[1] < l[0] ? 1 : 0;
+    return (isUpper ? 3 : 0) + (l[2] < l[lesser] ? 2 : lesser);
+  }
+  int GetPiece() const { return this->Piece; }
+
+  /// Solves start + x = g at the distance x from the line's beginning. Returns NaN if Halley's
+  /// method does not converge.
+  double Solve(double start) const
+  {
+    constexpr double enough = 0x1p-20;
+    constexpr int mostSteps = 6;
+    double x = 0.0;
+    for (int step = 0; step < mostSteps; ++step)
+    {
+      const double rest =
+        start + x - (this->Value + x * (this->Slope + x * (this->HalfCurvature + x * this->Third)));
+      const double slope =
+        1.0 - (this->Slope + x * (2.0 * this->HalfCurvature + 3.0 * x * this->Third));
+      const double halfCurvature = -(this->HalfCurvature + 3.0 * x * this->Third);
+      const double move = rest * slope / (slope * slope - rest * halfCurvature);
+      x -= move;
+      // The error is about the cube of the last step, times the square of the curvature.
+      if (std::abs(move) * (slope + std::abs(halfCurvature)) <= enough * slope)
+      {
+        return x;
+      }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
+private:
+  static bool IsUpper(double s, double t) { return t > s; }
+
+  int Piece;
+  // The coefficients of the polynomial.
+  double Value;
+  double Slope;
+  double HalfCurvature;
+  double Third;
+};
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -100,6 +194,7 @@ void CubicTriangle::Set(int triangle)
   this->Current->Elements.clear();
   const PlanarPair& pair = this->Template.GetPair();
   this->Current->Affine = this->Template.GetAffine(triangle);
+  this->Current->Rounding = this->Template.GetRounding(triangle);
   this->Current->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
   if (this->Current->Whole)
   {
@@ -208,9 +303,7 @@ Vector2 CubicTriangle::GetResidual(
     }
     residual = image - this->MapInClosedForm(point, &derivative);
   }
-  const double inverse = 1.0 / derivative.Determinant();
-  step = { inverse * Cross(residual, derivative.ImageOfY),
-    inverse * Cross(derivative.ImageOfX, residual) };
+  step = Solve(derivative, residual);
   return residual;
 }
 
@@ -272,7 +365,66 @@ const CubicTriangle::EdgeTerms& CubicTriangle::GetEdge(int k)
     const double share = d / (d + across.Determinant());
     edge.Jump = (share * height) * ((across - this->Current->Affine) * Normal(cut.Along[k]));
   }
+  const Matrix2& affine = this->Current->Affine;
+  edge.Shift = Solve(affine, edge.Jump);
+  // The relative error of the solution is the unit of the last place times the condition number.
+  const double condition =
+    (Dot(affine.ImageOfX, affine.ImageOfX) + Dot(affine.ImageOfY, affine.ImageOfY)) /
+    affine.Determinant();
+  edge.Rounding = this->Current->Rounding +
+    std::numeric_limits<double>::epsilon() * condition * std::sqrt(Dot(edge.Jump, edge.Jump));
   return edge;
+}
+
+//------------------------------------------------------------------------------
+// In a strip, the image of x is that of x + g shift under the affine map. So x lies on a line along
+// the shift through the affine preimage, and g is the root of a cubic equation.
+bool CubicTriangle::FindDirectly(Vector2& point, double tolerance)
+{
+  constexpr int mostPieces = 4;
+  const TriangleCut& cut = this->Current->Cut;
+  const int number = cut.FindBesideEdges(point);
+  if (number < TriangleCut::FirstStrip)
+  {
+    return false;
+  }
+  if (number >= TriangleCut::FirstMiddle)
+  {
+    return this->Current->Rounding <= 0.5 * tolerance;
+  }
+  const int k = (number - TriangleCut::FirstStrip) / 2;
+  const EdgeTerms& edge = this->GetEdge(k);
+  if (!(edge.Rounding <= 0.5 * tolerance))
+  {
+    return false;
+  }
+  const auto along = [&](const Vector2& d) { return Dot(cut.Along[k], d); };
+  const auto across = [&](const Vector2& d) { return Cross(cut.Along[k], d) * edge.InverseHeight; };
+  const Vector2 from = point - cut.Corners[NextCorner(k)];
+  const double affineS = (along(from) - cut.Radii[NextCorner(k)]) * edge.InverseStrip;
+  const double affineT = across(from);
+  const double ds = -along(edge.Shift) * edge.InverseStrip;
+  const double dt = -across(edge.Shift);
+  double g = 0.0;
+  double s = affineS;
+  double t = affineT;
+  for (int piece = 0; piece < mostPieces; ++piece)
+  {
+    const StripLine line(s, t, ds, dt, edge.StripShare);
+    g += line.Solve(g);
+    s = affineS + g * ds;
+    t = affineT + g * dt;
+    if (!(s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0))
+    {
+      return false;
+    }
+    if (StripLine::FindPiece(s, t) == line.GetPiece())
+    {
+      point = point - g * edge.Shift;
+      return true;
+    }
+  }
+  return false;
 }
 
 //------------------------------------------------------------------------------
@@ -286,10 +438,8 @@ Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2*
   const Vector2 d = point - cut.Corners[NextCorner(k)];
   const double s = (Dot(cut.Along[k], d) - cut.Radii[NextCorner(k)]) * edge.InverseStrip;
   const double t = Cross(cut.Along[k], d) * edge.InverseHeight;
-  // The ends of the diagonal are corners 0 and 2.
   const bool isUpper = (number - TriangleCut::FirstStrip) % 2 == 1;
-  const EdgeBubbles bubbles(
-    isUpper ? Barycentric{ 1.0 - t, t - s, s } : Barycentric{ 1.0 - s, s - t, t });
+  const EdgeBubbles bubbles(GetStripCoordinates(isUpper, s, t));
   this->LeastCoordinate = bubbles.GetLeastCoordinate();
   const double factor = (isUpper ? 1.0 : -1.0) / 6.0 * edge.StripShare;
   const double rest = 1.0 - t;

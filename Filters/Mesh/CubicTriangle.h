@@ -64,6 +64,12 @@ public:
   /// @a image. If the last point in this triangle @a isNear, its element is tried first.
   Vector2 GetResidual(const Vector2& point, const Vector2& image, bool isNear, Vector2& step);
 
+  /// Replaces a point of the triangle by the preimage, under the template, of its image under the
+  /// piecewise linear map. Returns false, and changes nothing, if the preimage is not in the same
+  /// strip, or not in the middle as the point is, or if the triangle is so thin that the preimage's
+  /// rounding errors could change its image by more than half of @a tolerance.
+  bool FindDirectly(Vector2& point, double tolerance);
+
 private:
   struct Element
   {
@@ -86,6 +92,9 @@ private:
     /// The reciprocal of the distance between the edge points, and 1 / (1 + mu^2).
     double InverseStrip = 0.0;
     double StripShare = 0.0;
+    /// The vector that the affine map maps to Jump, and the rounding errors of FindDirectly.
+    Vector2 Shift;
+    double Rounding = 0.0;
   };
 
   /// The data of the closed form in the middle element of a corner. The vertex is corner 0 of the
@@ -137,6 +146,8 @@ private:
     int Number = -1;
     bool Whole = false;
     Matrix2 Affine;
+    /// CubicTemplate::GetRounding of the triangle.
+    double Rounding = 0.0;
     TriangleCut Cut;
     std::array<std::uint8_t, 3> InRings{};
     std::array<EdgeTerms, 3> Edges;

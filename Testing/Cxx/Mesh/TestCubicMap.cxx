@@ -789,6 +789,30 @@ TEST(CubicMap, PreimagesAreExactWhereSecondDerivativesChangeSign)
   }
 }
 
+TEST(CubicMap, PreimagesUnderTheTemplateAreExact)
+{
+  // In needles, rounding a point moves its image.
+  for (const double width : { 1.0, 0.1, 0.01, 1e-4 })
+  {
+    PlanarPair pair = RandomPair(20, 1.2, 4);
+    for (Vector2& point : pair.Source)
+    {
+      point.y *= width;
+      point = { 0.8 * point.x - 0.6 * point.y, 0.6 * point.x + 0.8 * point.y };
+    }
+    const CubicMap map(pair, Options(CubicBending::Local));
+    CubicTriangle prepared = map.Prepare();
+    for (const Sample& sample : RandomSamples(pair, 8, 200000))
+    {
+      const Vector2 image = sample.In(pair, pair.Target);
+      int triangle = sample.Triangle;
+      Vector2 point;
+      ASSERT_TRUE(map.FindPreimage(image, triangle, point, prepared));
+      ASSERT_LE(Norm(map.MapPoint(triangle, point, prepared) - image), 1e-15 / width);
+    }
+  }
+}
+
 TEST_P(CubicMaps, PartsMayTouchInAPoint)
 {
   // An hourglass whose halves share a point only.
