@@ -856,10 +856,12 @@ bool CubicMap::FindPreimage(const Vector2& image, const Barycentric& l, int& tri
 }
 
 //------------------------------------------------------------------------------
-double CubicMap::GetTolerance(int fineTriangle) const
+double CubicMap::GetTolerance(int fineTriangle, const Matrix2& derivative) const
 {
+  const PlanarPair& pair = this->GetFine();
   return std::max(
-    this->ResidualTolerance, ResidualUlps * this->Template->GetRounding(fineTriangle));
+    { this->ResidualTolerance, ResidualUlps * pair.GetRounding(fineTriangle, derivative),
+      ResidualUlps * pair.GetRounding(fineTriangle, this->Template->GetAffine(fineTriangle)) });
 }
 
 //------------------------------------------------------------------------------
@@ -963,7 +965,8 @@ bool CubicMap::FindByWalking(
       done = !better;
     }
   }
-  const double tolerance = this->GetTolerance(t);
+  const double tolerance =
+    size <= this->ResidualTolerance ? size : this->GetTolerance(t, derivative);
   if (!(size <= tolerance))
   {
     // Newton's method has stalled, or the image is outside the target's domain.
@@ -1002,7 +1005,7 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
           return;
         }
         const Vector2 local = (1.0 / factor) * (image - targetOrigin);
-        const double tolerance = this->GetTolerance(t) / factor;
+        const double tolerance = this->GetTolerance(t, this->Template->GetAffine(t)) / factor;
         const CubicOrdinates<Vector2> ordinates = GetOrdinates(element);
         for (const CubicPatch& patch : GetPatches(element))
         {

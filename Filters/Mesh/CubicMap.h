@@ -169,9 +169,9 @@ private:
   /// Replaces the triangle by the one that contains the point, and makes the point relative to its
   /// corner 0.
   void Walk(int& triangle, Vector2& point) const;
-  /// The largest distance between the image of a preimage and the given image that is accepted in a
-  /// triangle if it cannot be reduced.
-  double GetTolerance(int fineTriangle) const;
+  /// The largest distance between the image of a preimage and the given image that is accepted if
+  /// it cannot be reduced. @a derivative is that at the preimage.
+  double GetTolerance(int fineTriangle, const Matrix2& derivative) const;
   bool SearchPreimage(const Vector2& image, int& triangle, Vector2& point) const;
   void VisitFine(int triangle,
     const std::function<void(const CubicElement& element, const Vector2& sourceOrigin,

@@ -681,18 +681,6 @@ int CubicTemplate::GetNumberOfRings(int point) const
 }
 
 //------------------------------------------------------------------------------
-double CubicTemplate::GetRounding(int triangle) const
-{
-  const std::array<Vector2, 3> corners = this->Pair.GetSourceCorners(triangle);
-  const Matrix2& affine = this->Affines[triangle];
-  const double length =
-    std::sqrt(std::max(Dot(corners[1], corners[1]), Dot(corners[2], corners[2])));
-  const double norm =
-    std::sqrt(Dot(affine.ImageOfX, affine.ImageOfX) + Dot(affine.ImageOfY, affine.ImageOfY));
-  return std::numeric_limits<double>::epsilon() * length * norm;
-}
-
-//------------------------------------------------------------------------------
 TriangleCut CubicTemplate::GetCut(int triangle) const
 {
   TriangleCut cut;

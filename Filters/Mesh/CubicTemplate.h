@@ -108,11 +108,6 @@ public:
   /// The piecewise linear map's derivative.
   const Matrix2& GetAffine(int triangle) const { return this->Affines[triangle]; }
 
-  /// The distance by which rounding a point of a triangle, relative to corner 0, moves its image:
-  /// the unit of the last place times the length of the triangle and the norm of the affine map. It
-  /// is larger than the rounding of the image if the triangle is thin.
-  double GetRounding(int triangle) const;
-
   VertexKind GetKind(int point) const { return this->Kinds[point]; }
   bool IsBoundary(int point) const { return this->Boundary[point] != 0; }
   /// Whether a point lies on a boundary that is straight there in both meshes, to the rounding of

@@ -194,7 +194,7 @@ void CubicTriangle::Set(int triangle)
   this->Current->Elements.clear();
   const PlanarPair& pair = this->Template.GetPair();
   this->Current->Affine = this->Template.GetAffine(triangle);
-  this->Current->Rounding = this->Template.GetRounding(triangle);
+  this->Current->Rounding = pair.GetRounding(triangle, this->Current->Affine);
   this->Current->Whole = this->Bending && this->Bending->Cuts[triangle] < 0;
   if (this->Current->Whole)
   {
@@ -371,8 +371,10 @@ const CubicTriangle::EdgeTerms& CubicTriangle::GetEdge(int k)
   const double condition =
     (Dot(affine.ImageOfX, affine.ImageOfX) + Dot(affine.ImageOfY, affine.ImageOfY)) /
     affine.Determinant();
+  const double longest = std::max({ cut.Lengths[0], cut.Lengths[1], cut.Lengths[2] });
   edge.Rounding = this->Current->Rounding +
-    std::numeric_limits<double>::epsilon() * condition * std::sqrt(Dot(edge.Jump, edge.Jump));
+    std::numeric_limits<double>::epsilon() * (condition + longest * edge.InverseHeight) *
+      std::sqrt(Dot(edge.Jump, edge.Jump));
   return edge;
 }
 

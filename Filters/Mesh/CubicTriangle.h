@@ -146,7 +146,7 @@ private:
     int Number = -1;
     bool Whole = false;
     Matrix2 Affine;
-    /// CubicTemplate::GetRounding of the triangle.
+    /// PlanarPair::GetRounding of the affine map.
     double Rounding = 0.0;
     TriangleCut Cut;
     std::array<std::uint8_t, 3> InRings{};

@@ -4,6 +4,8 @@
 #include "Mesh/PlanarPair.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace homeomorphism
 {
@@ -51,6 +53,16 @@ void PlanarPair::FindNeighbors()
     }
     begin = end;
   }
+}
+
+//------------------------------------------------------------------------------
+double PlanarPair::GetRounding(int triangle, const Matrix2& derivative) const
+{
+  const std::array<Vector2, 3> corners = this->GetSourceCorners(triangle);
+  const auto square = [](const Vector2& v) { return Dot(v, v); };
+  const double length = std::max(square(corners[1]), square(corners[2]));
+  const double norm = square(derivative.ImageOfX) + square(derivative.ImageOfY);
+  return std::numeric_limits<double>::epsilon() * std::sqrt(length * norm);
 }
 
 //------------------------------------------------------------------------------

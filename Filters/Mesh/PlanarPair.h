@@ -74,6 +74,11 @@ struct PlanarPair
     return AffineDerivative(this->GetSourceCorners(triangle), this->GetTargetCorners(triangle));
   }
 
+  /// The distance by which rounding a point of a triangle, relative to corner 0, moves its image
+  /// under a map with this derivative: the unit of the last place times the length of the triangle
+  /// and the norm of the derivative.
+  double GetRounding(int triangle, const Matrix2& derivative) const;
+
   /// The pair with each triangle divided into four at the midpoints of its edges: triangle 4 t + c
   /// has corner c of triangle t, and triangle 4 t + 3 is the middle one.
   PlanarPair Refine() const;
