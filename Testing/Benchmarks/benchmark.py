@@ -32,9 +32,9 @@ CUBIC = ("CubicLocal", "CubicLeast")
 PARTS = ("small", "large", "thin", "threads", "image", "construction", "cubic")
 
 FULL = {"small": 21, "large": 1000, "thin": 224, "side": 800, "many": (4000, 2500), "dense": (4000, 2500), "image": 4096,
-        "construction": (100, 316, 1000), "cubic": (316, 1000), "repetitions": (5, 15)}
+        "construction": (100, 316, 1000), "cubic": (316, 1000, 1414), "repetitions": (5, 15)}
 QUICK = {"small": 21, "large": 300, "thin": 50, "side": 400, "many": (1000, 1000), "dense": (1000, 1000), "image": 512,
-         "construction": (30, 95, 300), "cubic": (95, 300), "repetitions": (3, 5)}
+         "construction": (30, 95, 300), "cubic": (95, 300, 424), "repetitions": (3, 5)}
 # Some tens of rounding errors at the width of the domain.
 TOLERANCE = 1e-13
 

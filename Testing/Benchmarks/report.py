@@ -127,9 +127,9 @@ def goals(r):
             own, other = (r.results["cubic memory"][f"construct/{n}/{size}"][0] for n in (name, "Smooth"))
             found.append((f"bytes kept per triangle pair, {name} - Smooth, {size:,} triangle pairs", own - other, "≤",
                           space, own - other <= space))
-        if len(cubic_sizes) > 1:
-            add(f"preparation per triangle, {name}, {cubic_sizes[-1]:,} triangle pairs / {cubic_sizes[0]:,}",
-                r.cubic[f"construct/{name}", cubic_sizes[-1]], r.cubic[f"construct/{name}", cubic_sizes[0]], 1.25)
+        for fewer, more in zip(cubic_sizes, cubic_sizes[1:]):
+            add(f"preparation per triangle, {name}, {more:,} triangle pairs / {fewer:,}",
+                r.cubic[f"construct/{name}", more], r.cubic[f"construct/{name}", fewer], 1.25)
     add("Smooth forward / the affine map with the triangle known", r.median("small", "transform/Smooth/forward"),
         r.median("small", "affine/forward"), 9.0)
     return found
