@@ -136,19 +136,24 @@ Vector2 TriangleCut::GetNode(int node, int origin) const
 int TriangleCut::FindBesideEdges(const Vector2& point) const
 {
   std::array<Vector2, 3> from;
-  std::array<double, 3> height;
   std::array<double, 3> along;
   for (int k = 0; k < 3; ++k)
   {
     from[k] = point - this->Corners[k];
   }
-  bool inside = true;
   for (int k = 0; k < 3; ++k)
   {
     const Vector2& d = from[NextCorner(k)];
-    height[k] = Cross(this->Along[k], d);
+    const double start = this->Radii[NextCorner(k)];
+    const double end = this->Radii[PreviousCorner(k)];
+    const double height = Cross(this->Along[k], d);
     along[k] = Dot(this->Along[k], d);
-    inside = inside && height[k] > this->Heights[k];
+    if (height <= this->Heights[k] && along[k] >= start && this->Lengths[k] - along[k] >= end)
+    {
+      const double width = this->Lengths[k] - start - end;
+      const bool upper = height * width > (along[k] - start) * this->Heights[k];
+      return FirstStrip + 2 * k + (upper ? 1 : 0);
+    }
   }
   for (int c = 0; c < 3; ++c)
   {
@@ -162,6 +167,7 @@ int TriangleCut::FindBesideEdges(const Vector2& point) const
     }
     const Vector2 first = radius * this->Along[out] + this->Heights[out] * Normal(this->Along[out]);
     const Vector2 last = this->Heights[in] * Normal(this->Along[in]) - radius * this->Along[in];
+    // The strips' comparisons, so that rounding leaves no gap between them and the corner.
     if (Cross(first, from[c]) < 0.0)
     {
       if (along[out] <= radius)
@@ -179,21 +185,6 @@ int TriangleCut::FindBesideEdges(const Vector2& point) const
     else if (Cross(last - first, from[c] - first) >= 0.0)
     {
       return 3 * c + 1;
-    }
-  }
-  if (!inside)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      const double start = this->Radii[NextCorner(k)];
-      const double end = this->Radii[PreviousCorner(k)];
-      const double width = this->Lengths[k] - start - end;
-      // The corners' comparisons, so that rounding leaves no gap between them and the strip.
-      if (height[k] <= this->Heights[k] && along[k] >= start && this->Lengths[k] - along[k] >= end)
-      {
-        const bool upper = height[k] * width > (along[k] - start) * this->Heights[k];
-        return FirstStrip + 2 * k + (upper ? 1 : 0);
-      }
     }
   }
   return FirstMiddle;

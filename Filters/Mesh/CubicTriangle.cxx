@@ -172,12 +172,8 @@ void CubicTriangle::Make(const std::array<Vector2, 3>& points, const CubicNet& n
 }
 
 //------------------------------------------------------------------------------
-void CubicTriangle::Set(int triangle)
+void CubicTriangle::Load(int triangle)
 {
-  if (this->Current && this->Current->Number == triangle)
-  {
-    return;
-  }
   this->Triangles.resize(this->Kept);
   std::unique_ptr<Triangle>& kept =
     this->Triangles[static_cast<std::size_t>(triangle) % this->Kept];

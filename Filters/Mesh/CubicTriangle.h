@@ -42,7 +42,13 @@ public:
   {
   }
 
-  void Set(int triangle);
+  void Set(int triangle)
+  {
+    if (!this->Current || this->Current->Number != triangle)
+    {
+      this->Load(triangle);
+    }
+  }
   /// The corners of the triangle, relative to corner 0.
   const std::array<Vector2, 3>& GetCorners() const
   {
@@ -127,6 +133,7 @@ private:
     Vector2 OfEdge;
   };
 
+  void Load(int triangle);
   void Make(const std::array<Vector2, 3>& points, const CubicNet& net, int origin);
   /// Sets LastElement to the element that contains a point, and returns it; null if the map has a
   /// closed form there.
