@@ -211,8 +211,9 @@ std::shared_ptr<const Homeomorphism> vtkHomeomorphismAlgorithm::GetMap(
     if (cubic.UncertifiedTriangles > 0)
     {
       vtkWarningMacro(<< "The Cubic map is not certified in " << cubic.UncertifiedTriangles
-                      << " triangles (array Certificate): doubles cannot represent its elements "
-                         "there. Points in them are marked as outside. Use the Smooth system"
+                      << (cubic.UncertifiedTriangles == 1 ? " triangle" : " triangles")
+                      << " (array Certificate): doubles cannot represent its elements there. "
+                         "Points in them are marked as outside. Use the Smooth system"
                       << (this->GetMaximumDeviation() < VTK_DOUBLE_MAX
                              ? ", or allow a larger MaximumDeviation."
                              : "."));
