@@ -46,7 +46,8 @@ double Noise(Function&& function, double length)
       difference[axis] = values[i][axis] - 4.0 * values[i + 1][axis] + 6.0 * values[i + 2][axis] -
         4.0 * values[i + 3][axis] + values[i + 4][axis];
     }
-    // The norm of the coefficients 1, -4, 6, -4, 1 is 8.4.
+    // The norm of the coefficients 1, -4, 6, -4, 1 is 8.4. Half of it allows for differences that
+    // are small by chance.
     noise = std::max(noise, Length(difference) / 4.0);
   }
   return noise;
