@@ -10,6 +10,7 @@
 
 #include "Kernel/Simd/Vectorize.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -24,10 +25,9 @@ template <typename Real>
 HOMEOMORPHISM_ALWAYS_INLINE Real HalleyStep(Real value, Real slope, Real halfCurvature)
 {
   const Real square = slope * slope;
-  Real denominator = square - value * halfCurvature;
-  denominator = denominator > 0.5f * square ? denominator : 0.5f * square;
-  denominator = denominator < 2.0f * square ? denominator : 2.0f * square;
-  return value * slope / denominator;
+  const Real denominator = square - value * halfCurvature;
+  // By references, limits take one instruction each; conditional expressions are slower.
+  return value * slope / std::min(2.0f * square, std::max(0.5f * square, denominator));
 }
 
 /// Solves @a Width equations, each for the root of an increasing function in an interval. Every
@@ -49,8 +49,7 @@ public:
 
   HOMEOMORPHISM_ALWAYS_INLINE void Start(int index, double lower, double upper, double guess)
   {
-    guess = guess < upper ? guess : upper;
-    this->Root[index] = guess > lower ? guess : lower;
+    this->Root[index] = std::max(lower, std::min(upper, guess));
     this->Lower[index] = lower;
     this->Upper[index] = upper;
     this->TriedLower[index] = 0.0;
