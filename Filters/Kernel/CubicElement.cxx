@@ -491,13 +491,24 @@ CubicNet::CubicNet(const CubicElement& element)
 }
 
 //------------------------------------------------------------------------------
-Matrix2 CubicNet::GetEdgeDerivatives(const Barycentric& l) const
+HOMEOMORPHISM_ALWAYS_INLINE Matrix2 CubicNet::GetEdgeDerivatives(const CubicPiece& piece) const
 {
-  double x[3];
-  double y[3];
-  Derive(this->X, l[0], l[1], l[2], x[0], x[1], x[2]);
-  Derive(this->Y, l[0], l[1], l[2], y[0], y[1], y[2]);
-  return { { x[1] - x[0], y[1] - y[0] }, { x[2] - x[0], y[2] - y[0] } };
+  const int k = piece.Opposite;
+  const int i = NextCorner(k);
+  const int j = PreviousCorner(k);
+  const auto along = [&piece, k, i, j](const Component& b) -> Vector2 {
+    // The derivatives by the coordinates in the piece, where f is one cubic.
+    const auto [uu, uv2, vv, uw2, vw2, ww] = piece.GetQuadratics();
+    const double byStart = 3.0 * uu * b.Corner[i] + uv2 * b.Next[i] + vv * b.Previous[j] +
+      uw2 * b.Inner[i] + 0.5 * vw2 * b.Middle[k] + ww * b.Spoke[i];
+    const double byEnd = uu * b.Next[i] + uv2 * b.Previous[j] + 3.0 * vv * b.Corner[j] +
+      0.5 * uw2 * b.Middle[k] + vw2 * b.Inner[j] + ww * b.Spoke[j];
+    const double byCentroid = uu * b.Inner[i] + 0.5 * uv2 * b.Middle[k] + vv * b.Inner[j] +
+      uw2 * b.Spoke[i] + vw2 * b.Spoke[j] + 3.0 * ww * b.Center;
+    const double byOpposite = 3.0 * byCentroid - byStart - byEnd;
+    return { byStart - byOpposite, byEnd - byOpposite };
+  };
+  return FromRows(along(this->X), along(this->Y));
 }
 
 //------------------------------------------------------------------------------
@@ -505,10 +516,12 @@ Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>
   const Vector2& image, Vector2& step) const
 {
   const Vector2 residual = image - (*this)(l);
-  const Matrix2 along = this->GetEdgeDerivatives(l);
+  const CubicPiece piece = FindPiece(l);
+  const Matrix2 along = this->GetEdgeDerivatives(piece);
   const double scale = 1.0 / along.Determinant();
-  step = (scale * Cross(residual, along.ImageOfY)) * (points[1] - points[0]) +
-    (scale * Cross(along.ImageOfX, residual)) * (points[2] - points[0]);
+  const Vector2& origin = points[piece.Opposite];
+  step = (scale * Cross(residual, along.ImageOfY)) * (points[NextCorner(piece.Opposite)] - origin) +
+    (scale * Cross(along.ImageOfX, residual)) * (points[PreviousCorner(piece.Opposite)] - origin);
   return residual;
 }
 
@@ -516,10 +529,12 @@ Vector2 CubicNet::GetResidual(const Barycentric& l, const std::array<Vector2, 3>
 Matrix2 CubicNet::GetDerivative(
   const Barycentric& l, const std::array<Vector2, 3>& points, double area) const
 {
-  const Matrix2 along = this->GetEdgeDerivatives(l);
+  const CubicPiece piece = FindPiece(l);
+  const Matrix2 along = this->GetEdgeDerivatives(piece);
   const double scale = 1.0 / area;
-  const Vector2 first = scale * (points[1] - points[0]);
-  const Vector2 second = scale * (points[2] - points[0]);
+  const Vector2& origin = points[piece.Opposite];
+  const Vector2 first = scale * (points[NextCorner(piece.Opposite)] - origin);
+  const Vector2 second = scale * (points[PreviousCorner(piece.Opposite)] - origin);
   // The rows of the inverse of the matrix of both edges.
   return OuterProduct(along.ImageOfX, { second.y, -second.x }) +
     OuterProduct(along.ImageOfY, { -first.y, first.x });

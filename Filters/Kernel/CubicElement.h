@@ -285,8 +285,9 @@ public:
   }
 
 private:
-  /// The derivatives along the edges from corner 0 to corners 1 and 2.
-  Matrix2 GetEdgeDerivatives(const Barycentric& l) const;
+  /// The derivatives along the edges from the corner opposite the piece to the next and to the
+  /// previous corner.
+  Matrix2 GetEdgeDerivatives(const CubicPiece& piece) const;
 
   Component X;
   Component Y;
