@@ -498,9 +498,21 @@ bool CubicMap::IsInMiddle(int fineTriangle, const Barycentric& l) const
 
 //------------------------------------------------------------------------------
 Vector2 CubicMap::MapPoint(
-  int triangle, Barycentric l, const Vector2& point, CubicTriangle& prepared) const
+  int triangle, const Barycentric& l, const Vector2& point, CubicTriangle& prepared) const
 {
-  const int child = this->Levels > 0 ? this->FindChild(triangle, l) : triangle;
+  if (this->Levels == 0)
+  {
+    return this->MapFinePoint(triangle, l, point, prepared);
+  }
+  Barycentric inChild = l;
+  const int child = this->FindChild(triangle, inChild);
+  return this->MapFinePoint(child, inChild, point, prepared);
+}
+
+//------------------------------------------------------------------------------
+Vector2 CubicMap::MapFinePoint(
+  int child, const Barycentric& l, const Vector2& point, CubicTriangle& prepared) const
+{
   const PlanarPair& pair = this->GetFine();
   const Vector2 origin = pair.Target[pair.Triangles[child][0]];
   if (this->IsWhole(child))

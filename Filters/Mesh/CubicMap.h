@@ -98,7 +98,7 @@ public:
   /// The image of one point; the same, bit for bit, as that of MapPoints. @a l are its barycentric
   /// coordinates.
   Vector2 MapPoint(
-    int triangle, Barycentric l, const Vector2& point, CubicTriangle& prepared) const;
+    int triangle, const Barycentric& l, const Vector2& point, CubicTriangle& prepared) const;
   Vector2 MapPoint(int triangle, const Vector2& point, CubicTriangle& prepared) const
   {
     return this->MapPoint(triangle, this->GetBarycentric(triangle, point), point, prepared);
@@ -165,6 +165,9 @@ private:
   /// pair; both are changed.
   bool FindByWalking(
     const Vector2& image, int& triangle, Vector2& point, CubicTriangle& prepared) const;
+  /// MapPoint in a triangle of the refined pair.
+  Vector2 MapFinePoint(
+    int child, const Barycentric& l, const Vector2& point, CubicTriangle& prepared) const;
   void MapFine(int triangle, const Vector2& point, Vector2& image, Matrix2& derivative) const;
   /// Replaces the triangle by the one that contains the point, and makes the point relative to its
   /// corner 0.
