@@ -26,7 +26,8 @@ set(kernel_headers
   Kernel/Simd/CubicBatch.h
   Kernel/Simd/EdgeBatch.h
   Kernel/Simd/Vectorize.h
-  Kernel/SmoothChart.h)
+  Kernel/SmoothChart.h
+  Kernel/StripFunction.h)
 
 # The cubic map of a planar pair, which is given as plain arrays. These files must not include VTK.
 set(cubic_sources

@@ -70,6 +70,11 @@ struct Matrix2
   double Determinant() const { return Cross(this->ImageOfX, this->ImageOfY); }
 };
 
+inline Matrix2 FromRows(const Vector2& x, const Vector2& y)
+{
+  return { { x.x, y.x }, { x.y, y.y } };
+}
+
 /// Maps a point of a triangle to the point of the corresponding triangle with the same reference.
 template <typename Chart>
 Vector2 MapPoint(const Chart& from, const Chart& to, const Vector2& point)
@@ -77,12 +82,22 @@ Vector2 MapPoint(const Chart& from, const Chart& to, const Vector2& point)
   return to.ToPoint(from.ToReference(point));
 }
 
-/// The derivative of the homeomorphism at a point, from the derivatives of both charts.
+/// The derivative of the homeomorphism at a point, from the derivatives of both charts. Charts with
+/// a faster formula overload this function.
 template <typename Differential>
 Matrix2 MapDerivative(const Differential& from, const Differential& to)
 {
   return { to.Pushforward(from.Pullback({ 1.0, 0.0 })),
     to.Pushforward(from.Pullback({ 0.0, 1.0 })) };
+}
+
+/// The determinant of MapDerivative, which is @a matrix. The determinant of a matrix suffers from
+/// cancellation if a triangle or its neighbor is so thin that the columns are almost parallel.
+/// Charts whose determinants are products overload this function.
+template <typename Differential>
+double MapDeterminant(const Differential&, const Differential&, const Matrix2& matrix)
+{
+  return matrix.Determinant();
 }
 
 /// The image of a point, and the derivatives of both charts there.

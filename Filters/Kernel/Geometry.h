@@ -49,7 +49,7 @@ template <typename T>
 HOMEOMORPHISM_ALWAYS_INLINE std::array<T, 3> InOrder(
   int corner, const T& own, const T& next, const T& previous)
 {
-  constexpr std::int8_t places[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } };
+  static constexpr std::int8_t places[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } };
   const T values[3] = { own, next, previous };
   const std::int8_t(&place)[3] = places[corner];
   // All are initialized. NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript)
@@ -198,7 +198,7 @@ struct TriangleShape
   }
 
   /// Barycentric coordinates of the boundary point nearest to @a point.
-  Barycentric NearestOnBoundary(const Vector2& point) const
+  HOMEOMORPHISM_NEVER_INLINE Barycentric NearestOnBoundary(const Vector2& point) const
   {
     Barycentric nearest{};
     double least = std::numeric_limits<double>::infinity();
@@ -252,7 +252,25 @@ struct TriangleShape
     const double second = (vector.x - this->ApexX * apex) * (1.0 / this->Base);
     return { apex, -apex - second, second };
   }
+
+  /// The x and y coordinates of the apex and of the corners after and before it.
+  CornerCoordinates GetX() const { return { this->ApexX, 0.0, this->Base }; }
+  CornerCoordinates GetY() const { return { this->Height, 0.0, 0.0 }; }
+
+  /// The gradient of the affine function with these values at the apex and at the corners after and
+  /// before it.
+  HOMEOMORPHISM_ALWAYS_INLINE Vector2 GetGradient(const CornerCoordinates& values) const
+  {
+    const double x = (values.Previous - values.Next) * (1.0 / this->Base);
+    return { x, (values.Own - values.Next - this->ApexX * x) * (1.0 / this->Height) };
+  }
 };
+
+/// The determinant of the affine map of one triangle onto another, from frame to frame.
+inline double AffineDeterminant(const TriangleShape& from, const TriangleShape& to)
+{
+  return (to.Base * (1.0 / from.Base)) * (to.Height * (1.0 / from.Height));
+}
 
 /// A triangle seen from one of its edges: the opposite corner relative to the edge. These numbers
 /// suffice to unfold the triangle about the edge.

@@ -44,6 +44,16 @@ public:
     {
       return this->Shape.FromBarycentric(direction);
     }
+    friend Matrix2 MapDerivative(const Differential& from, const Differential& to)
+    {
+      const int between = CornersBetween(to.Shape.Apex, from.Shape.Apex);
+      return FromRows(from.Shape.GetGradient(to.Shape.GetX().Turned(between)),
+        from.Shape.GetGradient(to.Shape.GetY().Turned(between)));
+    }
+    friend double MapDeterminant(const Differential& from, const Differential& to, const Matrix2&)
+    {
+      return AffineDeterminant(from.Shape, to.Shape);
+    }
 
   private:
     TriangleShape Shape;

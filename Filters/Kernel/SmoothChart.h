@@ -26,6 +26,7 @@
 #include "CoordinateSystem.h"
 #include "Geometry.h"
 #include "Kernel/Simd/Vectorize.h"
+#include "StripFunction.h"
 
 #include <array>
 #include <cstdint>
@@ -83,12 +84,25 @@ struct SmoothStrip
     return l.Own * (l.Next + l.Previous) < this->Tau * l.Next * l.Previous;
   }
 
+  /// B_k at l.
+  HOMEOMORPHISM_ALWAYS_INLINE StripFunction<double> GetFunction(const CornerCoordinates& l) const
+  {
+    return { l.Own, l.Next, l.Previous, this->Tau };
+  }
+
   /// l + @a factor d, with the barycentric components d of D_k.
   HOMEOMORPHISM_ALWAYS_INLINE CornerCoordinates Move(
     const CornerCoordinates& l, double factor) const
   {
     return { l.Own + (this->Kappa - 1.0) * factor, l.Next + this->OffsetNext * factor,
       l.Previous + this->OffsetPrevious * factor };
+  }
+
+  /// The sum of the values for three corners times the components of D_k.
+  HOMEOMORPHISM_ALWAYS_INLINE double Dot(const CornerCoordinates& values) const
+  {
+    return (this->Kappa - 1.0) * values.Own +
+      (this->OffsetNext * values.Next + this->OffsetPrevious * values.Previous);
   }
 };
 
@@ -204,7 +218,23 @@ public:
   public:
     /// Reads only one of the strips. @a l refers to @a corner, which has the smallest coordinate.
     Differential(const TriangleShape& shape, const SmoothStripsView& strips, int corner,
-      const CornerCoordinates& l);
+      const CornerCoordinates& l)
+      : Shape(shape)
+      , Edge(corner)
+      , Strip(strips[corner])
+    {
+      this->IsInStrip = this->Strip.Contains(l);
+      if (!this->IsInStrip)
+      {
+        return;
+      }
+      const StripFunction<double> function = this->Strip.GetFunction(l);
+      this->Gradient = { 1.0 - function.OneMinusSlope(), function.AlongSides(1.0, 0.0),
+        function.AlongSides(0.0, 1.0) };
+      this->DeterminantRatio = function.DeterminantRatio(
+        this->Strip.Kappa, this->Strip.OffsetNext, this->Strip.OffsetPrevious);
+      this->InverseDeterminantRatio = 1.0 / this->DeterminantRatio;
+    }
     Direction Pullback(const Vector2& vector) const
     {
       const CornerCoordinates direction = this->Shape.VectorToCornerCoordinates(vector).Turned(
@@ -221,16 +251,42 @@ public:
           .Turned(CornersBetween(this->Edge, this->Shape.Apex));
       return this->Shape.ToFrame(moved.Own, moved.Previous);
     }
+    /// With the affine derivative A, the offsets D and D' of source and target in the frame of the
+    /// target, and the gradients g and g' of B in that of the source, the derivative is A + D'
+    /// g'^T - (A D + D' g'^T D) g^T / det.
+    friend Matrix2 MapDerivative(const Differential& from, const Differential& to)
+    {
+      const int toEdge = CornersBetween(to.Shape.Apex, to.Edge);
+      const int toApex = CornersBetween(from.Edge, from.Shape.Apex);
+      const CornerCoordinates& g = from.Gradient;
+      const CornerCoordinates& otherG = to.Gradient;
+      const double along = from.Strip.Dot(otherG);
+      const auto row = [&](const CornerCoordinates& affine) {
+        const double offset = to.Strip.Dot(affine);
+        const double back =
+          (from.Strip.Dot(affine) + offset * along) * from.InverseDeterminantRatio;
+        return from.Shape.GetGradient(
+          CornerCoordinates{ affine.Own + (offset * otherG.Own - back * g.Own),
+            affine.Next + (offset * otherG.Next - back * g.Next),
+            affine.Previous + (offset * otherG.Previous - back * g.Previous) }
+            .Turned(toApex));
+      };
+      return FromRows(row(to.Shape.GetX().Turned(toEdge)), row(to.Shape.GetY().Turned(toEdge)));
+    }
+    friend double MapDeterminant(const Differential& from, const Differential& to, const Matrix2&)
+    {
+      return AffineDeterminant(from.Shape, to.Shape) *
+        (to.DeterminantRatio * from.InverseDeterminantRatio);
+    }
     /// See SmoothChart.
     double GetDeterminantRatio() const { return this->DeterminantRatio; }
-    double GetInverseDeterminantRatio() const { return this->InverseDeterminantRatio; }
 
   private:
     /// The derivative of B along a direction whose components sum to 0.
     double Along(const CornerCoordinates& direction) const
     {
-      return this->ByOwn * direction.Own +
-        (this->ByNext * direction.Next + this->ByPrevious * direction.Previous);
+      return this->Gradient.Own * direction.Own +
+        (this->Gradient.Next * direction.Next + this->Gradient.Previous * direction.Previous);
     }
 
     TriangleShape Shape;
@@ -238,9 +294,7 @@ public:
     int Edge;
     bool IsInStrip;
     SmoothStrip Strip;
-    double ByOwn = 0.0;
-    double ByNext = 0.0;
-    double ByPrevious = 0.0;
+    CornerCoordinates Gradient{ 0.0, 0.0, 0.0 };
     double DeterminantRatio = 1.0;
     double InverseDeterminantRatio = 1.0;
   };

@@ -126,7 +126,7 @@ public:
   auto VisitChart(TriangleIndex triangle, Visit&& visit) const
   {
     return Dispatch(this->GetSystemOf(triangle),
-      [this, triangle, &visit](auto getChart) { return visit((this->*getChart)(triangle)); });
+      [this, triangle, &visit](auto getChart) { return visit(getChart(*this, triangle)); });
   }
 
   /// Calls visit(chart, otherChart) with the charts of the triangle here and in the other mesh of
@@ -135,7 +135,7 @@ public:
   auto VisitCharts(const ChartedTriangulation& other, TriangleIndex triangle, Visit&& visit) const
   {
     return Dispatch(this->GetSystemOf(triangle), [this, &other, triangle, &visit](auto getChart) {
-      return visit((this->*getChart)(triangle), (other.*getChart)(triangle));
+      return visit(getChart(*this, triangle), getChart(other, triangle));
     });
   }
 
@@ -151,14 +151,20 @@ private:
     switch (system)
     {
       case CoordinateSystem::Contour:
-        return use(&ChartedTriangulation::GetContourChart);
+        return use([](const ChartedTriangulation& charts, TriangleIndex triangle) {
+          return charts.GetContourChart(triangle);
+        });
       case CoordinateSystem::Smooth:
-        return use(&ChartedTriangulation::GetSmoothChart);
+        return use([](const ChartedTriangulation& charts, TriangleIndex triangle) {
+          return charts.GetSmoothChart(triangle);
+        });
       case CoordinateSystem::Linear:
       case CoordinateSystem::Cubic:
         break;
     }
-    return use(&ChartedTriangulation::GetLinearChart);
+    return use([](const ChartedTriangulation& charts, TriangleIndex triangle) {
+      return charts.GetLinearChart(triangle);
+    });
   }
 
   const MeshGeometry& Geometry;

@@ -172,37 +172,27 @@ void CubicHomeomorphism::GetSourcePoints(Domain from, const TriangleIndex* trian
   }
 }
 
-bool CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
-  const Vector2& inFrame, Vector2& image, Matrix2* derivative) const
+CubicPoint CubicHomeomorphism::MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
+  const Vector2& inFrame, CubicTriangle& prepared) const
 {
-  CubicTriangle prepared = this->Map->Prepare();
   int number = this->Numbers[triangle];
   const bool isReversed = this->Reversed[number] != 0;
   const Barycentric turned{ l[0], l[isReversed ? 2 : 1], l[isReversed ? 1 : 2] };
   Vector2 point = this->Pair.GetGeometry(from).GetPlaneFrame(triangle).FromFrame(inFrame);
-  bool exists;
-  image = {};
   if (from == Domain::Source)
   {
-    exists = this->Map->IsCertified(number);
-    if (exists)
+    if (!this->Map->IsCertified(number))
     {
-      image = this->Map->MapPoint(number, turned, point, prepared);
-      image.x = this->IsMirrored ? -image.x : image.x;
+      return { -1, point, {} };
     }
+    const Vector2 image = this->Map->MapPoint(number, turned, point, prepared);
+    return { number, point, { this->IsMirrored ? -image.x : image.x, image.y } };
   }
-  else
-  {
-    point.x = this->IsMirrored ? -point.x : point.x;
-    exists = this->Map->FindPreimage(point, turned, number, image, prepared) &&
-      this->Map->IsCertified(number);
-  }
-  if (derivative)
-  {
-    *derivative =
-      this->Derive(from, exists ? number : -1, from == Domain::Source ? point : image, prepared);
-  }
-  return exists;
+  point.x = this->IsMirrored ? -point.x : point.x;
+  Vector2 image;
+  const bool exists = this->Map->FindPreimage(point, turned, number, image, prepared) &&
+    this->Map->IsCertified(number);
+  return { exists ? number : -1, image, image };
 }
 
 Matrix2 CubicHomeomorphism::Derive(

@@ -17,6 +17,19 @@
 namespace homeomorphism
 {
 
+/// A point that is mapped.
+struct CubicPoint
+{
+  /// The triangle in the source of the CubicMap, -1 if the point has no image.
+  int Number;
+  /// The point itself or its preimage, in the source of the CubicMap.
+  Vector2 InSource;
+  /// The image in the plane of the other mesh.
+  Vector2 Image;
+
+  bool Exists() const { return this->Number >= 0; }
+};
+
 /// A CubicMap of a planar TriangulationPair, in the normalized coordinates of both meshes. For it,
 /// triangles are oriented counterclockwise, and a mirrored target is reflected. Immutable; any
 /// number of threads may use it.
@@ -58,11 +71,9 @@ public:
   void GetSourcePoints(Domain from, const TriangleIndex* triangles, const CubicBatch& batch,
     double* x, double* y, int* numbers) const;
 
-  /// The image of one point in the plane of the other mesh; the same, bit for bit, as that of
-  /// MapPoints. Returns false if there is none. Unless @a derivative is null, sets it to the
-  /// derivative from plane to plane, or to NaN if there is no image.
-  bool MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l, const Vector2& inFrame,
-    Vector2& image, Matrix2* derivative = nullptr) const;
+  /// Maps one point. The image is the same, bit for bit, as that of MapPoints.
+  CubicPoint MapPoint(Domain from, TriangleIndex triangle, const Barycentric& l,
+    const Vector2& inFrame, CubicTriangle& prepared) const;
 
   /// The derivative, from plane to plane, at a point of triangle @a number of the source of the
   /// CubicMap; NaN if @a number is negative.

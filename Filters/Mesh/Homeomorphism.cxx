@@ -159,32 +159,12 @@ Vector2 ToFrame(const TriangleShape& shape, const SmoothPoint& point)
   return shape.ToFrame(l.Own, l.Previous);
 }
 
-double AffineDeterminant(const TriangleShape& shape, const TriangleShape& other)
+/// Sets the matrix of a map between two horizontal planes. Such meshes are columnar, so heights are
+/// measured along the normals of the planes.
+void SetHorizontal(const Matrix2& matrix, Jacobian& jacobian)
 {
-  return (other.Base * (1.0 / shape.Base)) * (other.Height * (1.0 / shape.Height));
-}
-
-/// The determinant of a map's derivative, from frame to frame.
-template <typename Differential>
-double Determinant(const Differential&, const Differential&, const TriangleShape&,
-  const TriangleShape&, const Matrix2& matrix)
-{
-  return matrix.Determinant();
-}
-
-// The determinant of the matrix suffers from cancellation if a triangle or its neighbor is so thin
-// that the columns are almost parallel. The determinants of these charts are products.
-double Determinant(const LinearChart::Differential&, const LinearChart::Differential&,
-  const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
-{
-  return AffineDeterminant(shape, otherShape);
-}
-
-double Determinant(const SmoothChart::Differential& chart, const SmoothChart::Differential& other,
-  const TriangleShape& shape, const TriangleShape& otherShape, const Matrix2&)
-{
-  return AffineDeterminant(shape, otherShape) *
-    (other.GetDeterminantRatio() * chart.GetInverseDeterminantRatio());
+  jacobian.Matrix = { matrix.ImageOfX.x, matrix.ImageOfY.x, 0.0, matrix.ImageOfX.y,
+    matrix.ImageOfY.y, 0.0, 0.0, 0.0, 1.0 };
 }
 
 } // namespace
@@ -459,11 +439,9 @@ int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
     [&](int begin, int end, TriangleIndex t) {
       this->Cubic->SetPoints(
         this->ToCubic(from), t, begin, end, this->ByCorner(from, t, block).data(), inFrame, batch);
-      // Heights are measured as in the triangle's frame.
-      const double orientation = target.IsColumnar() ? 1.0 : target.GetPlaneFrame(t).Orientation;
       for (int i = begin; i < end; ++i)
       {
-        heights[i] = orientation * this->OffsetOfImage(from, block.Offsets[i]);
+        heights[i] = this->OffsetOfImage(from, block.Offsets[i]);
       }
     },
     [&](int other) {
@@ -514,10 +492,10 @@ void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin
     return;
   }
   const PlaneFrame& frame = target.GetPlaneFrame(triangle);
-  const double orientation = target.IsColumnar() ? 1.0 : double(frame.Orientation);
+  const double sense = target.IsColumnar() ? 1.0 : frame.Orientation;
   if (target.IsHorizontal() && end - begin >= LeastVector)
   {
-    ToHorizontalPlane(frame, orientation * this->Pair->GetGeometry(from).GetInverseScale(),
+    ToHorizontalPlane(frame, sense * this->Pair->GetGeometry(from).GetInverseScale(),
       target.GetPlaneDistance(), target.GetScale(), target.GetInverseScale(), begin, end,
       coordinates, block.Offsets, block.Images);
     return;
@@ -527,7 +505,7 @@ void Homeomorphism::LeaveTriangle(Domain from, TriangleIndex triangle, int begin
     const auto [apex, second] = coordinates.Get(i);
     const Vector2 p = ToPlane(frame, apex, second);
     target.FromNormalized(
-      { p.x, p.y, orientation * this->OffsetOfImage(from, block.Offsets[i]) }, block.Images[i]);
+      { p.x, p.y, sense * this->OffsetOfImage(from, block.Offsets[i]) }, block.Images[i]);
   }
 }
 
@@ -538,27 +516,51 @@ auto Homeomorphism::VisitCharts(Domain from, TriangleIndex triangle, Use&& use) 
     this->GetCharts(Opposite(from)), triangle, std::forward<Use>(use));
 }
 
-bool Homeomorphism::MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
+bool Homeomorphism::MapPoint(
+  Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian* jacobian) const
 {
+  const TriangleIndex triangle = surfacePoint.Triangle;
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  const double offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
+  FramePoint point;
+  point.Offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
   if (surfacePoint.Corner >= 0)
   {
-    target.FromMeshPoint(
-      this->Pair->GetTriangulation().GetCorners(surfacePoint.Triangle)[surfacePoint.Corner], offset,
-      image);
+    if (jacobian)
+    {
+      *jacobian = this->GetJacobian(from, surfacePoint);
+    }
+    target.FromMeshPoint(this->Pair->GetTriangulation().GetCorners(triangle)[surfacePoint.Corner],
+      point.Offset, image);
     return true;
   }
   if (this->Cubic)
   {
-    return this->MapByCubic(from, surfacePoint, image, nullptr);
+    return this->MapByCubic(from, surfacePoint, image, jacobian);
   }
-  const TriangleIndex t = surfacePoint.Triangle;
-  // The Smooth system needs only one strip, so no charts are constructed.
-  const Vector2 inPlane = this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth
-    ? ToFrame(target.GetShape(t), this->MapByStrip(from, surfacePoint))
-    : this->MapInFrame(from, t, surfacePoint.Point.InPlane);
-  target.FromNormalized(target.FromFrame(t, { inPlane, offset }), image);
+  if (this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth)
+  {
+    // Only one strip is needed, so no charts are constructed.
+    const SmoothPoint mapped = this->MapByStrip(from, surfacePoint);
+    point.InPlane = ToFrame(target.GetShape(triangle), mapped);
+    if (jacobian)
+    {
+      this->DeriveByStrip(from, triangle, mapped.Corner, mapped.Reference, *jacobian);
+    }
+  }
+  else
+  {
+    this->VisitCharts(from, triangle, [&](const auto& chart, const auto& other) {
+      if (!jacobian)
+      {
+        point.InPlane = homeomorphism::MapPoint(chart, other, surfacePoint.Point.InPlane);
+        return;
+      }
+      const auto mapped = MapWithDerivatives(chart, other, surfacePoint.Point.InPlane);
+      point.InPlane = mapped.Image;
+      this->Derive(from, triangle, mapped.From, mapped.To, *jacobian);
+    });
+  }
+  target.FromNormalized(target.FromFrame(triangle, point), image);
   return true;
 }
 
@@ -567,13 +569,15 @@ Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vec
   if (this->Cubic)
   {
     const Barycentric l = this->Pair->GetGeometry(from).GetShape(triangle).ToBarycentric(point);
-    Vector2 inPlane;
-    if (!this->Cubic->MapPoint(this->ToCubic(from), triangle, l, point, inPlane))
+    CubicTriangle prepared = this->Cubic->GetMap().Prepare();
+    const CubicPoint mapped =
+      this->Cubic->MapPoint(this->ToCubic(from), triangle, l, point, prepared);
+    if (!mapped.Exists())
     {
       constexpr double none = std::numeric_limits<double>::quiet_NaN();
       return { none, none };
     }
-    return this->Pair->GetGeometry(Opposite(from)).GetPlaneFrame(triangle).ToFrame(inPlane);
+    return this->Pair->GetGeometry(Opposite(from)).GetPlaneFrame(triangle).ToFrame(mapped.Image);
   }
   return this->VisitCharts(from, triangle, [&point](const auto& chart, const auto& other) {
     return homeomorphism::MapPoint(chart, other, point);
@@ -581,75 +585,32 @@ Vector2 Homeomorphism::MapInFrame(Domain from, TriangleIndex triangle, const Vec
 }
 
 template <typename Differential>
-Jacobian Homeomorphism::Derive(Domain from, TriangleIndex triangle,
-  const Differential& differential, const Differential& other) const
+HOMEOMORPHISM_ALWAYS_INLINE void Homeomorphism::Derive(Domain from, TriangleIndex triangle,
+  const Differential& differential, const Differential& other, Jacobian& jacobian) const
 {
   const Matrix2 matrix = MapDerivative(differential, other);
-  const TriangleShape& shape = this->Pair->GetGeometry(from).GetShape(triangle);
-  const TriangleShape& otherShape = this->Pair->GetGeometry(Opposite(from)).GetShape(triangle);
-  return this->FromFrames(
-    from, triangle, matrix, Determinant(differential, other, shape, otherShape, matrix));
+  this->FromFrames(from, triangle, matrix, MapDeterminant(differential, other, matrix), jacobian);
 }
 
 /// The derivative of the Smooth map. Only one strip is needed, so no charts are constructed.
-Jacobian Homeomorphism::DeriveByStrip(
-  Domain from, TriangleIndex triangle, int corner, const CornerCoordinates& reference) const
+void Homeomorphism::DeriveByStrip(Domain from, TriangleIndex triangle, int corner,
+  const CornerCoordinates& reference, Jacobian& jacobian) const
 {
   const auto at = [&](Domain domain) {
     return SmoothChart::Differential(this->Pair->GetGeometry(domain).GetShape(triangle),
       this->GetCharts(domain).GetStrips(triangle), corner, reference);
   };
-  return this->Derive(from, triangle, at(from), at(Opposite(from)));
+  this->Derive(from, triangle, at(from), at(Opposite(from)), jacobian);
 }
 
 Jacobian Homeomorphism::GetJacobian(Domain from, const SurfacePoint& surfacePoint) const
 {
-  if (this->Cubic)
-  {
-    double image[3];
-    Jacobian jacobian;
-    this->MapByCubic(from, surfacePoint, image, &jacobian);
-    return jacobian;
-  }
-  return this->VisitCharts(
-    from, surfacePoint.Triangle, [this, from, &surfacePoint](const auto& chart, const auto& other) {
-      const auto mapped = MapWithDerivatives(chart, other, surfacePoint.Point.InPlane);
-      return this->Derive(from, surfacePoint.Triangle, mapped.From, mapped.To);
-    });
-}
-
-bool Homeomorphism::MapPoint(
-  Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const
-{
-  if (surfacePoint.Corner >= 0)
-  {
-    jacobian = this->GetJacobian(from, surfacePoint);
-    return this->MapPoint(from, surfacePoint, image);
-  }
-  if (this->Cubic)
-  {
-    return this->MapByCubic(from, surfacePoint, image, &jacobian);
-  }
-  const TriangleIndex triangle = surfacePoint.Triangle;
-  const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
-  FramePoint point;
-  point.Offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
-  if (this->GetCharts(from).GetSystem() == CoordinateSystem::Smooth)
-  {
-    const SmoothPoint mapped = this->MapByStrip(from, surfacePoint);
-    point.InPlane = ToFrame(target.GetShape(triangle), mapped);
-    jacobian = this->DeriveByStrip(from, triangle, mapped.Corner, mapped.Reference);
-  }
-  else
-  {
-    this->VisitCharts(from, triangle, [&](const auto& chart, const auto& other) {
-      const auto mapped = MapWithDerivatives(chart, other, surfacePoint.Point.InPlane);
-      point.InPlane = mapped.Image;
-      jacobian = this->Derive(from, triangle, mapped.From, mapped.To);
-    });
-  }
-  target.FromNormalized(target.FromFrame(triangle, point), image);
-  return true;
+  // At a corner, MapPoint would not compute the image.
+  const SurfacePoint point{ surfacePoint.Triangle, surfacePoint.Point, -1 };
+  double image[3];
+  Jacobian jacobian;
+  this->MapPoint(from, point, image, jacobian);
+  return jacobian;
 }
 
 /// Maps a point by the Cubic system. @a jacobian may be null.
@@ -660,19 +621,19 @@ bool Homeomorphism::MapByCubic(
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   const Vector2& point = surfacePoint.Point.InPlane;
   const Barycentric l = this->Pair->GetGeometry(from).GetShape(triangle).ToBarycentric(point);
-  Vector2 inPlane;
-  Matrix2 derivative;
-  const bool exists = this->Cubic->MapPoint(
-    this->ToCubic(from), triangle, l, point, inPlane, jacobian ? &derivative : nullptr);
+  CubicTriangle prepared = this->Cubic->GetMap().Prepare();
+  const CubicPoint mapped =
+    this->Cubic->MapPoint(this->ToCubic(from), triangle, l, point, prepared);
   if (jacobian)
   {
-    *jacobian = this->FromPlanes(from, triangle, derivative);
+    this->FromPlanes(from, triangle,
+      this->Cubic->Derive(this->ToCubic(from), mapped.Number, mapped.InSource, prepared),
+      *jacobian);
   }
-  // Heights are measured as in the triangle's frame.
-  const double orientation = target.IsColumnar() ? 1.0 : target.GetPlaneFrame(triangle).Orientation;
-  const double offset = this->OffsetOfImage(from, surfacePoint.Point.Offset);
-  target.FromNormalized({ inPlane.x, inPlane.y, orientation * offset }, image);
-  return exists;
+  target.FromNormalized(
+    { mapped.Image.x, mapped.Image.y, this->OffsetOfImage(from, surfacePoint.Point.Offset) },
+    image);
+  return mapped.Exists();
 }
 
 /// Maps a point by the Smooth system.
@@ -693,15 +654,19 @@ Jacobian Homeomorphism::GetJacobian(Domain from, const PointBlock& block, int i)
   {
     return this->GetJacobian(from, block.GetSurfacePoint(i));
   }
+  Jacobian jacobian;
   if (this->Cubic)
   {
     const Vector2 point{ block.References[0][i], block.References[1][i] };
-    return this->FromPlanes(from, triangle,
+    this->FromPlanes(from, triangle,
       this->Cubic->Derive(
-        this->ToCubic(from), block.ReferencePlaces[i], point, *block.PreparedCubics));
+        this->ToCubic(from), block.ReferencePlaces[i], point, *block.PreparedCubics),
+      jacobian);
+    return jacobian;
   }
-  return this->DeriveByStrip(from, triangle, block.ReferencePlaces[i],
-    { block.References[0][i], block.References[1][i], block.References[2][i] });
+  this->DeriveByStrip(from, triangle, block.ReferencePlaces[i],
+    { block.References[0][i], block.References[1][i], block.References[2][i] }, jacobian);
+  return jacobian;
 }
 
 Jacobian Homeomorphism::GetJacobian(
@@ -712,16 +677,17 @@ Jacobian Homeomorphism::GetJacobian(
     const Vector2 point = this->GetCharts(from).FromCoordinates(triangle, coordinates);
     return this->GetJacobian(from, SurfacePoint{ triangle, { point, 0.0 }, -1 });
   }
-  return this->VisitCharts(
-    from, triangle, [this, from, triangle, &coordinates](const auto& chart, const auto& other) {
-      const auto reference = chart.FromCoordinates(coordinates);
-      return this->Derive(
-        from, triangle, chart.DifferentialAt(reference), other.DifferentialAt(reference));
-    });
+  Jacobian jacobian;
+  this->VisitCharts(from, triangle, [&](const auto& chart, const auto& other) {
+    const auto reference = chart.FromCoordinates(coordinates);
+    this->Derive(
+      from, triangle, chart.DifferentialAt(reference), other.DifferentialAt(reference), jacobian);
+  });
+  return jacobian;
 }
 
-Jacobian Homeomorphism::FromPlanes(
-  Domain from, TriangleIndex triangle, const Matrix2& inPlanes) const
+void Homeomorphism::FromPlanes(
+  Domain from, TriangleIndex triangle, const Matrix2& inPlanes, Jacobian& jacobian) const
 {
   const MeshGeometry& source = this->Pair->GetGeometry(from);
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
@@ -731,28 +697,22 @@ Jacobian Homeomorphism::FromPlanes(
   {
     const Matrix2 inFrames{ other.VectorToFrame(inPlanes * frame.Tangent),
       other.VectorToFrame(inPlanes * frame.GetInward()) };
-    return this->FromFrames(from, triangle, inFrames, inFrames.Determinant());
+    this->FromFrames(from, triangle, inFrames, inFrames.Determinant(), jacobian);
+    return;
   }
   // The scales are powers of two, so nothing is rounded.
-  const double rescale = source.GetScale() * target.GetInverseScale();
-  const double sense = source.IsColumnar() ? 1.0 : frame.Orientation;
-  const double otherSense = target.IsColumnar() ? 1.0 : other.Orientation;
-  const Matrix2 m = rescale * inPlanes;
-  Jacobian jacobian;
-  jacobian.Determinant = sense * otherSense * m.Determinant();
-  jacobian.Matrix = { m.ImageOfX.x, m.ImageOfY.x, 0.0, m.ImageOfX.y, m.ImageOfY.y, 0.0, 0.0, 0.0,
-    sense * otherSense };
-  return jacobian;
+  const Matrix2 matrix = (source.GetScale() * target.GetInverseScale()) * inPlanes;
+  jacobian.Determinant = matrix.Determinant();
+  SetHorizontal(matrix, jacobian);
 }
 
-Jacobian Homeomorphism::FromFrames(
-  Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const
+void Homeomorphism::FromFrames(Domain from, TriangleIndex triangle, const Matrix2& inFrames,
+  double determinant, Jacobian& jacobian) const
 {
   const MeshGeometry& source = this->Pair->GetGeometry(from);
   const MeshGeometry& target = this->Pair->GetGeometry(Opposite(from));
   // The scales are powers of two, so nothing is rounded.
   const double rescale = source.GetScale() * target.GetInverseScale();
-  Jacobian jacobian;
   jacobian.Determinant = determinant * rescale * rescale * source.GetHandedness(triangle) *
     target.GetHandedness(triangle);
   if (source.IsHorizontal() && target.IsHorizontal())
@@ -760,19 +720,11 @@ Jacobian Homeomorphism::FromFrames(
     // The product below, without the components of the axes that are zero.
     const PlaneFrame& frame = source.GetPlaneFrame(triangle);
     const PlaneFrame& other = target.GetPlaneFrame(triangle);
-    const Vector2 inward = frame.GetInward();
-    const Vector2 otherInward = other.GetInward();
-    const Vector2 alongTangent =
-      rescale * (inFrames.ImageOfX.x * other.Tangent + inFrames.ImageOfX.y * otherInward);
-    const Vector2 alongInward =
-      rescale * (inFrames.ImageOfY.x * other.Tangent + inFrames.ImageOfY.y * otherInward);
-    const double normal = (source.IsColumnar() ? 1.0 : frame.Orientation) *
-      (target.IsColumnar() ? 1.0 : other.Orientation);
-    jacobian.Matrix = { alongTangent.x * frame.Tangent.x + alongInward.x * inward.x,
-      alongTangent.x * frame.Tangent.y + alongInward.x * inward.y, 0.0,
-      alongTangent.y * frame.Tangent.x + alongInward.y * inward.x,
-      alongTangent.y * frame.Tangent.y + alongInward.y * inward.y, 0.0, 0.0, 0.0, normal };
-    return jacobian;
+    const Matrix2 axes{ other.Tangent, other.GetInward() };
+    SetHorizontal(OuterProduct(rescale * (axes * inFrames.ImageOfX), frame.Tangent) +
+        OuterProduct(rescale * (axes * inFrames.ImageOfY), frame.GetInward()),
+      jacobian);
+    return;
   }
   const std::array<Vector3, 3> from3 = source.GetAxes(triangle);
   const std::array<Vector3, 3> to3 = target.GetAxes(triangle);
@@ -788,7 +740,6 @@ Jacobian Homeomorphism::FromFrames(
         alongInward * from3[1][column] + to3[2][row] * from3[2][column];
     }
   }
-  return jacobian;
 }
 
 } // namespace homeomorphism

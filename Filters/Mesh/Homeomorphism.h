@@ -96,12 +96,18 @@ public:
   /// The image of a point of the domain @a from. Corners are mapped to corners exactly. Returns
   /// false if there is no image: if @a surfacePoint is not in the domain, or if a Cubic map is not
   /// certified in its triangle.
-  bool MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const;
+  bool MapPoint(Domain from, const SurfacePoint& surfacePoint, double image[3]) const
+  {
+    return this->MapPoint(from, surfacePoint, image, nullptr);
+  }
 
   /// The image of a point, and the derivative there. The equations of the system are solved only
   /// once. Returns false if there is no image.
   bool MapPoint(
-    Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const;
+    Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian& jacobian) const
+  {
+    return this->MapPoint(from, surfacePoint, image, &jacobian);
+  }
 
   /// The image of a point, from the frame of the triangle in @a from to its frame in the other
   /// domain; NaN if there is none.
@@ -141,6 +147,10 @@ public:
 private:
   Homeomorphism() = default;
 
+  /// Maps a point; @a jacobian may be null.
+  bool MapPoint(
+    Domain from, const SurfacePoint& surfacePoint, double image[3], Jacobian* jacobian) const;
+
   /// The distance of an image from the plane of its triangle. Distances from a plane are
   /// lengths of the input's space, not of either normalized space.
   double OffsetOfImage(Domain from, double offset) const
@@ -173,20 +183,23 @@ private:
   template <typename Use>
   auto VisitCharts(Domain from, TriangleIndex triangle, Use&& use) const;
 
+  // Jacobians are written in place, because copying one that has just been stored is slow.
+
   /// The derivative at a point of a triangle, from those of both charts there.
   template <typename Differential>
-  Jacobian Derive(Domain from, TriangleIndex triangle, const Differential& differential,
-    const Differential& other) const;
-  Jacobian DeriveByStrip(
-    Domain from, TriangleIndex triangle, int corner, const CornerCoordinates& reference) const;
+  void Derive(Domain from, TriangleIndex triangle, const Differential& differential,
+    const Differential& other, Jacobian& jacobian) const;
+  void DeriveByStrip(Domain from, TriangleIndex triangle, int corner,
+    const CornerCoordinates& reference, Jacobian& jacobian) const;
 
   /// Converts a derivative from the triangle's frames to the input's coordinates. @a determinant is
   /// that of @a inFrames.
-  Jacobian FromFrames(
-    Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant) const;
+  void FromFrames(Domain from, TriangleIndex triangle, const Matrix2& inFrames, double determinant,
+    Jacobian& jacobian) const;
 
   /// Converts a derivative from the planes of planar meshes to the input's coordinates.
-  Jacobian FromPlanes(Domain from, TriangleIndex triangle, const Matrix2& inPlanes) const;
+  void FromPlanes(
+    Domain from, TriangleIndex triangle, const Matrix2& inPlanes, Jacobian& jacobian) const;
 
   std::shared_ptr<const TriangulationPair> Pair;
   std::array<std::shared_ptr<const ChartedTriangulation>, 2> Charts;

@@ -49,7 +49,8 @@ struct alignas(64) PlaneFrame
   /// The unit vector from the longest edge towards the apex: the second axis of the frame.
   Vector2 GetInward() const
   {
-    return { -this->Orientation * this->Tangent.y, this->Orientation * this->Tangent.x };
+    const double sense = this->Orientation;
+    return { -sense * this->Tangent.y, sense * this->Tangent.x };
   }
 
   Vector2 VectorToFrame(const Vector2& vector) const

@@ -32,6 +32,13 @@
 #define HOMEOMORPHISM_ALWAYS_INLINE inline
 #endif
 
+/// Before a function that is rarely called: keeps its code out of its callers.
+#if defined(__GNUC__)
+#define HOMEOMORPHISM_NEVER_INLINE __attribute__((noinline, cold))
+#else
+#define HOMEOMORPHISM_NEVER_INLINE
+#endif
+
 namespace homeomorphism
 {
 
