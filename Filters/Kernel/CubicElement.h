@@ -48,6 +48,13 @@ inline double SquaredNorm(const Matrix2& m)
   return Dot(m.ImageOfX, m.ImageOfX) + Dot(m.ImageOfY, m.ImageOfY);
 }
 
+/// The solution x of m x = v.
+inline Vector2 Solve(const Matrix2& m, const Vector2& v)
+{
+  const double inverse = 1.0 / m.Determinant();
+  return { inverse * Cross(v, m.ImageOfY), inverse * Cross(m.ImageOfX, v) };
+}
+
 /// The derivative of the affine map of one triangle onto another. Every entry is accurate to a few
 /// ulp if the differences of the corners are exact.
 Matrix2 AffineDerivative(const std::array<Vector2, 3>& from, const std::array<Vector2, 3>& to);
@@ -218,16 +225,15 @@ public:
   /// is the least of the l_i.
   struct InPiece
   {
-    double Lesser;
     double N0;
     double N1;
     double N2;
     double W;
 
     HOMEOMORPHISM_ALWAYS_INLINE InPiece(double l0, double l1, double l2)
-      : Lesser(l1 < l0 ? l1 : l0)
     {
-      const double m = l2 < this->Lesser ? l2 : this->Lesser;
+      const double lesser = l1 < l0 ? l1 : l0;
+      const double m = l2 < lesser ? l2 : lesser;
       this->N0 = l0 - m;
       this->N1 = l1 - m;
       this->N2 = l2 - m;
@@ -237,7 +243,7 @@ public:
 
   static HOMEOMORPHISM_ALWAYS_INLINE double Map(const Component& b, double l0, double l1, double l2)
   {
-    const auto [lesser, n0, n1, n2, w] = InPiece(l0, l1, l2);
+    const auto [n0, n1, n2, w] = InPiece(l0, l1, l2);
     const double ww = w * w;
     const double at0 =
       n0 * (n0 * b.Corner[0] + n1 * b.Next[0] + n2 * b.Previous[0] + w * b.Inner[0]);
@@ -248,40 +254,6 @@ public:
     return n0 * (at0 + ww * b.Spoke[0]) + n1 * (at1 + ww * b.Spoke[1]) +
       n2 * (at2 + ww * b.Spoke[2]) +
       w * (n1 * n2 * b.Middle[0] + n2 * n0 * b.Middle[1] + n0 * n1 * b.Middle[2] + ww * b.Center);
-  }
-
-  /// The derivatives with respect to the barycentric coordinates of the function of l that is
-  /// homogeneous of degree 3 and equals f where they sum to 1. By Euler's theorem, the function is
-  /// a third of the sum of l_i times d_i.
-  static HOMEOMORPHISM_ALWAYS_INLINE void Derive(
-    const Component& b, double l0, double l1, double l2, double& d0, double& d1, double& d2)
-  {
-    const auto [lesser, n0, n1, n2, w] = InPiece(l0, l1, l2);
-    const double ww = w * w;
-    // The derivatives by n_0, n_1, n_2 and w.
-    const double by0 =
-      n0 * (3.0 * n0 * b.Corner[0] + 2.0 * (n1 * b.Next[0] + n2 * b.Previous[0] + w * b.Inner[0])) +
-      n2 * n2 * b.Next[2] + n1 * n1 * b.Previous[1] +
-      w * (n1 * b.Middle[2] + n2 * b.Middle[1] + w * b.Spoke[0]);
-    const double by1 =
-      n1 * (3.0 * n1 * b.Corner[1] + 2.0 * (n2 * b.Next[1] + n0 * b.Previous[1] + w * b.Inner[1])) +
-      n0 * n0 * b.Next[0] + n2 * n2 * b.Previous[2] +
-      w * (n2 * b.Middle[0] + n0 * b.Middle[2] + w * b.Spoke[1]);
-    const double by2 =
-      n2 * (3.0 * n2 * b.Corner[2] + 2.0 * (n0 * b.Next[2] + n1 * b.Previous[2] + w * b.Inner[2])) +
-      n1 * n1 * b.Next[1] + n0 * n0 * b.Previous[0] +
-      w * (n0 * b.Middle[1] + n1 * b.Middle[0] + w * b.Spoke[2]);
-    const double byW = n0 * n0 * b.Inner[0] + n1 * n1 * b.Inner[1] + n2 * n2 * b.Inner[2] +
-      n1 * n2 * b.Middle[0] + n2 * n0 * b.Middle[1] + n0 * n1 * b.Middle[2] +
-      2.0 * w * (n0 * b.Spoke[0] + n1 * b.Spoke[1] + n2 * b.Spoke[2]) + 3.0 * ww * b.Center;
-    // The least coordinate is in w, and is subtracted from the other two.
-    const bool is2 = l2 < lesser;
-    const bool is1 = !is2 & (l1 < l0);
-    const bool is0 = !is2 & !is1;
-    const double rest = 3.0 * byW;
-    d0 = is0 ? rest - by1 - by2 : by0;
-    d1 = is1 ? rest - by0 - by2 : by1;
-    d2 = is2 ? rest - by0 - by1 : by2;
   }
 
 private:

@@ -218,12 +218,6 @@ Barycentric ToBarycentricByAreas(const std::array<Vector2, 3>& corners, const Ve
   return { 1.0 - first - second, first, second };
 }
 
-Vector2 Solve(const Matrix2& m, const Vector2& v)
-{
-  const double d = m.Determinant();
-  return { Cross(v, m.ImageOfY) / d, Cross(m.ImageOfX, v) / d };
-}
-
 // The edge beyond which a point, relative to corner 0, is farthest outside; -1 if it is inside.
 int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
 {

@@ -25,8 +25,12 @@ class EdgeBubbles
 {
 public:
   explicit EdgeBubbles(const Barycentric& l)
-    : M(std::min(std::min(l[0], l[1]), l[2]))
-    , N{ l[0] - M, l[1] - M, l[2] - M }
+    : EdgeBubbles(l, std::min(std::min(l[0], l[1]), l[2]))
+  {
+  }
+  /// The polynomials of a piece, also outside it. They are homogeneous of degree 3.
+  EdgeBubbles(const Barycentric& l, int piece)
+    : EdgeBubbles(l, l[piece])
   {
   }
 
@@ -40,15 +44,17 @@ public:
   /// The derivatives with respect to the barycentric coordinates as independent variables.
   Barycentric GetDerivatives(int k) const
   {
+    return this->GetDerivatives(k, this->N[0] <= 0.0 ? 0 : (this->N[1] <= 0.0 ? 1 : 2));
+  }
+  Barycentric GetDerivatives(int k, int piece) const
+  {
     const double i = this->N[NextCorner(k)];
     const double j = this->N[PreviousCorner(k)];
     const double byI = this->M * (18.0 * j + 9.0 * this->M);
     const double byJ = this->M * (18.0 * i + 9.0 * this->M);
     const double rest = 18.0 * (i * j + this->M * (i + j + this->M)) - byI - byJ;
     // The least coordinate is subtracted from the others.
-    const bool is0 = this->N[0] <= 0.0;
-    const bool is1 = !is0 && this->N[1] <= 0.0;
-    Barycentric by{ is0 ? rest : 0.0, is1 ? rest : 0.0, is0 || is1 ? 0.0 : rest };
+    Barycentric by{ piece == 0 ? rest : 0.0, piece == 1 ? rest : 0.0, piece == 2 ? rest : 0.0 };
     by[NextCorner(k)] += byI;
     by[PreviousCorner(k)] += byJ;
     return by;
@@ -58,22 +64,27 @@ public:
   double GetLeastCoordinate() const { return this->M; }
 
 private:
+  EdgeBubbles(const Barycentric& l, double least)
+    : M(least)
+    , N{ l[0] - M, l[1] - M, l[2] - M }
+  {
+  }
+
   double M;
   std::array<double, 3> N;
 };
-
-/// The solution x of m x = v.
-Vector2 Solve(const Matrix2& m, const Vector2& v)
-{
-  const double inverse = 1.0 / m.Determinant();
-  return { inverse * Cross(v, m.ImageOfY), inverse * Cross(m.ImageOfX, v) };
-}
 
 /// Barycentric coordinates in the upper or the lower element of a strip. The ends of the diagonal
 /// are corners 0 and 2.
 Barycentric GetStripCoordinates(bool isUpper, double s, double t)
 {
   return isUpper ? Barycentric{ 1.0 - t, t - s, s } : Barycentric{ 1.0 - s, s - t, t };
+}
+
+/// The factor of the diagonal's bubble in a strip.
+double GetBubbleFactor(bool isUpper, double share)
+{
+  return (isUpper ? 1.0 : -1.0) / 6.0 * share;
 }
 
 /// The factor g of the jump in a strip along a line: t (1 - t)^2 plus the diagonal's bubble. It is
@@ -87,26 +98,22 @@ public:
   {
     const bool isUpper = IsUpper(s, t);
     const Barycentric l = GetStripCoordinates(isUpper, s, t);
-    const Barycentric d =
+    const Barycentric along =
       isUpper ? Barycentric{ -dt, dt - ds, ds } : Barycentric{ -ds, ds - dt, dt };
+    // A homogeneous cubic polynomial b is b(l) + b'(l) d x + b'(d) l x^2 + b(d) x^3 at l + x d.
     const int least = this->Piece % 3;
-    const double m = l[least];
-    const double i = l[0] - m;
-    const double j = l[2] - m;
-    const double dm = d[least];
-    const double di = d[0] - dm;
-    const double dj = d[2] - dm;
-    const double sum = i + j;
-    const double dSum = di + dj;
-    const double turn = di * j + i * dj;
-    const double factor = (isUpper ? 1.0 : -1.0) / 6.0 * share;
+    const EdgeBubbles start(l);
+    const EdgeBubbles direction(along, least);
+    const auto sum = [](const Barycentric& a, const Barycentric& b) {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    const double factor = GetBubbleFactor(isUpper, share);
     const double rest = 1.0 - t;
-    this->Value = t * rest * rest + factor * (m * (18.0 * i * j + m * (9.0 * sum + 6.0 * m)));
-    this->Slope = rest * (1.0 - 3.0 * t) * dt +
-      factor * (18.0 * (dm * i * j + m * (turn + dm * (sum + m))) + 9.0 * m * m * dSum);
-    this->HalfCurvature = (3.0 * t - 2.0) * dt * dt +
-      factor * (18.0 * (dm * (turn + m * (dSum + dm)) + m * di * dj) + 9.0 * dm * dm * sum);
-    this->Third = dt * dt * dt + factor * (dm * (18.0 * di * dj + dm * (9.0 * dSum + 6.0 * dm)));
+    this->Value = t * rest * rest + factor * start[1];
+    this->Slope = rest * (1.0 - 3.0 * t) * dt + factor * sum(start.GetDerivatives(1, least), along);
+    this->HalfCurvature =
+      (3.0 * t - 2.0) * dt * dt + factor * sum(direction.GetDerivatives(1, least), l);
+    this->Third = dt * dt * dt + factor * direction[1];
   }
 
   /// A number of the piece of the bubble that contains a point.
@@ -364,9 +371,7 @@ const CubicTriangle::EdgeTerms& CubicTriangle::GetEdge(int k)
   const Matrix2& affine = this->Current->Affine;
   edge.Shift = Solve(affine, edge.Jump);
   // The relative error of the solution is the unit of the last place times the condition number.
-  const double condition =
-    (Dot(affine.ImageOfX, affine.ImageOfX) + Dot(affine.ImageOfY, affine.ImageOfY)) /
-    affine.Determinant();
+  const double condition = SquaredNorm(affine) / affine.Determinant();
   const double longest = std::max({ cut.Lengths[0], cut.Lengths[1], cut.Lengths[2] });
   edge.Rounding = this->Current->Rounding +
     std::numeric_limits<double>::epsilon() * (condition + longest * edge.InverseHeight) *
@@ -439,7 +444,7 @@ Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2*
   const bool isUpper = (number - TriangleCut::FirstStrip) % 2 == 1;
   const EdgeBubbles bubbles(GetStripCoordinates(isUpper, s, t));
   this->LeastCoordinate = bubbles.GetLeastCoordinate();
-  const double factor = (isUpper ? 1.0 : -1.0) / 6.0 * edge.StripShare;
+  const double factor = GetBubbleFactor(isUpper, edge.StripShare);
   const double rest = 1.0 - t;
   if (derivative)
   {

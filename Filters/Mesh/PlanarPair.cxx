@@ -59,10 +59,8 @@ void PlanarPair::FindNeighbors()
 double PlanarPair::GetRounding(int triangle, const Matrix2& derivative) const
 {
   const std::array<Vector2, 3> corners = this->GetSourceCorners(triangle);
-  const auto square = [](const Vector2& v) { return Dot(v, v); };
-  const double length = std::max(square(corners[1]), square(corners[2]));
-  const double norm = square(derivative.ImageOfX) + square(derivative.ImageOfY);
-  return std::numeric_limits<double>::epsilon() * std::sqrt(length * norm);
+  const double length = std::max(Dot(corners[1], corners[1]), Dot(corners[2], corners[2]));
+  return std::numeric_limits<double>::epsilon() * std::sqrt(length * SquaredNorm(derivative));
 }
 
 //------------------------------------------------------------------------------

@@ -767,6 +767,20 @@ TEST(CubicMap, PartsTurnedOverByRoundingAreNotCertified)
   EXPECT_GT(turned, 3);
 }
 
+void ExpectExactPreimages(const CubicMap& map, int count, double tolerance)
+{
+  const PlanarPair& pair = map.GetPair();
+  CubicTriangle prepared = map.Prepare();
+  for (const Sample& sample : RandomSamples(pair, 8, count))
+  {
+    const Vector2 image = sample.In(pair, pair.Target);
+    int triangle = sample.Triangle;
+    Vector2 point;
+    ASSERT_TRUE(map.FindPreimage(image, triangle, point, prepared));
+    ASSERT_LE(Norm(map.MapPoint(triangle, point, prepared) - image), tolerance);
+  }
+}
+
 TEST(CubicMap, PreimagesAreExactWhereSecondDerivativesChangeSign)
 {
   // Between inflections the first of Newton's steps may by chance come much closer than the next.
@@ -777,16 +791,7 @@ TEST(CubicMap, PreimagesAreExactWhereSecondDerivativesChangeSign)
   {
     p.x += 0.13 * std::sin(6.283185307179586 * p.x);
   }
-  const CubicMap map(pair, Options(CubicBending::Least));
-  CubicTriangle prepared = map.Prepare();
-  for (const Sample& sample : RandomSamples(pair, 8, 1000000))
-  {
-    const Vector2 image = sample.In(pair, pair.Target);
-    int triangle = sample.Triangle;
-    Vector2 point;
-    ASSERT_TRUE(map.FindPreimage(image, triangle, point, prepared));
-    ASSERT_LE(Norm(map.MapPoint(triangle, point, prepared) - image), 4e-15);
-  }
+  ExpectExactPreimages(CubicMap(pair, Options(CubicBending::Least)), 1000000, 4e-15);
 }
 
 TEST(CubicMap, PreimagesUnderTheTemplateAreExact)
@@ -800,16 +805,7 @@ TEST(CubicMap, PreimagesUnderTheTemplateAreExact)
       point.y *= width;
       point = { 0.8 * point.x - 0.6 * point.y, 0.6 * point.x + 0.8 * point.y };
     }
-    const CubicMap map(pair, Options(CubicBending::Local));
-    CubicTriangle prepared = map.Prepare();
-    for (const Sample& sample : RandomSamples(pair, 8, 200000))
-    {
-      const Vector2 image = sample.In(pair, pair.Target);
-      int triangle = sample.Triangle;
-      Vector2 point;
-      ASSERT_TRUE(map.FindPreimage(image, triangle, point, prepared));
-      ASSERT_LE(Norm(map.MapPoint(triangle, point, prepared) - image), 2e-15 / width);
-    }
+    ExpectExactPreimages(CubicMap(pair, Options(CubicBending::Local)), 200000, 2e-15 / width);
   }
 }
 
