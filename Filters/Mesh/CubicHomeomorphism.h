@@ -42,15 +42,13 @@ public:
   const CubicMap& GetMap() const { return *this->Map; }
 
   /// Prefetches the data of a triangle that MapPoint reads.
-  void PrefetchTriangle(TriangleIndex triangle) const
+  void PrefetchTriangle(Domain from, TriangleIndex triangle) const
   {
-    const CubicNet* net = this->Map->GetNet(this->Numbers[triangle]);
-    if (net)
+    const std::int32_t number = this->Numbers[triangle];
+    PrefetchAll(this->Map->GetNet(number));
+    if (from == Domain::Target)
     {
-      for (std::size_t at = 0; at < sizeof(CubicNet); at += 64)
-      {
-        Prefetch(reinterpret_cast<const char*>(net) + at);
-      }
+      PrefetchAll(this->Map->GetInverse(number));
     }
   }
 
@@ -92,6 +90,15 @@ public:
 
 private:
   void LeaveUncertified(CubicBatch& batch) const;
+
+  template <typename Data>
+  static void PrefetchAll(const Data* data)
+  {
+    for (std::size_t at = 0; data && at < sizeof(Data); at += 64)
+    {
+      Prefetch(reinterpret_cast<const char*>(data) + at);
+    }
+  }
 
   const TriangulationPair& Pair;
   std::unique_ptr<CubicMap> Map;

@@ -322,6 +322,19 @@ CubicMap::CubicMap(PlanarPair pair, const CubicMapOptions& options, const Parall
       }
     });
   }
+  if (this->Bending && !this->Bending->Nets.empty())
+  {
+    this->Inverses = LargeArray<InverseInterpolant>(this->Bending->Nets.size());
+    parallelFor(this->GetFine().GetNumberOfTriangles(), [&](std::int64_t begin, std::int64_t end) {
+      for (int t = static_cast<int>(begin); t < end; ++t)
+      {
+        if (this->IsWhole(t))
+        {
+          this->Inverses[t] = InverseInterpolant(this->Bending->Nets[t]);
+        }
+      }
+    });
+  }
   double coordinates = 0.0;
   for (const Vector2& target : this->Pair.Target)
   {
@@ -671,12 +684,159 @@ void CubicMap::MapPoints(CubicBatch& batch, CubicTriangle& prepared) const
 // Points whose preimages are searched for in whole triangles of the refined pair.
 struct CubicMap::Walkers
 {
-  int Count = 0;
-  std::int32_t Triangles[CubicBatch::Capacity];
-  /// The indices of the points in the batch.
-  std::int32_t Numbers[CubicBatch::Capacity];
+  static constexpr int MostRuns = CubicWalkers::Size / WidestVector;
+
+  // The points that start in the triangle of a run are consecutive in the batch. Those that enter
+  // it later are after them.
+  struct Start
+  {
+    int Triangle;
+    int First;
+    int Count;
+  };
+
+  // A point that enters a triangle, from a run if that is not negative.
+  struct Entry
+  {
+    int Number;
+    int Triangle;
+    int From;
+    Barycentric L;
+  };
+
+  int NumberOfRuns = 0;
+  int Stop = 0;
+  CubicRun Runs[MostRuns];
+  Start Starts[MostRuns];
+  // The indices in the batch of the points that enter.
+  std::int32_t Numbers[CubicWalkers::Size];
+  int NumberOfEntries = 0;
+  Entry Entries[CubicBatch::Capacity];
   CubicWalkers Arrays;
+
+  bool HasRoom(int count) const
+  {
+    return this->NumberOfRuns < MostRuns &&
+      this->Stop + InWholeVectors(count) <= CubicWalkers::Size;
+  }
+
+  void Add(int triangle, const CubicNet* net, int first, int count)
+  {
+    this->Runs[this->NumberOfRuns] = { net, this->Stop, this->Stop + count, false };
+    this->Starts[this->NumberOfRuns] = { triangle, first, count };
+    this->Stop += InWholeVectors(count);
+    ++this->NumberOfRuns;
+  }
+
+  // A run in an entry's triangle with an unused element, -1 if there is none.
+  int FindRun(const Entry& entry) const
+  {
+    for (int run : { entry.From + 1, entry.From - 1, this->NumberOfRuns - 1 })
+    {
+      if (run >= 0 && run < this->NumberOfRuns && this->Starts[run].Triangle == entry.Triangle &&
+        this->Runs[run].End % WidestVector != 0)
+      {
+        return run;
+      }
+    }
+    return -1;
+  }
 };
+
+//------------------------------------------------------------------------------
+Barycentric CubicMap::Leave(int& triangle, const Barycentric& l, Vector2& point) const
+{
+  const PlanarPair& pair = this->GetFine();
+  const std::array<Vector2, 3> corners = pair.GetSourceCorners(triangle);
+  point = l[1] * corners[1] + l[2] * corners[2];
+  // Most points are in the neighbor beyond the edge with the least coordinate.
+  const int neighbor = pair.Neighbors[triangle][FindPiece(l).Opposite];
+  if (neighbor >= 0)
+  {
+    const Vector2 moved =
+      point + (pair.Source[pair.Triangles[triangle][0]] - pair.Source[pair.Triangles[neighbor][0]]);
+    const Barycentric there = ToBarycentricByAreas(pair.GetSourceCorners(neighbor), moved);
+    if (there[0] >= 0.0 && there[1] >= 0.0 && there[2] >= 0.0)
+    {
+      triangle = neighbor;
+      point = moved;
+      return there;
+    }
+  }
+  this->Walk(triangle, point);
+  return ToBarycentricByAreas(pair.GetSourceCorners(triangle), point);
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::StartWalking(
+  const CubicBatch& batch, int begin, int end, int triangle, Walkers& walkers) const
+{
+  const PlanarPair& pair = this->GetFine();
+  CubicWalkers& arrays = walkers.Arrays;
+  const double* const l[3] = { batch.L[0] + begin, batch.L[1] + begin, batch.L[2] + begin };
+  const int run = walkers.NumberOfRuns;
+  walkers.Add(triangle, &this->Bending->Nets[triangle], begin, end - begin);
+  const int first = walkers.Runs[run].Begin;
+  if (StartWalkers(this->Inverses[triangle], pair.Target[pair.Triangles[triangle][0]], l,
+        batch.X + begin, batch.Y + begin, end - begin, first, arrays))
+  {
+    return;
+  }
+  for (int i = first; i < walkers.Runs[run].End; ++i)
+  {
+    // If the starting point is outside the triangle, begin in the triangle that contains it.
+    if (arrays.States[i] == CubicWalkers::Left)
+    {
+      int next = triangle;
+      Vector2 point;
+      const Barycentric there =
+        this->Leave(next, { arrays.L[0][i], arrays.L[1][i], arrays.L[2][i] }, point);
+      if (this->IsWhole(next))
+      {
+        arrays.States[i] = CubicWalkers::Found;
+        walkers.Entries[walkers.NumberOfEntries++] = { begin + (i - first), next, run, there };
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void CubicMap::EnterTriangles(const CubicBatch& batch, Walkers& walkers) const
+{
+  const PlanarPair& pair = this->GetFine();
+  CubicWalkers& arrays = walkers.Arrays;
+  int waiting = 0;
+  for (int n = 0; n < walkers.NumberOfEntries; ++n)
+  {
+    const Walkers::Entry entry = walkers.Entries[n];
+    int run = walkers.FindRun(entry);
+    if (run < 0)
+    {
+      if (!walkers.HasRoom(1))
+      {
+        walkers.Entries[waiting++] = { entry.Number, entry.Triangle, -1, entry.L };
+        continue;
+      }
+      run = walkers.NumberOfRuns;
+      walkers.Add(entry.Triangle, &this->Bending->Nets[entry.Triangle], 0, 0);
+      std::fill_n(arrays.States + walkers.Stop, WidestVector, CubicWalkers::Found);
+      walkers.Stop += WidestVector;
+    }
+    const int i = walkers.Runs[run].End++;
+    const Vector2 image = Vector2{ batch.X[entry.Number], batch.Y[entry.Number] } -
+      pair.Target[pair.Triangles[entry.Triangle][0]];
+    walkers.Numbers[i] = entry.Number;
+    for (int k = 0; k < 3; ++k)
+    {
+      // Rounding errors of these coordinates are corrected by Newton's method.
+      arrays.L[k][i] = entry.L[k];
+    }
+    arrays.X[i] = image.x;
+    arrays.Y[i] = image.y;
+    arrays.States[i] = CubicWalkers::OnTheWay;
+  }
+  walkers.NumberOfEntries = waiting;
+}
 
 //------------------------------------------------------------------------------
 void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& prepared) const
@@ -684,92 +844,67 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
   constexpr int mostRounds = 30;
   const PlanarPair& pair = this->GetFine();
   CubicWalkers& arrays = walkers.Arrays;
-  const auto finish = [&](int i, int triangle, Vector2 point) {
-    const bool found = this->FindByWalking({ batch.X[i], batch.Y[i] }, triangle, point, prepared);
-    const Vector2 preimage = pair.Source[pair.Triangles[triangle][0]] + point;
-    batch.Triangles[i] = found ? triangle : -1;
-    batch.ImageX[i] = preimage.x;
-    batch.ImageY[i] = preimage.y;
-  };
-  // Whole SIMD vectors read elements beyond the last point.
-  const auto fill = [&arrays](int count) {
-    for (int i = count; i < count + WidestVector; ++i)
-    {
-      arrays.L[0][i] = 1.0;
-      arrays.L[1][i] = arrays.L[2][i] = arrays.X[i] = arrays.Y[i] = 0.0;
-      arrays.Residual[i] = arrays.Move[i] = arrays.SecondOrder[i] = 0.0;
-      arrays.States[i] = CubicWalkers::Failed;
-    }
-  };
-  const auto enter = [&](int i, int triangle, const Vector2& point) {
-    // Rounding errors of these coordinates are corrected by Newton's method.
-    const Barycentric l = ToBarycentricByAreas(pair.GetSourceCorners(triangle), point);
-    const int number = walkers.Numbers[i];
-    const Vector2 image =
-      Vector2{ batch.X[number], batch.Y[number] } - pair.Target[pair.Triangles[triangle][0]];
-    walkers.Triangles[i] = triangle;
-    for (int k = 0; k < 3; ++k)
-    {
-      arrays.L[k][i] = l[k];
-    }
-    arrays.X[i] = image.x;
-    arrays.Y[i] = image.y;
-    arrays.Move[i] = arrays.SecondOrder[i] = 0.0;
-    arrays.States[i] = CubicWalkers::OnTheWay;
-  };
-  fill(walkers.Count);
-  ForEachRun(walkers.Triangles, walkers.Count, [&](int begin, int end, int t) {
-    StartByNet(this->Bending->Nets[t], begin, end, arrays);
-    const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
-    for (int i = begin; i < end; ++i)
-    {
-      // If the starting point is outside the triangle, begin in the triangle that contains it.
-      if (arrays.States[i] == CubicWalkers::Left)
-      {
-        int next = t;
-        Vector2 point = arrays.L[1][i] * corners[1] + arrays.L[2][i] * corners[2];
-        this->Walk(next, point);
-        if (this->IsWhole(next))
-        {
-          enter(i, next, point);
-        }
-      }
-    }
-  });
-  for (int round = 0; walkers.Count > 0; ++round)
+  for (int round = 0; walkers.NumberOfRuns > 0 || walkers.NumberOfEntries > 0; ++round)
   {
-    int left = 0;
-    ForEachRun(walkers.Triangles, walkers.Count, [&](int begin, int end, int t) {
-      WalkByNet(this->Bending->Nets[t], this->ResidualTolerance, begin, end, arrays);
-      const Vector2 origin = pair.Source[pair.Triangles[t][0]];
-      const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
-      for (int i = begin; i < end; ++i)
+    this->EnterTriangles(batch, walkers);
+    IterateWalkers(walkers.Runs, walkers.NumberOfRuns, this->ResidualTolerance, arrays);
+    for (int run = 0; run < walkers.NumberOfRuns; ++run)
+    {
+      const auto [t, first, count] = walkers.Starts[run];
+      const int begin = walkers.Runs[run].Begin;
+      const double* const l[3] = { arrays.L[0] + begin, arrays.L[1] + begin, arrays.L[2] + begin };
+      MapByCorners(pair.GetSourceCorners(t), pair.Source[pair.Triangles[t][0]], l, count,
+        batch.ImageX + first, batch.ImageY + first);
+    }
+    // Then the points that have entered, and those that are not found.
+    for (int run = 0; run < walkers.NumberOfRuns; ++run)
+    {
+      const auto [t, first, count] = walkers.Starts[run];
+      const CubicRun& lanes = walkers.Runs[run];
+      const int entered = lanes.Begin + count;
+      for (int i = lanes.AreFound ? entered : lanes.Begin; i < lanes.End; ++i)
       {
-        const int number = walkers.Numbers[i];
-        Vector2 point = arrays.L[1][i] * corners[1] + arrays.L[2][i] * corners[2];
-        if (arrays.States[i] == CubicWalkers::Found)
+        const bool isFound = arrays.States[i] == CubicWalkers::Found;
+        if (isFound && i < entered)
         {
-          batch.Triangles[number] = t;
-          batch.ImageX[number] = origin.x + point.x;
-          batch.ImageY[number] = origin.y + point.y;
           continue;
         }
-        int next = t;
-        this->Walk(next, point);
-        if (arrays.States[i] != CubicWalkers::Left || round == mostRounds || !this->IsWhole(next))
+        const int number = i < entered ? first + (i - lanes.Begin) : walkers.Numbers[i];
+        const Barycentric l{ arrays.L[0][i], arrays.L[1][i], arrays.L[2][i] };
+        int triangle = t;
+        Vector2 point;
+        bool found = true;
+        if (isFound)
         {
-          finish(number, next, point);
-          continue;
+          const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
+          point = l[1] * corners[1] + l[2] * corners[2];
         }
-        // Points that are not finished are moved to the beginning of the arrays.
-        walkers.Numbers[left] = number;
-        arrays.Residual[left] = arrays.Residual[i];
-        enter(left, next, point);
-        ++left;
+        else if (!std::isfinite(l[1]) || !std::isfinite(l[2]))
+        {
+          const std::array<Vector2, 3> corners = pair.GetSourceCorners(t);
+          point = (1.0 / 3.0) * (corners[1] + corners[2]);
+          found =
+            this->FindByWalking({ batch.X[number], batch.Y[number] }, triangle, point, prepared);
+        }
+        else
+        {
+          const Barycentric there = this->Leave(triangle, l, point);
+          if (arrays.States[i] == CubicWalkers::Left && round < mostRounds &&
+            this->IsWhole(triangle))
+          {
+            walkers.Entries[walkers.NumberOfEntries++] = { number, triangle, -1, there };
+            continue;
+          }
+          found =
+            this->FindByWalking({ batch.X[number], batch.Y[number] }, triangle, point, prepared);
+        }
+        const Vector2 origin = pair.Source[pair.Triangles[triangle][0]];
+        batch.Triangles[number] = found ? triangle : -1;
+        batch.ImageX[number] = origin.x + point.x;
+        batch.ImageY[number] = origin.y + point.y;
       }
-    });
-    walkers.Count = left;
-    fill(left);
+    }
+    walkers.NumberOfRuns = walkers.Stop = 0;
   }
 }
 
@@ -782,30 +917,17 @@ void CubicMap::FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const
   std::int64_t isMiddle[CubicBatch::Size];
   Walkers walkers;
   ForEachRun(batch.Triangles, batch.Count, [&](int begin, int end, int t) {
-    const std::array<std::int32_t, 3>& corners = pair.Triangles[t];
-    const Vector2 origin = pair.Source[corners[0]];
     if (this->IsWhole(t))
     {
-      const Vector2 image = pair.Target[corners[0]];
-      CubicWalkers& arrays = walkers.Arrays;
-      const int first = walkers.Count;
-      const int count = end - begin;
-      for (int k = 0; k < 3; ++k)
+      if (!walkers.HasRoom(end - begin))
       {
-        std::copy_n(batch.L[k] + begin, count, arrays.L[k] + first);
+        this->FindByNets(batch, walkers, prepared);
       }
-      for (int i = 0; i < count; ++i)
-      {
-        walkers.Triangles[first + i] = t;
-        walkers.Numbers[first + i] = begin + i;
-        arrays.X[first + i] = batch.X[begin + i] - image.x;
-        arrays.Y[first + i] = batch.Y[begin + i] - image.y;
-        arrays.Residual[first + i] = std::numeric_limits<double>::infinity();
-        arrays.Move[first + i] = arrays.SecondOrder[first + i] = 0.0;
-      }
-      walkers.Count += count;
+      this->StartWalking(batch, begin, end, t, walkers);
       return;
     }
+    const std::array<std::int32_t, 3>& corners = pair.Triangles[t];
+    const Vector2 origin = pair.Source[corners[0]];
     if (!this->Bending)
     {
       const CubicTemplate::MiddleBounds& bounds = this->Template->GetMiddle(t);

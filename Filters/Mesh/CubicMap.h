@@ -8,6 +8,7 @@
 #ifndef homeomorphism_CubicMap_h
 #define homeomorphism_CubicMap_h
 
+#include "Kernel/Simd/CubicBatch.h"
 #include "Mesh/BendingSolve.h"
 #include "Mesh/CubicMapOptions.h"
 #include "Mesh/CubicTemplate.h"
@@ -84,12 +85,15 @@ public:
     return CubicTriangle(*this->Template, this->Bending.get(), kept);
   }
 
-  /// The net that MapPoints reads, null if the triangle is not a whole element.
+  /// The net that MapPoints and FindPreimages read, null if the triangle is not a whole element;
+  /// and the approximation of the inverse that FindPreimages reads.
   const CubicNet* GetNet(int triangle) const
   {
-    return this->Levels == 0 && this->Bending && !this->Bending->Nets.empty()
-      ? &this->Bending->Nets[triangle]
-      : nullptr;
+    return this->HasNets() ? &this->Bending->Nets[triangle] : nullptr;
+  }
+  const InverseInterpolant* GetInverse(int triangle) const
+  {
+    return this->HasNets() ? &this->Inverses[triangle] : nullptr;
   }
 
   /// Sets the images of a batch. The image of a point does not depend on the other points.
@@ -142,6 +146,10 @@ public:
 
 private:
   const PlanarPair& GetFine() const { return this->Fine ? *this->Fine : this->Pair; }
+  bool HasNets() const
+  {
+    return this->Levels == 0 && this->Bending && !this->Bending->Nets.empty();
+  }
   bool IsWhole(int fineTriangle) const
   {
     return this->Bending && this->Bending->Cuts[fineTriangle] < 0;
@@ -159,7 +167,17 @@ private:
   int FindChild(int triangle, Barycentric& l) const;
   void MoveToChildren(CubicBatch& batch) const;
   struct Walkers;
-  /// Chebyshev's method in whole triangles. Points for which it fails are left to FindByWalking.
+  /// The triangle of the refined pair at a point outside @a triangle with barycentric coordinates
+  /// @a l there. Returns the point's coordinates for that triangle, and sets it relative to its
+  /// corner 0.
+  Barycentric Leave(int& triangle, const Barycentric& l, Vector2& point) const;
+  /// Adds points of a whole triangle, at the values of the inverse's interpolant.
+  void StartWalking(
+    const CubicBatch& batch, int begin, int end, int triangle, Walkers& walkers) const;
+  /// Adds points that enter whole triangles, as long as there is room.
+  void EnterTriangles(const CubicBatch& batch, Walkers& walkers) const;
+  /// Finds the preimages of all walkers in whole triangles. Points for which the iteration fails
+  /// are left to FindByWalking.
   void FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& prepared) const;
   /// Finds the preimage that is near a point relative to corner 0 of a triangle of the refined
   /// pair; both are changed.
@@ -187,6 +205,8 @@ private:
   int Levels = 0;
   std::unique_ptr<CubicTemplate> Template;
   std::unique_ptr<BendingSolution> Bending;
+  /// For whole triangles; empty if all triangles are cut.
+  LargeArray<InverseInterpolant> Inverses;
   LargeVector<double> Certificates;
   double ResidualTolerance = 0.0;
   CubicMapStatistics Statistics;

@@ -435,7 +435,7 @@ int Homeomorphism::MapByCubics(Domain from, PointBlock& block) const
   batch.Count = block.Count;
   const double* const inFrame[2] = { block.InPlane[0], block.InPlane[1] };
   double heights[PointBlock::Capacity];
-  PointRuns(block).ForEach([&](int, TriangleIndex t) { this->Cubic->PrefetchTriangle(t); },
+  PointRuns(block).ForEach([&](int, TriangleIndex t) { this->Cubic->PrefetchTriangle(from, t); },
     [&](int begin, int end, TriangleIndex t) {
       this->Cubic->SetPoints(
         this->ToCubic(from), t, begin, end, this->ByCorner(from, t, block).data(), inFrame, batch);

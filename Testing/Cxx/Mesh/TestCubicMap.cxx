@@ -617,14 +617,19 @@ TEST_P(CubicMaps, BatchesGiveTheBitsOfSinglePoints)
     std::vector<Sample> samples = RandomSamples(pair, 19, 10 * CubicBatch::Size);
     for (int round = 0; round < 10; ++round)
     {
-      // Runs of one to twenty points in a triangle.
+      // Runs of one to sixteen points in a triangle, half of them in neighbors as in a scan.
       Sample* const first = &samples[static_cast<std::size_t>(round * CubicBatch::Size)];
       const int count = CubicBatch::Capacity - round;
       for (int i = 1; i < count; ++i)
       {
-        if (i % (7 * round + 1) % 20 != 0)
+        if (i % (7 * round + 1) % 16 != 0)
         {
           first[i].Triangle = first[i - 1].Triangle;
+        }
+        else if (round % 2 == 0)
+        {
+          const int last = first[i - 1].Triangle;
+          first[i].Triangle = std::max(last, pair.Neighbors[last][i % 3]);
         }
       }
       const auto set = [](CubicBatch& batch, int i, const Sample& sample, const Vector2& point) {
