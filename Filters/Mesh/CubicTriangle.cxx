@@ -440,7 +440,8 @@ Vector2 CubicTriangle::DeviateInStrip(const Vector2& point, int number, Matrix2*
   const EdgeTerms& edge = this->GetEdge(k);
   const Vector2 d = point - cut.Corners[NextCorner(k)];
   const double s = (Dot(cut.Along[k], d) - cut.Radii[NextCorner(k)]) * edge.InverseStrip;
-  const double t = Cross(cut.Along[k], d) * edge.InverseHeight;
+  // Rounding can take points beyond the edge, where the determinant may be negative.
+  const double t = std::max(Cross(cut.Along[k], d) * edge.InverseHeight, 0.0);
   const bool isUpper = (number - TriangleCut::FirstStrip) % 2 == 1;
   const EdgeBubbles bubbles(GetStripCoordinates(isUpper, s, t));
   this->LeastCoordinate = bubbles.GetLeastCoordinate();
@@ -551,7 +552,7 @@ Vector2 CubicTriangle::DeviateInCorner(const Vector2& point, int number, Matrix2
   // and t across, from 0 to 1.
   const SideTerms& side = this->GetSide(c, number % 3 == 0);
   const double s = Dot(side.ByS, x);
-  const double t = Dot(side.ByT, x);
+  const double t = std::max(Dot(side.ByT, x), 0.0);
   const double l = 1.0 - s;
   const Vector2 linear = side.Difference * x;
   const EdgeBubbles bubbles({ l, s - t, t });
