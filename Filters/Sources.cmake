@@ -33,6 +33,7 @@ set(kernel_headers
 set(cubic_sources
   Mesh/BendingSolve.cxx
   Mesh/CubicMap.cxx
+  Mesh/CubicPreimages.cxx
   Mesh/CubicTemplate.cxx
   Mesh/CubicTriangle.cxx
   Mesh/LargeArray.cxx

@@ -115,6 +115,16 @@ struct CubicOrdinates
 /// perpendicular to it: rounding moves the point by a few ulp of that edge, even in a needle.
 Barycentric ToBarycentric(const std::array<Vector2, 3>& points, const Vector2& point);
 
+/// Barycentric coordinates of a point relative to corner 0, faster than ToBarycentric, but
+/// inaccurate in thin triangles.
+inline Barycentric ToBarycentricByAreas(const std::array<Vector2, 3>& corners, const Vector2& point)
+{
+  const double scale = 1.0 / Cross(corners[1], corners[2]);
+  const double first = scale * Cross(point, corners[2]);
+  const double second = scale * Cross(corners[1], point);
+  return { 1.0 - first - second, first, second };
+}
+
 /// Barycentric coordinates in the piece that contains a point of the triangle.
 struct CubicPiece
 {

@@ -9,6 +9,7 @@
 
 #include "Kernel/Simd/Vectorize.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -87,6 +88,11 @@ inline double Dot(const Vector2& a, const Vector2& b)
 inline double Cross(const Vector2& a, const Vector2& b)
 {
   return a.x * b.y - a.y * b.x;
+}
+
+inline double MaxNorm(const Vector2& v)
+{
+  return std::max(std::abs(v.x), std::abs(v.y));
 }
 
 /// a d - b c with a relative error of at most 1.5 ulp, even under cancellation (Kahan; Jeannerod,

@@ -54,6 +54,26 @@ struct CubicBatch
   double Y[Size];
   double ImageX[Size];
   double ImageY[Size];
+
+  /// Calls use(begin, end, triangle) for consecutive points in the same triangle.
+  template <typename Use>
+  void ForEachRun(Use&& use) const
+  {
+    for (int begin = 0; begin < this->Count;)
+    {
+      const std::int32_t triangle = this->Triangles[begin];
+      int end = begin + 1;
+      while (end < this->Count && this->Triangles[end] == triangle)
+      {
+        ++end;
+      }
+      if (triangle >= 0)
+      {
+        use(begin, end, triangle);
+      }
+      begin = end;
+    }
+  }
 };
 
 /// The map. Immutable; any number of threads may use it.
@@ -167,9 +187,9 @@ private:
   int FindChild(int triangle, Barycentric& l) const;
   void MoveToChildren(CubicBatch& batch) const;
   struct Walkers;
-  /// The triangle of the refined pair at a point outside @a triangle with barycentric coordinates
-  /// @a l there. Returns the point's coordinates for that triangle, and sets it relative to its
-  /// corner 0.
+  /// Replaces a triangle of the refined pair by the one that contains the point with barycentric
+  /// coordinates @a l, usually outside. Sets the point relative to corner 0, and returns its
+  /// coordinates.
   Barycentric Leave(int& triangle, const Barycentric& l, Vector2& point) const;
   /// Adds points of a whole triangle, at the values of the inverse's interpolant.
   void StartWalking(
@@ -208,6 +228,8 @@ private:
   /// For whole triangles; empty if all triangles are cut.
   LargeArray<InverseInterpolant> Inverses;
   LargeVector<double> Certificates;
+  /// Residuals of this many ulp of the target's coordinates are rounding.
+  static constexpr double ResidualUlps = 4.0;
   double ResidualTolerance = 0.0;
   CubicMapStatistics Statistics;
 };
