@@ -17,6 +17,9 @@ namespace
 {
 
 constexpr int NewtonSteps = 300;
+// Residuals that are this many times greater than the tolerance can be rounding errors, but rarely
+// are.
+constexpr double UsualRounding = 64.0;
 // Half the second derivatives times the size of a triangle, divided by the smallest stretch, rarely
 // exceed this.
 constexpr double MostBending = 10.0;
@@ -635,16 +638,22 @@ bool CubicMap::FindByWalking(
   }
   const double tolerance =
     size <= this->ResidualTolerance ? size : this->GetTolerance(t, derivative);
-  if (!(size <= tolerance))
+  if (!(size <= std::min(tolerance, UsualRounding * this->ResidualTolerance)))
   {
     // Newton's method has stalled, or the image is outside the target's domain.
     int found = t;
     Vector2 better;
     if (this->SearchPreimage(image, found, better))
     {
-      triangle = found;
-      point = better - pair.Source[pair.Triangles[found][0]];
-      return true;
+      better = better - pair.Source[pair.Triangles[found][0]];
+      prepared.Set(found);
+      const Vector2 rest = image - pair.Target[pair.Triangles[found][0]] - prepared.Map(better);
+      if (!(size <= tolerance) || MaxNorm(rest) < size)
+      {
+        triangle = found;
+        point = better;
+        return true;
+      }
     }
   }
   triangle = t;
@@ -703,7 +712,7 @@ bool CubicMap::SearchPreimage(const Vector2& image, int& triangle, Vector2& poin
                 point = sourceOrigin + factor * x;
                 x = x + Solve(element.Affine + gradient, residual);
               }
-              return last <= 4.0 * tolerance || smallest;
+              return last <= 4.0 * this->ResidualTolerance / factor || smallest;
             });
         }
       },
