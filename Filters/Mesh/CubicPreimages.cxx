@@ -197,6 +197,22 @@ int FindExit(const std::array<Vector2, 3>& corners, const Vector2& point)
   return exit;
 }
 
+// A point relative to corner 0 of one triangle, relative to that of another.
+Vector2 MoveOrigin(const PlanarPair& pair, int from, int to, const Vector2& point)
+{
+  return point + (pair.Source[pair.Triangles[from][0]] - pair.Source[pair.Triangles[to][0]]);
+}
+
+// Sets the preimage of a point of the batch, relative to corner 0 of a triangle.
+void SetPreimage(const PlanarPair& pair, CubicBatch& batch, int number, bool found, int triangle,
+  const Vector2& point)
+{
+  const Vector2 preimage = pair.Source[pair.Triangles[triangle][0]] + point;
+  batch.Triangles[number] = found ? triangle : -1;
+  batch.ImageX[number] = preimage.x;
+  batch.ImageY[number] = preimage.y;
+}
+
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
@@ -221,8 +237,7 @@ void CubicMap::Walk(int& triangle, Vector2& point) const
       point = start + s * edge;
       return;
     }
-    point =
-      point + (pair.Source[pair.Triangles[triangle][0]] - pair.Source[pair.Triangles[neighbor][0]]);
+    point = MoveOrigin(pair, triangle, neighbor, point);
     triangle = neighbor;
   }
 }
@@ -303,8 +318,7 @@ Barycentric CubicMap::Leave(int& triangle, const Barycentric& l, Vector2& point)
   const int neighbor = pair.Neighbors[triangle][FindPiece(l).Opposite];
   if (neighbor >= 0)
   {
-    const Vector2 moved =
-      point + (pair.Source[pair.Triangles[triangle][0]] - pair.Source[pair.Triangles[neighbor][0]]);
+    const Vector2 moved = MoveOrigin(pair, triangle, neighbor, point);
     const Barycentric there = ToBarycentricByAreas(pair.GetSourceCorners(neighbor), moved);
     if (there[0] >= 0.0 && there[1] >= 0.0 && there[2] >= 0.0)
     {
@@ -441,10 +455,7 @@ void CubicMap::FindByNets(CubicBatch& batch, Walkers& walkers, CubicTriangle& pr
           found =
             this->FindByWalking({ batch.X[number], batch.Y[number] }, triangle, point, prepared);
         }
-        const Vector2 origin = pair.Source[pair.Triangles[triangle][0]];
-        batch.Triangles[number] = found ? triangle : -1;
-        batch.ImageX[number] = origin.x + point.x;
-        batch.ImageY[number] = origin.y + point.y;
+        SetPreimage(pair, batch, number, found, triangle, point);
       }
     }
     walkers.NumberOfRuns = walkers.Stop = 0;
@@ -489,10 +500,7 @@ void CubicMap::FindPreimages(CubicBatch& batch, CubicTriangle& prepared) const
         const bool found =
           (isInside && !this->Bending && prepared.FindDirectly(point, this->ResidualTolerance)) ||
           this->FindByWalking({ batch.X[i], batch.Y[i] }, triangle, point, prepared);
-        const Vector2 preimage = pair.Source[pair.Triangles[triangle][0]] + point;
-        batch.Triangles[i] = found ? triangle : -1;
-        batch.ImageX[i] = preimage.x;
-        batch.ImageY[i] = preimage.y;
+        SetPreimage(pair, batch, i, found, triangle, point);
       }
     }
   });
